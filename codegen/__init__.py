@@ -1,0 +1,1 @@
+"""Records in, C text out: pure generators."""

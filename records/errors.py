@@ -1,0 +1,21 @@
+"""The two ways in which a command can fail on purpose."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class BadInput(Exception):
+    """Input that cannot be used: what it is, where it stands, what was found, what was expected, what to do (exit status 2)."""
+
+    what: str
+    where: str
+    got: str
+    expected: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.what}: got {self.got}, expected {self.expected}; {self.remedy}"
+
+
+class VerificationFailed(Exception):
+    """A check of the product, not of the input, did not hold (exit status 1)."""

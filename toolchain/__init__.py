@@ -1,0 +1,1 @@
+"""One compiler for host and target: the zig wheel, with a content-addressed cache."""

@@ -1,0 +1,133 @@
+"""C for this computer: compiled by the zig wheel, kept by the hash of everything that went into it, loaded by cffi in ABI mode.
+
+A fresh machine has no C compiler and no Python headers; ABI mode needs neither.
+"""
+
+import hashlib
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from cffi import FFI
+
+from records.errors import BadInput
+
+CACHE_DIR = Path(os.environ.get("TWINLAW_CACHE", Path(__file__).resolve().parent.parent / ".cache"))
+
+# No contraction and no relaxed arithmetic: float32 results must be the same bits on host and target.
+STRICT_FLOAT_FLAGS = (
+    "-O2",
+    "-std=c11",
+    "-ffp-contract=off",
+    "-fno-fast-math",
+    "-fno-sanitize=undefined",
+    "-Wall",
+    "-Wextra",
+    "-Wdouble-promotion",
+    "-Werror",
+)
+# Simulation kernels: still without contraction or re-ordering, so that single and batched runs agree to the bit.
+FAST_FLAGS = ("-O3", "-std=c11", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined")
+
+
+@dataclass(frozen=True)
+class CText:
+    """A C source that exists only as text: its file name and its content."""
+
+    name: str
+    text: str
+
+
+Source = Path | CText
+
+
+def zig_environment() -> dict[str, str]:
+    """Environment of a zig call: its caches stay in the project's own cache folder."""
+    zig_cache = str(CACHE_DIR / "zig")
+    return {**os.environ, "ZIG_GLOBAL_CACHE_DIR": zig_cache, "ZIG_LOCAL_CACHE_DIR": zig_cache}
+
+
+def run_zig(arguments: Sequence[str], what: str) -> None:
+    """Run `zig` with `arguments`; raises BadInput with the compiler's first messages when it refuses."""
+    command = [sys.executable, "-m", "ziglang", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, env=zig_environment(), check=False)
+    if done.returncode != 0:
+        raise BadInput(
+            what="C compilation",
+            where=what,
+            got=done.stderr.strip()[:2000] or f"exit status {done.returncode}",
+            expected="a clean build",
+            remedy="mend the named source line, or reinstall the ziglang package with `make`",
+        )
+
+
+def build_shared(
+    name: str, sources: Sequence[Source], *, include_dirs: Sequence[Path] = (), flags: Sequence[str] = STRICT_FLOAT_FLAGS
+) -> Path:
+    """Compile `sources` into a shared library and return its path; the same content is compiled once only.
+
+    Headers in `include_dirs` count as content too. Raises BadInput when the compiler refuses.
+    """
+    target = CACHE_DIR / "host" / f"{name}-{_content_digest(sources, include_dirs, flags)}.so"
+    if target.exists():
+        return target
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=target.parent) as work:
+        files = [_as_file(source, Path(work)) for source in sources]
+        includes = [f"-I{folder}" for folder in (*include_dirs, Path(work))]
+        built = Path(work) / "out.so"
+        compiled = [str(path) for path in files if path.suffix == ".c"]
+        run_zig(["cc", "-shared", "-fPIC", *flags, *includes, *compiled, "-o", str(built), "-lm"], name)
+        built.replace(target)
+    return target
+
+
+def load_shared(cdef: str, path: Path) -> tuple[FFI, Any]:
+    """Open a shared library through cffi in ABI mode with the declarations `cdef`; returns (ffi, lib)."""
+    ffi = FFI()
+    ffi.cdef(cdef)
+    return ffi, ffi.dlopen(str(path))
+
+
+@cache
+def zig_version() -> str:
+    """Version of the zig wheel, part of every cache key."""
+    return version("ziglang")
+
+
+def _as_file(source: Source, folder: Path) -> Path:
+    if isinstance(source, Path):
+        return source
+    path = folder / source.name
+    path.write_text(source.text, encoding="utf-8")
+    return path
+
+
+def _content_digest(sources: Sequence[Source], include_dirs: Sequence[Path], flags: Sequence[str]) -> str:
+    digest = hashlib.sha256(f"{zig_version()} {' '.join(flags)}".encode())
+    if "-march=native" in flags:
+        digest.update(_processor_identity().encode())
+    for source in sources:
+        content = source.read_bytes() if isinstance(source, Path) else source.text.encode()
+        digest.update(f"\0{source.name}\0".encode() + content)
+    for folder in include_dirs:
+        for header in sorted(folder.glob("*.h")):
+            digest.update(f"\0{header.name}\0".encode() + header.read_bytes())
+    return digest.hexdigest()[:20]
+
+
+@cache
+def _processor_identity() -> str:
+    """What `-march=native` depends on: a cache folder carried to another machine must not serve its kernels there."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return os.uname().machine
+    return "".join(line for line in lines if line.startswith(("model name", "flags")))[:4000]
