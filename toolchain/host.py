@@ -69,7 +69,11 @@ def run_zig(arguments: Sequence[str], what: str) -> None:
 
 
 def build_shared(
-    name: str, sources: Sequence[Source], *, include_dirs: Sequence[Path] = (), flags: Sequence[str] = STRICT_FLOAT_FLAGS
+    name: str,
+    sources: Sequence[Source],
+    *,
+    include_dirs: Sequence[Path] = (),
+    flags: Sequence[str] = STRICT_FLOAT_FLAGS,
 ) -> Path:
     """Compile `sources` into a shared library and return its path; the same content is compiled once only.
 

@@ -1,0 +1,149 @@
+"""The plant file: which equations, with which parameters, known how well, seen by which sensors."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from records import checks
+from records.errors import BadInput
+from records.units import dimensions
+
+SCHEMA = "plant/1"
+Value = float | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of the equations: a number or polynomial coefficients in ascending powers, SI units.
+
+    `sd` is one standard deviation of what is known of it, in the same shape and unit; 0 means known exactly.
+    """
+
+    value: Value
+    sd: Value
+    unit: str
+    source: str
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The value as a tuple, also where it is one number."""
+        return self.value if isinstance(self.value, tuple) else (self.value,)
+
+    @property
+    def sds(self) -> tuple[float, ...]:
+        """The standard deviations as a tuple of the same length as `values`."""
+        return self.sd if isinstance(self.sd, tuple) else (self.sd,)
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A plant as its file states it.
+
+    `sensors` maps an output name ("psi_rad") to the step of its encoder; `design` holds the file's wishes for the controller
+    (section [design], read by the design stage) and `effects` the added effects (sections [effects.PLACE.NAME]) as plain tables.
+    """
+
+    name: str
+    model: str
+    parameters: Mapping[str, Parameter]
+    sensors: Mapping[str, float]
+    design: Mapping[str, Any] = field(default_factory=dict)
+    effects: Mapping[str, Any] = field(default_factory=dict)
+
+
+def load_plant(path: Path) -> Plant:
+    """Read a plant file; raises BadInput naming the file, the key and the remedy.
+
+    Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
+    """
+    return parse_plant(read_toml(path, "plant file"), path.stem, str(path))
+
+
+def read_toml(path: Path, what: str) -> Mapping[str, Any]:
+    """Content of a TOML file; raises BadInput when it is missing, unreadable or no TOML."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInput(what, str(path), error.strerror or str(error), "a readable file", "check the path") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise BadInput(what, str(path), f"no TOML ({error})", "a TOML file", "mend that line") from error
+
+
+def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
+    """A plant from the content of its file; `where` names the file in errors."""
+    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.keys(content, where, ("schema", "model", "parameters", "sensors"), ("design", "effects", "correlation"))
+    parameters = checks.table(content["parameters"], f"{where}: parameters")
+    sensors = checks.table(content["sensors"], f"{where}: sensors")
+    return Plant(
+        name=name,
+        model=checks.text(content["model"], f"{where}: model"),
+        parameters={key: _parameter(value, f"{where}: parameters.{key}") for key, value in parameters.items()},
+        sensors={key: _resolution(value, f"{where}: sensors.{key}") for key, value in sensors.items()},
+        design=checks.table(content.get("design", {}), f"{where}: design"),
+        effects=checks.table(content.get("effects", {}), f"{where}: effects"),
+    )
+
+
+def plant_text(plant: Plant) -> str:
+    """The plant as TOML text; reading it back gives an equal plant."""
+    document = tomlkit.document()
+    document["schema"] = SCHEMA
+    document["model"] = plant.model
+    document["parameters"] = {
+        key: {"value": _plain(entry.value), "sd": _plain(entry.sd), "unit": entry.unit, "source": entry.source}
+        for key, entry in plant.parameters.items()
+    }
+    document["sensors"] = {key: {"resolution_rad": step} for key, step in plant.sensors.items()}
+    for section in ("design", "effects"):
+        if getattr(plant, section):
+            document[section] = dict(getattr(plant, section))
+    return tomlkit.dumps(document)
+
+
+def _plain(value: Value) -> float | list[float]:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _parameter(entry: Any, where: str) -> Parameter:
+    section = checks.table(entry, where)
+    checks.keys(section, where, ("value", "sd", "unit", "source"))
+    value, sd = section["value"], section["sd"]
+    length = len(value) if isinstance(value, list) else None
+    result = Parameter(
+        value=_value(value, f"{where}.value", length),
+        sd=_value(sd, f"{where}.sd", length),
+        unit=checks.text(section["unit"], f"{where}.unit"),
+        source=checks.text(section["source"], f"{where}.source"),
+    )
+    for entry_sd in result.sds:
+        if entry_sd < 0.0:
+            raise BadInput(
+                "sd", where, repr(entry_sd), "a standard deviation >= 0", "write 0 for a value known exactly"
+            )
+    _check_unit(result, where)
+    return result
+
+
+def _value(value: Any, where: str, length: int | None) -> Value:
+    return checks.number(value, where) if length is None else checks.numbers(value, where, length)
+
+
+def _check_unit(parameter: Parameter, where: str) -> None:
+    try:
+        found = dimensions(parameter.unit)
+    except ValueError as error:
+        raise BadInput("unit", where, repr(parameter.unit), "coherent SI units", str(error)) from error
+    if len(found) not in (1, len(parameter.values)):
+        count = f"one unit, or {len(parameter.values)}"
+        raise BadInput("unit", where, repr(parameter.unit), count, "give one unit for each coefficient")
+
+
+def _resolution(entry: Any, where: str) -> float:
+    section = checks.table(entry, where)
+    checks.keys(section, where, ("resolution_rad",))
+    return checks.positive(section["resolution_rad"], f"{where}.resolution_rad")

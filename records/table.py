@@ -1,0 +1,145 @@
+"""The controller table: everything that the generated law is made from, and the digest that names it.
+
+The law of one axis, with delta = 1 - z^-1 and Psi the measured elevation, is (seed 000, eqs (22) and (27), in another basis)
+
+    Q(z^-1, Psi) = q_0 + q_1 delta + q_2 delta^2 + q_3 delta^3
+    P(z^-1, Psi) = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2]        so that P(1) = p_0, exactly 0 with integral action
+    A(z^-1)      = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]        the anti-windup observer
+
+    A v = Q e + (A - P) s        e = filtered reference - angle, s = u - u_ff after the limits, v = u_fb before them
+    u = v + u_ff(filtered reference)
+
+Each q_i and p_i is a polynomial in Psi [rad], each feed-forward one in the axis' own reference; ascending powers.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from records import checks
+from records.errors import BadInput
+
+SCHEMA = "controller-table/1"
+Polynomial = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class AxisLaw:
+    """The law of one axis; `q_V_rad` has 4 polynomials, `p` 3, `a` 3 numbers; voltages in V, angles in rad."""
+
+    q_V_rad: tuple[Polynomial, ...]
+    p: tuple[Polynomial, ...]
+    a: tuple[float, float, float]
+    feedforward_V: Polynomial
+    prefilter_time_constant_s: float
+    u_min_V: float
+    u_max_V: float
+    u_safe_V: float
+    reference_min_rad: float
+    reference_max_rad: float
+    resolution_rad: float
+
+
+@dataclass(frozen=True)
+class ControllerTable:
+    """The table of both axes over the scheduling range psi_min_rad..psi_max_rad, and where it came from.
+
+    `feedforward_V` of the azimuth axis is a polynomial in the elevation reference, as u_T0 depends on Psi only.
+    `origin` records plant, operating points, poles and fit for tracing; it is covered by `digest` as well.
+    """
+
+    plant: str
+    sample_period_s: float
+    psi_min_rad: float
+    psi_max_rad: float
+    elevation: AxisLaw
+    azimuth: AxisLaw
+    origin: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of the table."""
+        return hashlib.sha256(_canonical(asdict(self)).encode()).hexdigest()
+
+
+def table_text(table: ControllerTable) -> str:
+    """The table as JSON text with its digest; numbers print so that they read back exactly."""
+    return json.dumps({"schema": SCHEMA, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
+
+
+def load_table(path: Path) -> ControllerTable:
+    """Read a controller table; raises BadInput when it is truncated, foreign, or does not match its own digest."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInput(
+            "controller table", str(path), error.strerror or str(error), "a readable file", "run `twinlaw design`"
+        ) from error
+    except ValueError as error:
+        raise BadInput(
+            "controller table", str(path), f"no JSON ({error})", "a whole table", "design it again"
+        ) from error
+    return parse_table(checks.table(content, str(path)), str(path))
+
+
+def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
+    """A controller table from the content of its file; raises BadInput."""
+    checks.schema(content, f"{where}: schema", SCHEMA)
+    names = tuple(ControllerTable.__dataclass_fields__)
+    checks.keys(content, where, ("schema", "digest", *names))
+    table = ControllerTable(
+        plant=checks.text(content["plant"], f"{where}: plant"),
+        sample_period_s=checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
+        psi_min_rad=checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
+        psi_max_rad=checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+        elevation=_axis(content["elevation"], f"{where}: elevation"),
+        azimuth=_axis(content["azimuth"], f"{where}: azimuth"),
+        origin=checks.table(content["origin"], f"{where}: origin"),
+    )
+    if table.digest != content["digest"]:
+        raise BadInput(
+            "digest",
+            where,
+            str(content["digest"])[:16],
+            table.digest[:16],
+            "the table was changed by hand: design it again",
+        )
+    return table
+
+
+def with_origin(table: ControllerTable, origin: Mapping[str, Any]) -> ControllerTable:
+    """The same table with another record of where it came from."""
+    return replace(table, origin=origin)
+
+
+def _canonical(content: Mapping[str, Any]) -> str:
+    return json.dumps(content, sort_keys=True, separators=(",", ":"))
+
+
+def _axis(entry: Any, where: str) -> AxisLaw:
+    section = checks.table(entry, where)
+    checks.keys(section, where, tuple(AxisLaw.__dataclass_fields__))
+    a = checks.numbers(section["a"], f"{where}.a", 3)
+    scalars = {
+        name: checks.number(section[name], f"{where}.{name}")
+        for name in AxisLaw.__dataclass_fields__
+        if name not in ("q_V_rad", "p", "a", "feedforward_V")
+    }
+    return AxisLaw(
+        q_V_rad=_polynomials(section["q_V_rad"], f"{where}.q_V_rad", 4),
+        p=_polynomials(section["p"], f"{where}.p", 3),
+        a=(a[0], a[1], a[2]),
+        feedforward_V=checks.numbers(section["feedforward_V"], f"{where}.feedforward_V"),
+        **scalars,
+    )
+
+
+def _polynomials(entry: Any, where: str, count: int) -> tuple[Polynomial, ...]:
+    if not isinstance(entry, list) or len(entry) != count:
+        raise BadInput(
+            "polynomials", where, repr(entry)[:60], f"{count} lists of coefficients", "design the table again"
+        )
+    return tuple(checks.numbers(row, f"{where}[{index}]") for index, row in enumerate(entry))

@@ -1,0 +1,49 @@
+"""Units as text: enough to tell that "N m s^2" is "kg m^2" and that "kg m" is not."""
+
+import re
+from collections.abc import Mapping
+
+Dimension = tuple[int, int, int, int]  # powers of kg, m, s, V
+
+_SYMBOLS: Mapping[str, Dimension] = {
+    "kg": (1, 0, 0, 0),
+    "m": (0, 1, 0, 0),
+    "s": (0, 0, 1, 0),
+    "V": (0, 0, 0, 1),
+    "N": (1, 1, -2, 0),
+    "Hz": (0, 0, -1, 0),
+    "rad": (0, 0, 0, 0),
+    "1": (0, 0, 0, 0),
+    "-": (0, 0, 0, 0),
+}
+_FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+))?$")
+
+
+def dimension(unit: str) -> Dimension:
+    """Powers of (kg, m, s, V) of a product such as "rad s^-2 V^-1"; a remark in parentheses is passed over.
+
+    Only coherent SI symbols are known, so equal dimensions mean equal scale. Raises ValueError naming the symbol that is not known.
+    """
+    total = [0, 0, 0, 0]
+    for sign, part in _parts(re.sub(r"\([^)]*\)", " ", unit)):
+        match = _FACTOR.match(part)
+        if match is None or match[1] not in _SYMBOLS:
+            raise ValueError(f"unit symbol {part!r} is not one of {', '.join(_SYMBOLS)}")
+        power = sign * int(match[2] or 1)
+        for axis, exponent in enumerate(_SYMBOLS[match[1]]):
+            total[axis] += power * exponent
+    return total[0], total[1], total[2], total[3]
+
+
+def dimensions(unit: str) -> tuple[Dimension, ...]:
+    """Dimensions of a unit, or of each entry of a list of units "[N, N s]"."""
+    text = unit.strip()
+    if text.startswith("[") and text.endswith("]"):
+        return tuple(dimension(entry) for entry in text[1:-1].split(","))
+    return (dimension(text),)
+
+
+def _parts(unit: str) -> list[tuple[int, str]]:
+    """Factors with +1 before the first "/" and -1 after it: "kg m^2/s" is kg m^2 s^-1."""
+    upper, *lower = unit.replace("*", " ").split("/")
+    return [(1, part) for part in upper.split()] + [(-1, part) for text in lower for part in text.split()]
