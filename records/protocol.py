@@ -1,0 +1,362 @@
+"""The serial protocol, declared once: C structures, C codecs and the Python codec are all derived from `PROTOCOL`.
+
+Frame on the line: COBS(version | type | sequence (2) | payload | CRC-32 over all before (4)) 0x00, little-endian.
+"""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True)
+class WireType:
+    """A scalar on the line: its C type, its `struct` code and its size in bytes."""
+
+    c_name: str
+    struct_code: str
+    size: int
+
+
+U8 = WireType("uint8_t", "B", 1)
+U16 = WireType("uint16_t", "H", 2)
+U32 = WireType("uint32_t", "I", 4)
+I16 = WireType("int16_t", "h", 2)
+I32 = WireType("int32_t", "i", 4)
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a message; `is_number` marks a raw 32-bit word of the law's own arithmetic (float32 or fixed point)."""
+
+    name: str
+    wire_type: WireType
+    unit: str
+    meaning: str
+    count: int = 1
+    is_number: bool = False
+
+    @property
+    def size(self) -> int:
+        """Bytes on the line."""
+        return self.wire_type.size * self.count
+
+
+@dataclass(frozen=True)
+class Message:
+    """One message: its type code, whether it travels to the board, and its fields in line order."""
+
+    name: str
+    code: int
+    to_board: bool
+    meaning: str
+    fields: tuple[Field, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Payload bytes on the line."""
+        return sum(field.size for field in self.fields)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One value of an enumeration with the sentence that a person reads."""
+
+    name: str
+    code: int
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Enumeration:
+    """A closed set of codes."""
+
+    name: str
+    meaning: str
+    choices: tuple[Choice, ...]
+
+    def code(self, name: str) -> int:
+        """Code of the choice called `name`; raises KeyError when there is none."""
+        return {choice.name: choice.code for choice in self.choices}[name]
+
+    def sentence(self, code: int) -> str:
+        """What a person reads for `code`, also for a code that a newer board may send."""
+        return next((choice.sentence for choice in self.choices if choice.code == code), f"unknown code {code}")
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number that both ends must agree on."""
+
+    name: str
+    value: int
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """The whole declaration; `schema_hash` changes with every change that the other end could notice."""
+
+    version: int
+    constants: tuple[Constant, ...]
+    enumerations: tuple[Enumeration, ...]
+    messages: tuple[Message, ...]
+
+    @cached_property
+    def schema_hash(self) -> bytes:
+        """First 8 bytes of the SHA-256 of the canonical declaration (names, codes, types, counts, units; no prose)."""
+        return hashlib.sha256(canonical_text(self).encode()).digest()[:8]
+
+    def message(self, name: str) -> Message:
+        """The message called `name`; raises KeyError when there is none."""
+        return {message.name: message for message in self.messages}[name]
+
+    def enumeration(self, name: str) -> Enumeration:
+        """The enumeration called `name`; raises KeyError when there is none."""
+        return {enumeration.name: enumeration for enumeration in self.enumerations}[name]
+
+    def constant(self, name: str) -> int:
+        """Value of the constant called `name`; raises KeyError when there is none."""
+        return {constant.name: constant.value for constant in self.constants}[name]
+
+
+HEADER_SIZE = 4
+CRC_SIZE = 4
+MAX_PAYLOAD_SIZE = 254 - HEADER_SIZE - CRC_SIZE  # one COBS block: one byte of overhead, whatever the payload
+
+
+def canonical_text(protocol: Protocol) -> str:
+    """The declaration as text, one fact a line, for the schema hash."""
+    lines = [f"protocol {protocol.version}"]
+    lines += [f"constant {constant.name} {constant.value}" for constant in protocol.constants]
+    for enumeration in protocol.enumerations:
+        lines += [f"enum {enumeration.name} {choice.name} {choice.code}" for choice in enumeration.choices]
+    for message in protocol.messages:
+        lines.append(f"message {message.name} {message.code} {'to' if message.to_board else 'from'} board")
+        lines += [
+            f"field {field.name} {field.wire_type.c_name} {field.count} {field.unit} {field.is_number}"
+            for field in message.fields
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _number(name: str, unit: str, meaning: str) -> Field:
+    return Field(name, U32, unit, meaning, is_number=True)
+
+
+def _count(name: str, meaning: str) -> Field:
+    return Field(name, U32, "1", meaning)
+
+
+_HEAD = (
+    Field("echo_sequence", U16, "1", "sequence number of the last frame that the board accepted"),
+    Field("device_time_us", U32, "us", "the board's own clock, modulo 2^32"),
+    Field("state", U8, "state", "state of the supervisor"),
+)
+_REFERENCES = (
+    _number("psi_ref_rad", "rad", "elevation reference"),
+    _number("phi_ref_rad", "rad", "azimuth reference"),
+)
+_ANGLES = (
+    _number("psi_rad", "rad", "elevation"),
+    _number("phi_rad", "rad", "azimuth"),
+)
+_INPUTS = (
+    _number("u_M_V", "V", "main motor voltage out of the law, after its limits"),
+    _number("u_T_V", "V", "tail motor voltage out of the law, after its limits"),
+)
+_DUTIES = (
+    Field("duty_main_ticks", I16, "PWM ticks", "signed duty written to the main motor's PWM"),
+    Field("duty_tail_ticks", I16, "PWM ticks", "signed duty written to the tail motor's PWM"),
+)
+_LAW_CYCLES = Field("law_cycles", U32, "core cycles", "duration of the last step of the law")
+
+_ENUMERATIONS = (
+    Enumeration(
+        "mode",
+        "What ARM asks for.",
+        (
+            Choice("FLYING", 1, "flying on the board's own encoders, references from the host"),
+            Choice(
+                "LOOP", 2, "host in the loop: the host sends angles, the board answers inputs; the power stage is off"
+            ),
+        ),
+    ),
+    Enumeration(
+        "state",
+        "State of the supervisor.",
+        (
+            Choice("DISARMED", 0, "disarmed, power stage off"),
+            Choice("FLYING", 1, "flying on its own encoders"),
+            Choice("LOOP", 2, "host in the loop"),
+            Choice("RAMPING", 3, "the host was lost, the inputs ramp to the safe value"),
+            Choice("LOST", 4, "the host was lost, inputs at the safe value until armed again"),
+        ),
+    ),
+    Enumeration(
+        "reason",
+        "Outcome of a command.",
+        (
+            Choice("DONE", 0, "done"),
+            Choice("WRONG_TABLE", 1, "the board carries another controller table than the host expects"),
+            Choice("OTHER_MODE", 2, "the board is armed in another mode; disarm it first"),
+            Choice("UNKNOWN_MODE", 3, "the board does not know this mode"),
+            Choice("NOT_ARMED", 4, "the board is not armed for this; arm it first"),
+            Choice("ARMED", 5, "the board is armed; disarm it first"),
+            Choice("SELF_TEST_FAILED", 6, "the law's self-test fails on this board; flash it again"),
+        ),
+    ),
+    Enumeration(
+        "arithmetic",
+        "Arithmetic of the law, and of every number on the line.",
+        (Choice("FLOAT32", 0, "float32"), Choice("FIXED", 1, "fixed point")),
+    ),
+    Enumeration(
+        "reset_cause",
+        "Why the board started.",
+        (
+            Choice("POWER", 0, "power on or brown-out"),
+            Choice("PIN", 1, "reset pin"),
+            Choice("SOFTWARE", 2, "software reset"),
+            Choice("WATCHDOG", 3, "independent watchdog: a control step did not finish"),
+            Choice("OTHER", 4, "another cause"),
+        ),
+    ),
+    Enumeration(
+        "sample_flag",
+        "Bits of SAMPLE.flags.",
+        (Choice("RESET_LAW", 1, "start the law anew at the angles of this sample"),),
+    ),
+)
+
+_TO_BOARD = (
+    Message("IDENTIFY", 0x01, True, "Who are you? Starts a session: sequence numbers continue from this frame."),
+    Message(
+        "ARM",
+        0x02,
+        True,
+        "Arm in a mode; refused unless the table is the expected one. Repeating it changes nothing.",
+        (
+            Field("mode", U8, "mode", "wanted mode"),
+            Field("digest_head", U8, "1", "first bytes of the expected table digest", count=8),
+        ),
+    ),
+    Message("DISARM", 0x03, True, "Power stage off at once; obeyed in any state and order."),
+    Message("REFERENCE", 0x04, True, "References while flying; the latest wins, none is acknowledged.", _REFERENCES),
+    Message(
+        "SAMPLE",
+        0x05,
+        True,
+        "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory.",
+        (Field("flags", U8, "sample_flag", "what else to do"), *_REFERENCES, *_ANGLES),
+    ),
+    Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
+    Message("SELF_TEST", 0x07, True, "Run the law's self-test; refused while armed."),
+    Message(
+        "PRESET",
+        0x08,
+        True,
+        "Declare what the encoders read now; refused while armed.",
+        (
+            Field("psi_counts", I32, "encoder counts", "elevation at this moment"),
+            Field("phi_counts", I32, "encoder counts", "azimuth at this moment"),
+        ),
+    ),
+)
+
+_FROM_BOARD = (
+    Message(
+        "IDENTITY",
+        0x81,
+        False,
+        "Answer to IDENTIFY.",
+        (
+            *_HEAD,
+            Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
+            Field("table_digest", U8, "1", "SHA-256 of the controller table", count=32),
+            Field("arithmetic", U8, "arithmetic", "arithmetic of the law"),
+            Field("sample_period_us", U32, "us", "control period"),
+            Field("pwm_full_scale_ticks", U16, "PWM ticks", "duty of full voltage"),
+            Field("firmware_version", U16, "1", "version of the firmware: major * 256 + minor"),
+            Field("unique_id", U8, "1", "serial number of the chip", count=12),
+            Field("reset_cause", U8, "reset_cause", "why the board started"),
+        ),
+    ),
+    Message(
+        "RESULT",
+        0x82,
+        False,
+        "Outcome of a command, or the reason why a setpoint was not taken.",
+        (
+            *_HEAD,
+            Field("command", U8, "message type", "the command that this answers"),
+            Field("reason", U8, "reason", "outcome"),
+        ),
+    ),
+    Message("ANSWER", 0x83, False, "Answer to SAMPLE.", (*_HEAD, *_INPUTS, *_DUTIES, _LAW_CYCLES)),
+    Message(
+        "TELEMETRY",
+        0x84,
+        False,
+        "Sent each tick while flying or ramping.",
+        (
+            *_HEAD,
+            Field("tick", U32, "1", "control ticks since the start"),
+            Field("psi_counts", I32, "encoder counts", "elevation encoder"),
+            Field("phi_counts", I32, "encoder counts", "azimuth encoder"),
+            *_ANGLES,
+            *_REFERENCES,
+            *_INPUTS,
+            *_DUTIES,
+            _LAW_CYCLES,
+            _count("frames_refused", "frames that reached the board and were not accepted"),
+            _count("frames_lost", "gaps in the host's sequence numbers"),
+            _count("tick_overruns", "ticks that came before the step of the last had finished"),
+        ),
+    ),
+    Message(
+        "COUNTERS",
+        0x85,
+        False,
+        "Answer to GET_COUNTERS: every frame that was delimited on the line is in exactly one of the first nine.",
+        (
+            *_HEAD,
+            _count("frames_accepted", "frames accepted"),
+            _count("cobs_errors", "frames that are no COBS block"),
+            _count("too_long", "frames longer than any message"),
+            _count("too_short", "frames shorter than header and CRC"),
+            _count("crc_errors", "frames with a wrong CRC"),
+            _count("wrong_version", "frames of another protocol version"),
+            _count("unknown_type", "frames of a type that the board does not take"),
+            _count("wrong_length", "frames whose length is not that of their type"),
+            _count("stale", "frames older than the last accepted one"),
+            _count("repeated", "accepted frames that repeat the last one"),
+            _count("frames_lost", "gaps in the host's sequence numbers"),
+            _count("uart_overruns", "bytes lost in the USART"),
+            _count("uart_framing_errors", "bytes without a stop bit"),
+            _count("uart_noise_errors", "bytes with noise"),
+            _count("rx_ring_overflows", "bytes lost for want of room in the receive ring"),
+            _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
+            _count("tick_overruns", "ticks that came before the step of the last had finished"),
+            _count("host_losses", "times that the host was lost while armed"),
+            _count("resets", "resets since power on"),
+        ),
+    ),
+    Message(
+        "SELF_TEST_RESULT",
+        0x86,
+        False,
+        "Answer to SELF_TEST.",
+        (*_HEAD, Field("mismatches", U32, "1", "outputs that differ from the expected bits")),
+    ),
+)
+
+PROTOCOL = Protocol(
+    version=1,
+    constants=(
+        Constant("HOST_LOSS_SAMPLES", 10, "samples without a setpoint from the host after which it counts as lost"),
+        Constant("RAMP_SAMPLES", 8, "samples from the loss of the host to the safe value"),
+        Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),
+    ),
+    enumerations=_ENUMERATIONS,
+    messages=_TO_BOARD + _FROM_BOARD,
+)

@@ -1,0 +1,93 @@
+"""A plant file's parameters bound to the equations that it names."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from records.plant import Parameter, Plant
+from records.units import dimensions
+from sim.model import Model, ParameterSpec
+from sim.plants import MODELS
+
+
+@dataclass(frozen=True)
+class BoundPlant:
+    """Equations with numbers: `p` and `sd` are the parameter vector and its standard deviations, shape (parameters,), SI."""
+
+    plant: Plant
+    model: Model
+    p: NDArray[np.float64]
+    sd: NDArray[np.float64]
+
+    def parameter(self, name: str) -> float:
+        """The value of a parameter that is one number."""
+        return self.plant.parameters[name].values[0]
+
+
+def bind(plant: Plant) -> BoundPlant:
+    """Check a plant's parameters against its model and put them in the model's order.
+
+    Raises BadInput for an unknown model, a missing or unknown parameter, a wrong shape, unit or sign, or a missing sensor.
+    """
+    where = f"plant {plant.name!r}"
+    if plant.model not in MODELS:
+        raise BadInput("model", where, repr(plant.model), f"one of {', '.join(MODELS)}", "name a model that exists")
+    model = MODELS[plant.model]()
+    _check_names(plant, model, where)
+    for spec in model.parameters:
+        _check_parameter(spec, plant.parameters[spec.name], f"{where}: parameters.{spec.name}")
+    ordered = [plant.parameters[spec.name] for spec in model.parameters]
+    p = np.array([value for entry in ordered for value in entry.values])
+    sd = np.array([value for entry in ordered for value in entry.sds])
+    _check_limits(model, p, where)
+    return BoundPlant(plant, model, p, sd)
+
+
+def _check_names(plant: Plant, model: Model, where: str) -> None:
+    known = [spec.name for spec in model.parameters]
+    for name in known:
+        if name not in plant.parameters:
+            raise BadInput(f"parameter {name!r}", where, "nothing", "a section", f"add [parameters.{name}]")
+    for name in plant.parameters:
+        if name not in known:
+            raise BadInput(
+                f"parameter {name!r}", where, "an unknown name", f"one of {', '.join(known)}", "remove or rename it"
+            )
+    for output in model.outputs:
+        if output not in plant.sensors:
+            raise BadInput(f"sensor {output!r}", where, "nothing", "a section", f"add [sensors.{output}]")
+    for sensor in plant.sensors:
+        if sensor not in model.outputs:
+            raise BadInput(
+                f"sensor {sensor!r}",
+                where,
+                "an unknown name",
+                f"one of {', '.join(model.outputs)}",
+                "remove or rename it",
+            )
+
+
+def _check_parameter(spec: ParameterSpec, entry: Parameter, where: str) -> None:
+    if len(entry.values) != spec.count or isinstance(entry.value, tuple) != (spec.count > 1):
+        expected = "one number" if spec.count == 1 else f"a list of {spec.count} coefficients, ascending powers"
+        got = f"{len(entry.values)} coefficients" if isinstance(entry.value, tuple) else "one number"
+        raise BadInput("value", where, got, expected, "see the equations in docs/theory.md")
+    found, wanted = dimensions(entry.unit), dimensions(spec.unit)
+    if found != wanted:
+        raise BadInput("unit", where, repr(entry.unit), repr(spec.unit), "convert the value to that unit")
+    for value in entry.values:
+        if (spec.sign == "positive" and value <= 0.0) or (spec.sign == "non-negative" and value < 0.0):
+            raise BadInput(
+                "sign", where, repr(value), f"a {spec.sign} value", "check the sign convention of the equations"
+            )
+
+
+def _check_limits(model: Model, p: NDArray[np.float64], where: str) -> None:
+    values = dict(zip(model.parameter_symbols, p, strict=True))
+    for variable, (lower, upper) in model.input_limits.items():
+        low, high = float(lower.subs(values)), float(upper.subs(values))
+        if low >= high:
+            got = f"{lower} = {low:g} and {upper} = {high:g}"
+            raise BadInput(f"limits of {variable}", where, got, f"{lower} < {upper}", "widen the range")

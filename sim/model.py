@@ -1,0 +1,104 @@
+"""A plant as symbolic equations, from which everything else is derived: reference, kernels, Jacobians, linearisation."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy
+
+TIME = sympy.Symbol("t_s", real=True)
+
+
+@dataclass(frozen=True)
+class ParameterSpec:
+    """What a model demands of one parameter: `count` coefficients (1 is a plain number), its unit and its sign.
+
+    `unit` follows the plant file: "[N, N s]" gives one unit per coefficient. `sign` is "positive" (> 0), "non-negative" or "any"
+    and holds for every coefficient.
+    """
+
+    name: str
+    count: int
+    unit: str
+    sign: str = "any"
+
+    @property
+    def symbols(self) -> tuple[sympy.Symbol, ...]:
+        """The coefficients as symbols: K_M, or p_bM_0, p_bM_1, ..."""
+        if self.count == 1:
+            return (sympy.Symbol(self.name, real=True),)
+        return tuple(sympy.Symbol(f"{self.name}_{index}", real=True) for index in range(self.count))
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One mechanical degree of freedom with dry friction and hard stops.
+
+    inertia * d(velocity)/dt = torque - coulomb * sgn(velocity), where at rest the friction takes any value within +-coulomb;
+    `lower` and `upper` are the stops of `position`, hit without rebound; None where there is none.
+    """
+
+    name: str
+    position: sympy.Symbol
+    velocity: sympy.Symbol
+    inertia: sympy.Expr
+    torque: sympy.Expr
+    coulomb: sympy.Expr
+    lower: sympy.Expr | None
+    upper: sympy.Expr | None
+
+
+@dataclass(frozen=True)
+class Model:
+    """A plant's equations: states x with rates, inputs u clamped to `input_limits`, outputs y, parameters p; argument order (t, x, u, p).
+
+    `rates` covers every state but the velocities of `axes`, whose rates follow from the axes.
+    """
+
+    name: str
+    states: tuple[sympy.Symbol, ...]
+    inputs: tuple[sympy.Symbol, ...]
+    outputs: Mapping[str, sympy.Expr]
+    parameters: tuple[ParameterSpec, ...]
+    rates: Mapping[sympy.Symbol, sympy.Expr]
+    axes: tuple[Axis, ...]
+    input_limits: Mapping[sympy.Symbol, tuple[sympy.Expr, sympy.Expr]]
+
+    @property
+    def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:
+        """All coefficients in the order of the parameter vector p."""
+        return tuple(symbol for spec in self.parameters for symbol in spec.symbols)
+
+    @property
+    def friction_signs(self) -> tuple[sympy.Symbol, ...]:
+        """One symbol per axis for the direction of its dry friction: sgn(velocity), or 0 where it is left out."""
+        return tuple(sympy.Symbol(f"sign_{axis.name}", real=True) for axis in self.axes)
+
+    def state_rates(self) -> sympy.Matrix:
+        """dx/dt as a column (states,) in the order of `states`, with the friction directions as symbols."""
+        rates = dict(self.rates)
+        for axis, sign in zip(self.axes, self.friction_signs, strict=True):
+            rates[axis.velocity] = (axis.torque - axis.coulomb * sign) / axis.inertia
+        return sympy.Matrix([rates[state] for state in self.states])
+
+
+def symbol(name: str) -> sympy.Symbol:
+    """A real symbol: the assumption lets SymPy differentiate |w|."""
+    return sympy.Symbol(name, real=True)
+
+
+def named_symbols(specs: tuple[ParameterSpec, ...]) -> dict[str, Any]:
+    """Parameter name -> its symbol, or the tuple of its coefficients' symbols."""
+    return {spec.name: spec.symbols if spec.count > 1 else spec.symbols[0] for spec in specs}
+
+
+def polynomial(coefficients: tuple[sympy.Symbol, ...], argument: sympy.Expr) -> sympy.Expr:
+    """sum_i c_i argument^i."""
+    return sympy.Add(*(c * argument**power for power, c in enumerate(coefficients)))
+
+
+def odd_polynomial(coefficients: tuple[sympy.Symbol, ...], argument: sympy.Expr) -> sympy.Expr:
+    """The odd extension sgn(w) sum_i c_i |w|^i, written so that it is smooth at 0 where c_0 is 0."""
+    constant, *higher = coefficients
+    smooth = (c * argument * sympy.Abs(argument) ** power for power, c in enumerate(higher))
+    return sympy.Add(constant * sympy.sign(argument), *smooth)
