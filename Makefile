@@ -1,0 +1,46 @@
+# Every target explains itself: `make help` prints the text behind its two hashes.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PLANT ?= plants/ce150.toml
+OUT ?= build
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+.PHONY: help run test check lint types layers bench clean
+
+help:  ## this list
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+
+run: $(VENV)/.run  ## design, generate, verify and fly PLANT (plants/ce150.toml) into OUT (build)
+	$(BIN)/twinlaw run --plant $(PLANT) --out $(OUT)
+
+test: $(VENV)/.test  ## the whole test suite, style and types included
+	$(BIN)/python -m pytest
+
+check: lint types layers  ## style, types and import order alone
+
+lint: $(VENV)/.test  ## ruff over everything
+	$(BIN)/ruff check . && $(BIN)/ruff format --check .
+
+types: $(VENV)/.test  ## mypy --strict over the packages
+	$(BIN)/mypy
+
+layers: $(VENV)/.test  ## the stages import one way only
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.run  ## simulated seconds per CPU second, as ratios to the peers that are installed
+	$(BIN)/twinlaw bench
+
+clean:  ## remove what can be made again; the virtual environment stays
+	rm -rf $(OUT) .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+
+# A stamp is written last, so that a broken download is tried again; nothing is fetched while pyproject.toml stays as it is.
+$(VENV)/.run: pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "twinlaw needs Python 3.11 or newer, this is " + sys.version.split()[0] + "; set PYTHON=/path/to/python3")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	touch $@
+
+$(VENV)/.test: $(VENV)/.run
+	$(PIP) --editable '.[test]'
+	touch $@
