@@ -1,0 +1,57 @@
+"""The design at each operating point: equilibrium, linear plant, controller."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.direct_form import DeltaForm, to_delta
+from design.discretise import TransferFunction, transfer_function
+from design.linearise import linearise, subsystem
+from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
+from design.settings import AxisSettings, DesignSettings
+from sim.bind import BoundPlant
+from sim.equilibrium import OperatingPoint, equilibrium
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PointDesign:
+    """The controller of one axis at one elevation, with the transfer function that it was made for."""
+
+    transfer: TransferFunction
+    placement: Placement
+    delta: DeltaForm
+
+
+def grid(settings: DesignSettings) -> Array:
+    """The elevations Psi_0 [rad] of the operating points, evenly spread over the schedule's range."""
+    return np.linspace(settings.psi_min_rad, settings.psi_max_rad, settings.operating_points)
+
+
+def equilibria(bound: BoundPlant, psi_rad: Array) -> tuple[OperatingPoint, ...]:
+    """Eq (16) at each elevation; raises BadInput naming the angle and the input that would leave its limits."""
+    return tuple(equilibrium(bound, float(psi)) for psi in psi_rad)
+
+
+def design_point(
+    bound: BoundPlant, point: OperatingPoint, axis: str, wishes: AxisSettings, sample_period_s: float
+) -> PointDesign:
+    """The controller of `axis` at `point`; raises BadInput naming axis and angle when eq (26) cannot be used there."""
+    where = f"{axis} at psi = {math.degrees(point.psi_rad):.1f} deg"
+    transfer = transfer_function(subsystem(bound, linearise(bound, point), axis), sample_period_s, where)
+    wanted = characteristic(poles_z(wishes.poles_rad_s, sample_period_s))
+    placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
+    return PointDesign(transfer, placement, exact_delta(placement, wishes.free_degree))
+
+
+def exact_delta(placement: Placement, free_degree: str) -> DeltaForm:
+    """The delta form, in which the coefficient that the free degree makes zero is zero to the last bit."""
+    delta = to_delta(placement.controller)
+    if free_degree == "integral":
+        return DeltaForm(delta.q, np.array([0.0, delta.p[1], delta.p[2]]))
+    if free_degree == "q3_zero":
+        return DeltaForm(np.append(delta.q[:3], 0.0), delta.p)
+    return delta

@@ -1,0 +1,108 @@
+"""Pole placement by eq (26), with the degree of freedom that the paper leaves open as a named choice.
+
+    A(z) P(z) + B(z) Q(z) = (z - z_1) ... (z - z_6)                         (26), times z^-6:
+
+    A = 1 + a_1 z^-1 + a_2 z^-2 + a_3 z^-3,    B = b_1 z^-1 + b_2 z^-2 + b_3 z^-3
+    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3,    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3
+
+The paper counts seven equations for the seven unknowns; that of z^0 reads 1 = 1, so six remain.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.direct_form import DirectForm, controller_poles_z
+from records.errors import BadInput
+
+Array = NDArray[np.float64]
+
+ORDER = 3
+
+# Above this condition number the coefficients keep fewer than 6 digits more than the cancellation in Q(1) takes away.
+MAX_CONDITION = 1e6
+
+
+@dataclass(frozen=True)
+class FreeDegree:
+    """A condition `row` . (p_1 p_2 p_3 q_0 q_1 q_2 q_3) = `value` that fixes the seventh unknown, and what it means."""
+
+    row: tuple[float, ...]
+    value: float
+    meaning: str
+
+
+FREE_DEGREES: Mapping[str, FreeDegree] = {
+    "integral": FreeDegree((1, 1, 1, 0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
+    "q3_zero": FreeDegree((0, 0, 0, 0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
+    "q0_zero": FreeDegree((0, 0, 0, 1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
+    "q_nyquist_zero": FreeDegree((0, 0, 0, 1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
+}
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A controller that places the poles, with the condition number of the scaled system that gave it."""
+
+    controller: DirectForm
+    condition: float
+
+
+def poles_z(poles_rad_s: Sequence[complex], sample_period_s: float) -> NDArray[np.complex128]:
+    """z = exp(s Ts) of each pole."""
+    return np.asarray(np.exp(np.asarray(poles_rad_s, dtype=complex) * sample_period_s))
+
+
+def characteristic(poles: NDArray[np.complex128]) -> Array:
+    """Eq (25) times z^-6: the coefficients (7,) of z^0 .. z^-6 of the product of (1 - z_i z^-1)."""
+    return np.asarray(np.poly(poles).real)
+
+
+def sylvester(b: Array, a: Array) -> Array:
+    """Coefficients of z^-1 .. z^-6 of A (p_1 .. p_3) + B (q_0 .. q_3), shape (6, 7), from b (4,) and a (4,) with b_0 = 0."""
+    columns = [np.convolve(a, np.eye(ORDER + 1)[index]) for index in range(1, ORDER + 1)]
+    columns += [np.convolve(b, np.eye(ORDER + 1)[index]) for index in range(ORDER + 1)]
+    return np.stack(columns, axis=1)[1:]
+
+
+def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Placement:
+    """Solve eq (26) for `wanted` (7,); b (4,) with b_0 = 0 and a (4,) with a_0 = 1, ascending powers of z^-1.
+
+    B is divided by max|b|, which takes the condition number from 1e6 to about 50. Raises BadInput naming `where` (axis and
+    operating angle) when the system is ill-conditioned or when the controller has a pole outside the unit circle: both would
+    place the poles on paper only.
+    """
+    scale = float(np.max(np.abs(b)))
+    unscale = np.array([1.0] * ORDER + [1.0 / scale] * (ORDER + 1))
+    row = np.asarray(free.row) * unscale
+    size = float(np.max(np.abs(row)))
+    system = np.vstack([sylvester(b / scale, a), row / size])
+    target = np.append(wanted[1:] - np.append(a[1:], np.zeros(ORDER)), free.value / size)
+    condition = float(np.linalg.cond(system))
+    if not condition < MAX_CONDITION:
+        raise BadInput(
+            "pole placement, eq (26)",
+            where,
+            f"condition number {condition:.1e}",
+            f"below {MAX_CONDITION:g}",
+            "A and B share a root nearly: move the operating range",
+        )
+    solution = np.linalg.solve(system, target) * unscale
+    controller = DirectForm(q=solution[ORDER:], p=np.append(1.0, solution[:ORDER]))
+    _check_stable(controller, where)
+    return Placement(controller, condition)
+
+
+def _check_stable(controller: DirectForm, where: str) -> None:
+    """Refuse poles of Q/P outside the unit circle; the root that P(1) = 0 puts at 1 is exact up to rounding."""
+    worst = max(controller_poles_z(controller), key=abs)
+    if abs(worst) > 1.0 + 1e-6:
+        raise BadInput(
+            "controller",
+            where,
+            f"a pole of its own at z = {worst:.4g}",
+            "poles within the unit circle",
+            "choose faster or slower poles, or another free_degree",
+        )

@@ -1,0 +1,92 @@
+"""The schedule: controller coefficients and feed-forward voltages as polynomials in the elevation.
+
+Every coefficient is fitted over the same points with the same degree and weights. Least squares is linear, so sums of fits are
+fits of sums: P(1) = 0 and the small Q(1), which decide the slow poles, survive although single coefficients are off by far more.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial as Fitted
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from design.direct_form import DeltaForm, to_direct
+from records.table import AxisLaw, Polynomial
+
+Array = NDArray[np.float64]
+
+NOISE = 1e-11
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """The feedback of one axis in delta form: four polynomials q [V/rad] and three p in Psi [rad], ascending powers."""
+
+    q: tuple[Polynomial, ...]
+    p: tuple[Polynomial, ...]
+
+
+@dataclass(frozen=True)
+class FitError:
+    """Largest distance of fit and design over the operating points, relative to the largest coefficient of its polynomial.
+
+    `q` and `p` are of the delta form, `direct_q` and `direct_p` of eq (22).
+    """
+
+    q: float
+    p: float
+    direct_q: float
+    direct_p: float
+
+
+def fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
+    """Least squares polynomial through values (points,), ascending powers of Psi [rad], `degree` + 1 of them.
+
+    A term that stays below NOISE of the largest value over the whole range is rounding, not plant, and becomes exactly 0: an even
+    function of Psi gets an even polynomial.
+    """
+    coefficients = np.zeros(degree + 1)
+    fitted = Fitted.fit(psi_rad, values, degree).convert().coef
+    coefficients[: len(fitted)] = fitted
+    contributions = np.abs(coefficients) * np.max(np.abs(psi_rad)) ** np.arange(degree + 1)
+    noise = contributions <= NOISE * np.max(np.abs(values))
+    return tuple(float(c) for c in np.where(noise, 0.0, coefficients))
+
+
+def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degree: int) -> Schedule:
+    """Fit all coefficients of the designs (points,) with one degree and equal weights."""
+    q, p = np.array([design.q for design in designs]), np.array([design.p for design in designs])
+    return Schedule(
+        q=tuple(fit(psi_rad, column, degree) for column in q.T), p=tuple(fit(psi_rad, column, degree) for column in p.T)
+    )
+
+
+def schedule_of(law: AxisLaw) -> Schedule:
+    """The schedule that a table holds."""
+    return Schedule(law.q_V_rad, law.p)
+
+
+def evaluate(schedule: Schedule, psi_rad: float) -> DeltaForm:
+    """The controller at one elevation."""
+    return DeltaForm(
+        q=np.array([polyval(psi_rad, row) for row in schedule.q]),
+        p=np.array([polyval(psi_rad, row) for row in schedule.p]),
+    )
+
+
+def fit_error(psi_rad: Array, designs: Sequence[DeltaForm], schedule: Schedule) -> FitError:
+    """How far the schedule is from the designs it was fitted to."""
+    fitted = [evaluate(schedule, float(psi)) for psi in psi_rad]
+    wanted_direct, fitted_direct = [to_direct(d) for d in designs], [to_direct(d) for d in fitted]
+    return FitError(
+        q=_relative([d.q for d in designs], [d.q for d in fitted]),
+        p=_relative([d.p for d in designs], [d.p for d in fitted]),
+        direct_q=_relative([d.q for d in wanted_direct], [d.q for d in fitted_direct]),
+        direct_p=_relative([d.p for d in wanted_direct], [d.p for d in fitted_direct]),
+    )
+
+
+def _relative(wanted: Sequence[Array], found: Sequence[Array]) -> float:
+    return float(np.max(np.abs(np.array(found) - np.array(wanted))) / np.max(np.abs(np.array(wanted))))
