@@ -48,7 +48,7 @@ class Axis:
     upper: sympy.Expr | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
     """A plant's equations: states x with rates, inputs u clamped to `input_limits`, outputs y, parameters p; argument order (t, x, u, p).
 

@@ -2,14 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 import sympy
 from numpy.typing import ArrayLike, NDArray
 
 from sim.model import TIME, Model
-from sim.plants import MODELS
 
 Array = NDArray[np.float64]
 
@@ -29,14 +28,9 @@ class Reference:
     C: Array
 
 
-@cache
-def reference(name: str) -> Reference:
-    """The reference of the model called `name`."""
-    return make_reference(MODELS[name]())
-
-
-def make_reference(model: Model) -> Reference:
-    """Derive rates and Jacobians from the symbolic equations of `model`."""
+@lru_cache(maxsize=64)
+def reference(model: Model) -> Reference:
+    """Derive rates and Jacobians from the symbolic equations of `model`, once for each model object."""
     states, inputs, parameters = (
         sympy.Matrix(model.states),
         sympy.Matrix(model.inputs),

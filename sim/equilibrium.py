@@ -1,0 +1,106 @@
+"""The rest points of a plant: constant inputs and states that hold its axes at given positions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from sim.bind import BoundPlant
+from sim.model import Axis
+from sim.reference import reference
+
+MAX_ITERATIONS = 60
+STEP_TOLERANCE = 1e-14
+Array = NDArray[np.float64]
+Values = Mapping[sympy.Symbol, float]
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingPoint:
+    """State x0 (states,) and input u0 (inputs,) with dx/dt = 0, dry friction left out; `psi_rad` is the first axis' position."""
+
+    psi_rad: float
+    x0: Array
+    u0: Array
+
+
+def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
+    """The rest point f(x0, u0) = 0 with the axes at `positions_rad`, in the order of the model; those not given are at 0.
+
+    Solved to rounding for the states that belong to no axis (rotor speeds) and the inputs; needs as many inputs as axes.
+    Raises BadInput naming the angle when it lies beyond a stop or needs an input beyond its limits.
+    """
+    model = bound.model
+    positions = dict(zip((axis.position for axis in model.axes), positions_rad, strict=False))
+    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
+    for axis in model.axes:
+        _check_stops(bound, axis, positions.get(axis.position, 0.0), values)
+    x = np.array([positions.get(state, 0.0) for state in model.states])
+    u = np.array([_middle(model.input_limits[variable], values) for variable in model.inputs])
+    x0, u0 = _solve(bound, x, u, positions_rad)
+    _check_inputs(bound, u0, values, positions_rad)
+    return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
+
+
+def _solve(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
+    """Newton's method from rest at the middle of the inputs' range: thrust and damping are convex, so it needs no damping."""
+    model = bound.model
+    held = {variable for axis in model.axes for variable in (axis.position, axis.velocity)}
+    free = [index for index, state in enumerate(model.states) if state not in held]
+    rows = [*free, *(model.states.index(axis.velocity) for axis in model.axes)]
+    equations, signs = reference(model), np.zeros(len(model.axes))
+    for _ in range(MAX_ITERATIONS):
+        at = (0.0, x, u, bound.p, signs)
+        jacobian = np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]])
+        try:
+            step = np.linalg.solve(jacobian, equations.rates(*at)[rows])
+        except np.linalg.LinAlgError:
+            break
+        x[free], u = x[free] - step[: len(free)], u - step[len(free) :]
+        if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x[free], u])))):
+            return x, u
+    raise BadInput(
+        "equilibrium",
+        _place(bound, positions_rad),
+        "no solution of f(x, u) = 0",
+        "a rest point",
+        "check the parameters of rotors and gravity",
+    )
+
+
+def _middle(limits: tuple[sympy.Expr, sympy.Expr], values: Values) -> float:
+    return float(sum(limit.subs(values) for limit in limits)) / 2.0
+
+
+def _check_stops(bound: BoundPlant, axis: Axis, position: float, values: Values) -> None:
+    lower = -np.inf if axis.lower is None else float(axis.lower.subs(values))
+    upper = np.inf if axis.upper is None else float(axis.upper.subs(values))
+    if not lower <= position <= upper:
+        raise BadInput(
+            f"{axis.name} angle",
+            f"equilibrium of plant {bound.plant.name!r}",
+            f"{np.degrees(position):g} deg",
+            f"{np.degrees(lower):g} to {np.degrees(upper):g} deg, the stops",
+            "choose an angle between the stops",
+        )
+
+
+def _check_inputs(bound: BoundPlant, u0: Array, values: Values, positions_rad: tuple[float, ...]) -> None:
+    for variable, value in zip(bound.model.inputs, u0, strict=True):
+        lower, upper = (float(limit.subs(values)) for limit in bound.model.input_limits[variable])
+        if not lower <= value <= upper:
+            raise BadInput(
+                f"input {variable}",
+                _place(bound, positions_rad),
+                f"{value:.4g} V needed to rest there",
+                f"{lower:g} to {upper:g} V",
+                "choose an angle that the inputs can hold",
+            )
+
+
+def _place(bound: BoundPlant, positions_rad: tuple[float, ...]) -> str:
+    angles = ", ".join(f"{np.degrees(position):g} deg" for position in positions_rad)
+    return f"plant {bound.plant.name!r} at {angles}"
