@@ -1,0 +1,200 @@
+"""Controller table -> C text of the law, its header and its self-test. Pure: the same table gives the same bytes."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jinja2
+import numpy as np
+
+from codegen.law_constants import PLAUSIBLE_V, prefilter_gain, without_vanishing_powers
+from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
+from codegen.numbers import c_float32
+from codegen.operations import operation_count
+from codegen.self_test import self_test
+from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from records.errors import BadInput
+from records.table import AxisLaw, ControllerTable, Polynomial
+
+ARITHMETIC_CODES = {"float32": 0}
+
+_FACTORS = {
+    "q": ("e->e_0_rad", "e->e_1_rad", "e->e_2_rad", "e->e_3_rad"),
+    "p": ("self->s_0_V", "self->s_1_V", "self->s_2_V"),
+    "a": ("self->w_0_V", "self->w_1_V", "self->w_2_V"),
+}
+_UNITS = {"q": "V/rad", "p": "1", "a": "1", "u_ff": "V"}
+
+
+@dataclass(frozen=True)
+class Array:
+    """A table of coefficients in the C text."""
+
+    name: str
+    coefficients: Polynomial
+    unit: str
+    range: str
+
+
+@dataclass(frozen=True)
+class Term:
+    """One product of the move of v: its sign, its coefficient's name and expression, and what it multiplies."""
+
+    sign: str
+    coefficient: str
+    value: str
+    factor: str
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis as the template sees it; `angle` and `voltage` are the prefixes of its limits in law.h."""
+
+    name: str
+    angle: str
+    voltage: str
+    filter: str
+    prefilter_gain: float
+    prefilter_time_constant_s: float
+    feedforward: str
+    terms: tuple[Term, ...]
+
+
+def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
+    """C texts by file name: law.h, law.c and law_self_test.c.
+
+    Raises BadInput for an unknown arithmetic, and for a table whose law could not run in it (codegen/law_constants.py).
+    """
+    if arithmetic not in ARITHMETIC_CODES:
+        known = " or ".join(ARITHMETIC_CODES)
+        raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
+    context = _context(table, arithmetic)
+    return {name: _environment().get_template(f"{name}.j2").render(context) for name in _FILES}
+
+
+_FILES = ("law.h", "law.c", "law_self_test.c")
+
+
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("codegen", "templates"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    environment.globals.update(number=c_float32, hexadecimal=lambda word: f"0x{word:08X}u", horner=_horner)
+    return environment
+
+
+def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
+    arrays = tuple(array for name in _AXES for array in _arrays(table, name))
+    axes = tuple(_axis(table, name) for name in _AXES)
+    count = operation_count(table)
+    return {
+        "arithmetic": arithmetic,
+        "arithmetic_code": ARITHMETIC_CODES[arithmetic],
+        "digest": table.digest,
+        "digest_bytes": [f"0x{byte:02X}" for byte in bytes.fromhex(table.digest)],
+        "plant": table.plant,
+        "sample_period_us": round(table.sample_period_s * 1e6),
+        "pwm_ticks": PWM_TICKS,
+        "full_scale_V": FULL_SCALE_V,
+        "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
+        "plausible_V": PLAUSIBLE_V,
+        "psi_min_rad": table.psi_min_rad,
+        "psi_max_rad": table.psi_max_rad,
+        "elevation": table.elevation,
+        "azimuth": table.azimuth,
+        "axis_state_fields": AXIS_STATE_FIELDS,
+        "last_accepted_fields": LAST_ACCEPTED_FIELDS,
+        "arrays": arrays,
+        "degrees": sorted({len(array.coefficients) - 1 for array in arrays} - {0}),
+        "axes": axes,
+        "filters": {axis.filter for axis in axes},
+        "operations": f"{count.products} products, {count.sums} sums a step.",
+        "test": self_test(table),
+    }
+
+
+_AXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
+
+
+def _axis(table: ControllerTable, name: str) -> Axis:
+    law = _law_of(table, name)
+    angle, voltage = _AXES[name]
+    time_constant_s = law.prefilter_time_constant_s
+    return Axis(
+        name=name,
+        angle=angle,
+        voltage=voltage,
+        filter="take_reference" if time_constant_s == 0.0 else "prefilter",
+        prefilter_gain=prefilter_gain(time_constant_s, table.sample_period_s),
+        prefilter_time_constant_s=time_constant_s,
+        feedforward=_value(f"{name}_u_ff_V", law.feedforward_V, "self->elevation.reference_2_rad"),
+        terms=tuple(_terms(name, law)),
+    )
+
+
+def _terms(name: str, law: AxisLaw) -> list[Term]:
+    """The terms of the move in their order of summation; -p_0 and -a_0, the others are added."""
+    terms = []
+    for letter, polynomials in _groups(law):
+        for index, polynomial in enumerate(polynomials):
+            if without_vanishing_powers(polynomial):
+                coefficient = f"{letter}_{index}"
+                sign = "-" if coefficient in ("p_0", "a_0") else "+"
+                value = _value(f"{name}_{coefficient}{_suffix(letter)}", polynomial, "schedule_rad")
+                terms.append(Term(sign, coefficient, value, _FACTORS[letter][index]))
+    return terms
+
+
+def _arrays(table: ControllerTable, name: str) -> list[Array]:
+    law = _law_of(table, name)
+    psi_rad = (table.psi_min_rad, table.psi_max_rad)
+    named = [
+        (f"{name}_{letter}_{index}{_suffix(letter)}", polynomial, _UNITS[letter], psi_rad)
+        for letter, polynomials in _groups(law)
+        for index, polynomial in enumerate(polynomials)
+    ]
+    reference_rad = (table.elevation.reference_min_rad, table.elevation.reference_max_rad)
+    named.append((f"{name}_u_ff_V", law.feedforward_V, _UNITS["u_ff"], reference_rad))
+    return [
+        Array(array, without_vanishing_powers(polynomial), unit, _range_text(polynomial, over_rad))
+        for array, polynomial, unit, over_rad in named
+        if without_vanishing_powers(polynomial)
+    ]
+
+
+def _groups(law: AxisLaw) -> tuple[tuple[str, tuple[Polynomial, ...]], ...]:
+    return ("q", law.q_V_rad), ("p", law.p), ("a", tuple((a,) for a in law.a))
+
+
+def _law_of(table: ControllerTable, name: str) -> AxisLaw:
+    return table.elevation if name == "elevation" else table.azimuth
+
+
+def _suffix(letter: str) -> str:
+    return "_V_rad" if letter == "q" else ""
+
+
+def _value(array: str, polynomial: Polynomial, x: str) -> str:
+    """C expression of the polynomial stored in `array`, at x."""
+    degree = len(without_vanishing_powers(polynomial)) - 1
+    if degree < 0:
+        return c_float32(0.0)
+    return f"{array}[0]" if degree == 0 else f"polynomial_{degree}({array}, {x})"
+
+
+def _horner(degree: int) -> str:
+    """The text ((c[n] * x + c[n-1]) * x ...) + c[0]."""
+    text = f"c[{degree}]"
+    for index in range(degree - 1, -1, -1):
+        text = f"({text} * x + c[{index}])" if index else f"{text} * x + c[0]"
+    return text
+
+
+def _range_text(polynomial: Polynomial, over_rad: tuple[float, float]) -> str:
+    """Least and largest value on 201 points, as a reader's aid."""
+    values = np.polynomial.polynomial.polyval(np.linspace(*over_rad, 201), polynomial)
+    return f"{values.min():.4g}..{values.max():.4g}"

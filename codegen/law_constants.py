@@ -1,0 +1,117 @@
+"""The numbers of the law, taken from a controller table into any arithmetic."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from records.errors import BadInput
+from records.table import AxisLaw, ControllerTable, Polynomial
+
+N = TypeVar("N")
+M = TypeVar("M")
+
+# A feedback voltage beyond this is no answer to any reference or angle within reach (checked by `law_constants`): it
+# comes from a broken state, and the axis starts afresh.
+PLAUSIBLE_V = 2.0**20
+# No shaft turns further than this against its reference: the widest error that the check of PLAUSIBLE_V assumes.
+WIDEST_ERROR_RAD = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class AxisConstants(Generic[N]):
+    """Numbers of one axis; polynomials hold ascending coefficients, () where the polynomial is zero for every Psi."""
+
+    q_V_rad: tuple[tuple[N, ...], ...]
+    p: tuple[tuple[N, ...], ...]
+    a: tuple[tuple[N, ...], ...]
+    feedforward_V: tuple[N, ...]
+    prefilter_gain: N | None
+    u_min_V: N
+    u_max_V: N
+    u_safe_V: N
+    reference_min_rad: N
+    reference_max_rad: N
+
+
+@dataclass(frozen=True)
+class LawConstants(Generic[N]):
+    """Numbers of both axes, the scheduling range [rad], zero and the plausible feedback voltage [V]."""
+
+    elevation: AxisConstants[N]
+    azimuth: AxisConstants[N]
+    psi_min_rad: N
+    psi_max_rad: N
+    zero: N
+    plausible_V: N
+
+
+def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawConstants[N]:
+    """The law's numbers, each made by `number`; terms that are zero in float32 for every Psi are left out.
+
+    Raises BadInput for a table whose law could not run in float32: a number beyond its range, no feedback at all, or a
+    feedback voltage beyond PLAUSIBLE_V within reach.
+    """
+    _refuse_unusable(table)
+    return LawConstants(
+        elevation=_axis_constants(table.elevation, table.sample_period_s, number),
+        azimuth=_axis_constants(table.azimuth, table.sample_period_s, number),
+        psi_min_rad=number(table.psi_min_rad),
+        psi_max_rad=number(table.psi_max_rad),
+        zero=number(0.0),
+        plausible_V=number(PLAUSIBLE_V),
+    )
+
+
+def prefilter_gain(time_constant_s: float, sample_period_s: float) -> float:
+    """b = 1 - exp(-Ts/T) of the one-pole x += b (r - x), the sampled 1/(T s + 1); 1 for T = 0."""
+    return 1.0 if time_constant_s == 0.0 else -math.expm1(-sample_period_s / time_constant_s)
+
+
+def _axis_constants(axis: AxisLaw, sample_period_s: float, number: Callable[[float], N]) -> AxisConstants[N]:
+    def numbers(polynomial: Polynomial) -> tuple[N, ...]:
+        return tuple(number(coefficient) for coefficient in without_vanishing_powers(polynomial))
+
+    gain = prefilter_gain(axis.prefilter_time_constant_s, sample_period_s)
+    return AxisConstants(
+        q_V_rad=tuple(numbers(polynomial) for polynomial in axis.q_V_rad),
+        p=tuple(numbers(polynomial) for polynomial in axis.p),
+        a=tuple(numbers((coefficient,)) for coefficient in axis.a),
+        feedforward_V=numbers(axis.feedforward_V),
+        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(gain),
+        u_min_V=number(axis.u_min_V),
+        u_max_V=number(axis.u_max_V),
+        u_safe_V=number(axis.u_safe_V),
+        reference_min_rad=number(axis.reference_min_rad),
+        reference_max_rad=number(axis.reference_max_rad),
+    )
+
+
+def without_vanishing_powers(polynomial: Polynomial) -> Polynomial:
+    """The polynomial up to its highest coefficient that is not zero in float32."""
+    used = [index for index, coefficient in enumerate(polynomial) if np.float32(coefficient) != 0.0]
+    return polynomial[: used[-1] + 1] if used else ()
+
+
+def _refuse_unusable(table: ControllerTable) -> None:
+    for name, axis in (("elevation", table.elevation), ("azimuth", table.azimuth)):
+        gains = [_largest(polynomial, table) for polynomial in axis.q_V_rad]
+        if not any(gains):
+            raise _unusable(name, "every q is zero", "an axis with feedback")
+        # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
+        span_V = axis.u_max_V - axis.u_min_V
+        feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
+        recursion_V = sum(_largest(p, table) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
+        if not feedback_V + recursion_V + span_V < PLAUSIBLE_V:
+            raise _unusable(name, f"feedback of up to {feedback_V + recursion_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
+
+
+def _largest(polynomial: Polynomial, table: ControllerTable) -> float:
+    psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
+    return sum(abs(coefficient) * psi_rad**power for power, coefficient in enumerate(polynomial))
+
+
+def _unusable(axis: str, got: str, expected: str) -> BadInput:
+    return BadInput("controller table", f"axis {axis}", got, expected, "choose other poles and design the table again")

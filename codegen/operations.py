@@ -1,0 +1,58 @@
+"""How many float operations one step of a table's law takes: what a core without FPU spends its time on."""
+
+from dataclasses import dataclass, field
+
+from codegen.law_constants import law_constants
+from codegen.law_equations import STATE_WORDS, LawInput, law_step, state_from_words
+from records.table import ControllerTable
+
+
+@dataclass
+class OperationCount:
+    """Products and sums (differences included) of one step of both axes, in the unsaturated and the saturated case alike."""
+
+    products: int = 0
+    sums: int = 0
+
+
+@dataclass(frozen=True)
+class _Counted:
+    count: OperationCount = field(compare=False)
+
+    def __mul__(self, other: "_Counted") -> "_Counted":
+        self.count.products += 1
+        return self
+
+    def __add__(self, other: "_Counted") -> "_Counted":
+        self.count.sums += 1
+        return self
+
+    __sub__ = __add__
+
+
+class _NoDecisions:
+    """Every decision of the law passes its first value on."""
+
+    def finite_or(self, value: _Counted, last: _Counted) -> _Counted:
+        return value
+
+    def clamp(self, value: _Counted, low: _Counted, high: _Counted) -> _Counted:
+        return value
+
+    def saturate(self, value: _Counted, low: _Counted, high: _Counted, safe: _Counted) -> _Counted:
+        return value
+
+    def is_plausible(self, value: _Counted, bound: _Counted) -> bool:
+        return True
+
+    def choose(self, condition: bool, value: _Counted, otherwise: _Counted) -> _Counted:
+        return value
+
+
+def operation_count(table: ControllerTable) -> OperationCount:
+    """Counted by running the law once on numbers that only count."""
+    count = OperationCount()
+    number = _Counted(count)
+    law = law_constants(table, lambda _: number)
+    law_step(law, _NoDecisions(), state_from_words([number] * STATE_WORDS), LawInput(number, number, number, number))
+    return count

@@ -1,0 +1,106 @@
+"""The generated C, compiled for this computer and called through cffi: a controller, and many lanes at once."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.law import generate_law
+from codegen.law_equations import STATE_WORDS
+from records.table import ControllerTable
+from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
+
+Bits = NDArray[np.uint32]
+
+_BATCH_DRIVER = Path(__file__).with_name("law_batch.c")
+
+# Numbers of the law cross the border as their 32 bits, whatever their arithmetic.
+_DECLARATIONS = """
+    uint32_t law_batch_state_words(void);
+    void law_batch_start(uint32_t lanes, const void *angles_rad, void *states);
+    void law_batch_run(uint32_t steps, uint32_t lanes, void *states, const void *inputs, void *outputs);
+    void law_batch_angles(uint32_t count, const void *counts, void *angles_rad);
+    void law_batch_duties(uint32_t count, const void *voltages, void *ticks);
+    uint32_t law_self_test(void);
+    extern const uint8_t LAW_TABLE_DIGEST[32];
+"""
+
+
+class HostLaw:
+    """A compiled law: `reset` and `step` for the closed loop, `start` and `run` on bits of many lanes for comparisons."""
+
+    name = "host"
+
+    def __init__(
+        self, texts: Mapping[str, str], arithmetic: str = "float32", flags: Sequence[str] = STRICT_FLOAT_FLAGS
+    ) -> None:
+        """Compile the generated `texts` (file name -> C) with `flags`; raises BadInput when the compiler refuses."""
+        sources = [CText(name, text) for name, text in texts.items()]
+        library = build_shared(f"law-{arithmetic}", [*sources, _BATCH_DRIVER], flags=flags)
+        self.arithmetic = arithmetic
+        self._ffi, self._lib = load_shared(_DECLARATIONS, library)
+        if self._lib.law_batch_state_words() != STATE_WORDS:
+            raise ValueError(f"law_state of the C has other words than the twin's {STATE_WORDS}")
+        self._state = self.start(_bits((0.0, 0.0)))
+
+    def reset(self, psi_rad: float, phi_rad: float) -> None:
+        """Start afresh at these angles."""
+        self._state = self.start(_bits((psi_rad, phi_rad)))
+
+    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
+        """One sample; returns (u_M_V, u_T_V) within their limits."""
+        inputs = _bits((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
+        self._state, outputs = self.run(self._state, inputs[np.newaxis])
+        u_M_V, u_T_V = outputs.view(np.float32)[0, 0]
+        return float(u_M_V), float(u_T_V)
+
+    def start(self, angles: Bits) -> Bits:
+        """States at rest, bits [lanes, STATE_WORDS], for angles psi, phi as bits [lanes, 2]."""
+        states = np.zeros((len(angles), STATE_WORDS), dtype=np.uint32)
+        self._lib.law_batch_start(len(angles), self._pointer(angles), self._pointer(states))
+        return states
+
+    def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
+        """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2]."""
+        steps, lanes = inputs.shape[:2]
+        after = states.copy()
+        outputs = np.empty((steps, lanes, 2), dtype=np.uint32)
+        self._lib.law_batch_run(steps, lanes, self._pointer(after), self._pointer(inputs), self._pointer(outputs))
+        return after, outputs
+
+    def angles_from_counts(self, counts: NDArray[np.int32]) -> Bits:
+        """Angles psi, phi as bits [n, 2] of encoder counts [n, 2]."""
+        angles = np.empty(counts.shape, dtype=np.uint32)
+        self._lib.law_batch_angles(len(counts), self._pointer(counts), self._pointer(angles))
+        return angles
+
+    def duties(self, voltages: Bits) -> NDArray[np.int32]:
+        """Signed PWM ticks [n, 2], main and tail, of voltages as bits [n, 2]."""
+        ticks = np.empty(voltages.shape, dtype=np.int32)
+        self._lib.law_batch_duties(len(voltages), self._pointer(voltages), self._pointer(ticks))
+        return ticks
+
+    def self_test(self) -> int:
+        """Mismatches that the emitted self-test finds."""
+        return int(self._lib.law_self_test())
+
+    def table_digest(self) -> str:
+        """The digest compiled into the law."""
+        return bytes(self._lib.LAW_TABLE_DIGEST).hex()
+
+    def _pointer(self, array: NDArray[Any]) -> Any:
+        # A strided view would be read as if it were dense.
+        if not array.flags["C_CONTIGUOUS"]:
+            raise ValueError("arrays for the C must be contiguous")
+        return self._ffi.cast("void *", array.ctypes.data)
+
+
+def host_law(table: ControllerTable, arithmetic: str = "float32") -> HostLaw:
+    """The law of `table`, generated and compiled with strict float flags."""
+    return HostLaw(generate_law(table, arithmetic), arithmetic)
+
+
+def _bits(numbers: tuple[float, ...]) -> Bits:
+    return np.array([numbers], dtype=np.float32).view(np.uint32)
