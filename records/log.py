@@ -1,0 +1,197 @@
+"""The run log: one row per sample of what was measured and commanded, as CSV, with a TOML sidecar that says what flew."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+from numpy.typing import NDArray
+
+from records import checks
+from records.errors import BadInput
+from records.files import write_atomic
+from records.log_csv import read_rows, rows_text
+from records.plant import read_toml
+
+SCHEMA = "run-log/1"
+LOOPS = ("open", "closed")
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LogColumns:
+    """Columns of a plant's logs: its inputs and outputs always, any of `optional`, after `t_s`; `axes` can be locked."""
+
+    plant: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    optional: tuple[str, ...]
+    axes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RunLog:
+    """A run of n samples: y[k] measured at t_s[k], u[k] commanded from then until t_s[k + 1], after the controller's limits.
+
+    Shapes: t_s (n,), u (n, inputs), y (n, outputs; NaN where nothing was measured), `extra` optional columns (n,), `seq` (n,) the
+    board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none.
+    """
+
+    columns: LogColumns
+    sample_period_s: float
+    loop: str
+    t_s: Array
+    u: Array
+    y: Array
+    extra: Mapping[str, Array] = field(default_factory=dict)
+    seq: NDArray[np.int64] | None = None
+    locked: tuple[str, ...] = ()
+    table_digest: str | None = None
+
+    def column(self, name: str) -> Array:
+        """The column called `name`, shape (n,); raises KeyError for one that is not there."""
+        if name == "t_s":
+            return self.t_s
+        if name in self.columns.inputs:
+            return self.u[:, self.columns.inputs.index(name)]
+        if name in self.columns.outputs:
+            return self.y[:, self.columns.outputs.index(name)]
+        return self.extra[name]
+
+
+def save_log(path: Path, log: RunLog) -> None:
+    """Write `path` (CSV) and its sidecar NAME.toml; reading them back gives the same numbers. Raises BadInput when unwritable."""
+    sidecar = sidecar_text(log)
+    write_atomic(path, csv_text(log))
+    try:
+        write_atomic(path.with_suffix(".toml"), sidecar)
+    except BadInput:
+        path.unlink(missing_ok=True)
+        raise
+
+
+def csv_text(log: RunLog) -> str:
+    """The rows as CSV text; numbers print so that they read back exactly."""
+    names = ["t_s", *log.columns.inputs, *log.columns.outputs, *log.extra]
+    return rows_text(names, [log.column(name) for name in names], log.seq)
+
+
+def sidecar_text(log: RunLog) -> str:
+    """The sidecar as TOML text."""
+    document = tomlkit.document()
+    document["schema"] = SCHEMA
+    document["plant"] = log.columns.plant
+    document["sample_period_s"] = log.sample_period_s
+    document["loop"] = log.loop
+    document["locked"] = list(log.locked)
+    if log.table_digest is not None:
+        document["controller"] = {"table_digest": log.table_digest}
+    return tomlkit.dumps(document)
+
+
+def load_log(path: Path, columns: LogColumns) -> RunLog:
+    """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are.
+
+    Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a
+    truncated row, a number that is none, time that does not increase, an input that is not finite.
+    """
+    sidecar_path = path.with_suffix(".toml")
+    sidecar = read_toml(sidecar_path, "sidecar of the run log")
+    controller = _check_sidecar(sidecar, str(sidecar_path), columns)
+    names, rows = read_rows(path)
+    _check_columns(names, str(path), columns)
+    data = {name: rows[:, index] for index, name in enumerate(names)}
+    _check_numbers(data, str(path), columns)
+    return RunLog(
+        columns=columns,
+        sample_period_s=float(sidecar["sample_period_s"]),
+        loop=sidecar["loop"],
+        t_s=data["t_s"].copy(),
+        u=np.column_stack([data[name] for name in columns.inputs]),
+        y=np.column_stack([data[name] for name in columns.outputs]),
+        extra={name: data[name].copy() for name in names if name in columns.optional},
+        seq=data["seq"].astype(np.int64) if "seq" in data else None,
+        locked=tuple(sidecar["locked"]),
+        table_digest=controller,
+    )
+
+
+def plant_of_log(path: Path) -> str:
+    """The name of the plant that a log's sidecar states; raises BadInput."""
+    sidecar_path = path.with_suffix(".toml")
+    sidecar = read_toml(sidecar_path, "sidecar of the run log")
+    checks.keys(sidecar, str(sidecar_path), ("plant",), sidecar.keys())
+    return checks.text(sidecar["plant"], f"{sidecar_path}: plant")
+
+
+def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> str | None:
+    """Check every key; returns the digest of the controller table, if one is named."""
+    checks.schema(sidecar, f"{where}: schema", SCHEMA)
+    checks.keys(sidecar, where, ("schema", "plant", "sample_period_s", "loop", "locked"), ("controller",))
+    if checks.text(sidecar["plant"], f"{where}: plant") != columns.plant:
+        raise BadInput(
+            "plant", where, repr(sidecar["plant"]), repr(columns.plant), "give the log and the plant of one rig"
+        )
+    checks.positive(sidecar["sample_period_s"], f"{where}: sample_period_s")
+    if sidecar["loop"] not in LOOPS:
+        raise BadInput(
+            "loop", where, repr(sidecar["loop"]), " or ".join(map(repr, LOOPS)), "say how the inputs were made"
+        )
+    locked = sidecar["locked"]
+    if not isinstance(locked, list) or any(axis not in columns.axes for axis in locked):
+        raise BadInput("locked", where, repr(locked), f"a list of {', '.join(columns.axes)}", "name axes of this plant")
+    if "controller" not in sidecar:
+        return None
+    controller = checks.table(sidecar["controller"], f"{where}: controller")
+    checks.keys(controller, f"{where}: controller", ("table_digest",))
+    return checks.text(controller["table_digest"], f"{where}: controller.table_digest")
+
+
+def _check_columns(names: tuple[str, ...], where: str, columns: LogColumns) -> None:
+    needed = ("t_s", *columns.inputs, *columns.outputs)
+    for name in needed:
+        if name not in names:
+            raise BadInput(
+                f"column {name!r}", where, "nothing", "a column", f"a log of {columns.plant} needs {','.join(needed)}"
+            )
+    for name in names:
+        if name not in (*needed, *columns.optional, "seq"):
+            known = ", ".join((*needed, "seq", *columns.optional))
+            raise BadInput(f"column {name!r}", where, "an unknown column", f"one of {known}", "remove or rename it")
+    if len(set(names)) != len(names):
+        raise BadInput("header", where, "a column twice", "each column once", "remove the second")
+
+
+def _check_numbers(data: Mapping[str, Array], where: str, columns: LogColumns) -> None:
+    for name in ("t_s", *columns.inputs, *(["seq"] if "seq" in data else [])):
+        bad = np.flatnonzero(~np.isfinite(data[name]))
+        if bad.size:
+            raise BadInput(
+                f"column {name!r}",
+                f"{where}, line {bad[0] + 2}",
+                repr(float(data[name][bad[0]])),
+                "a finite number",
+                "remove the row",
+            )
+    for name in (*columns.outputs, *(name for name in columns.optional if name in data)):
+        bad = np.flatnonzero(np.isinf(data[name]))
+        if bad.size:
+            raise BadInput(
+                f"column {name!r}",
+                f"{where}, line {bad[0] + 2}",
+                "an infinity",
+                "a number, or NaN where none was measured",
+                "write nan",
+            )
+    late = np.flatnonzero(np.diff(data["t_s"]) <= 0.0)
+    if late.size:
+        row = int(late[0]) + 1
+        raise BadInput(
+            "t_s",
+            f"{where}, line {row + 2}",
+            f"{data['t_s'][row]:g} after {data['t_s'][row - 1]:g}",
+            "a time that increases",
+            "sort the rows and remove repeated ones",
+        )

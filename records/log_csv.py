@@ -1,0 +1,75 @@
+"""Rows of numbers as CSV: fast where the file is clean, precise about the line where it is not."""
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+
+Array = NDArray[np.float64]
+
+
+def rows_text(names: Sequence[str], columns: Sequence[Array], seq: NDArray[np.int64] | None) -> str:
+    """Header and rows; each number in its shortest form that reads back exactly."""
+    cells = [map(repr, column.tolist()) for column in columns]
+    if seq is not None:
+        names, cells = ["seq", *names], [map(repr, seq.tolist()), *cells]
+    lines = [",".join(names), *map(",".join, zip(*cells, strict=True))]
+    return "\n".join(lines) + "\n"
+
+
+def read_rows(path: Path) -> tuple[tuple[str, ...], Array]:
+    """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise BadInput(
+            "run log", str(path), error.strerror or str(error), "a readable file", "check the path"
+        ) from error
+    except UnicodeDecodeError as error:
+        raise BadInput(
+            "run log", str(path), f"no text ({error.reason})", "a CSV file", "export the log as CSV"
+        ) from error
+    header, _, body = text.partition("\n")
+    names = tuple(name.strip() for name in header.split(","))
+    if not header.strip() or not body.strip():
+        got = "an empty file" if not header.strip() else "a header only"
+        raise BadInput("run log", str(path), got, "a header and rows of numbers", "record at least one sample")
+    try:
+        rows = np.loadtxt(io.StringIO(body), delimiter=",", ndmin=2, comments=None)
+    except ValueError:
+        return names, _slow_rows(body, len(names), path)
+    if rows.shape[1] != len(names):
+        raise _row_length(path, 2, rows.shape[1], len(names))
+    return names, rows
+
+
+def _slow_rows(body: str, width: int, path: Path) -> Array:
+    """Line by line, for a file with empty cells, or with the first wrong cell named."""
+    lines = [(number, line) for number, line in enumerate(body.split("\n"), start=2) if line.strip()]
+    rows = np.empty((len(lines), width))
+    for index, (number, line) in enumerate(lines):
+        cells = line.split(",")
+        if len(cells) != width:
+            raise _row_length(path, number, len(cells), width)
+        rows[index] = [_number(cell, path, number) for cell in cells]
+    return rows
+
+
+def _number(cell: str, path: Path, line: int) -> float:
+    try:
+        return float(cell) if cell.strip() else float("nan")
+    except ValueError as error:
+        where = f"{path}, line {line}"
+        raise BadInput(
+            "number", where, repr(cell[:30]), "a number such as -0.125", "use decimal points, not commas"
+        ) from error
+
+
+def _row_length(path: Path, line: int, got: int, expected: int) -> BadInput:
+    return BadInput(
+        "row", f"{path}, line {line}", f"{got} cells", f"{expected}, as the header", "the row is truncated: remove it"
+    )
