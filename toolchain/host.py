@@ -55,17 +55,22 @@ def zig_environment() -> dict[str, str]:
 
 
 def run_zig(arguments: Sequence[str], what: str) -> None:
-    """Run `zig` with `arguments`; raises BadInput with the compiler's first messages when it refuses."""
+    """Run `zig` with `arguments`; raises BadInput with the first error's file, line and text when it refuses."""
     command = [sys.executable, "-m", "ziglang", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, env=zig_environment(), check=False)
     if done.returncode != 0:
         raise BadInput(
             what="C compilation",
             where=what,
-            got=done.stderr.strip()[:2000] or f"exit status {done.returncode}",
+            got=_first_error(done.stderr) or f"exit status {done.returncode}",
             expected="a clean build",
             remedy="mend the named source line, or reinstall the ziglang package with `make`",
         )
+
+
+def _first_error(messages: str) -> str:
+    lines = [line.strip() for line in messages.splitlines() if line.strip()]
+    return next((line for line in lines if "error:" in line), lines[0] if lines else "")
 
 
 def build_shared(
@@ -79,12 +84,12 @@ def build_shared(
 
     Headers in `include_dirs` count as content too. Raises BadInput when the compiler refuses.
     """
-    target = CACHE_DIR / "host" / f"{name}-{_content_digest(sources, include_dirs, flags)}.so"
+    target = CACHE_DIR / "host" / f"{name}-{content_digest(sources, include_dirs, flags)}.so"
     if target.exists():
         return target
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as work:
-        files = [_as_file(source, Path(work)) for source in sources]
+        files = [as_file(source, Path(work)) for source in sources]
         includes = [f"-I{folder}" for folder in (*include_dirs, Path(work))]
         built = Path(work) / "out.so"
         compiled = [str(path) for path in files if path.suffix == ".c"]
@@ -106,7 +111,8 @@ def zig_version() -> str:
     return version("ziglang")
 
 
-def _as_file(source: Source, folder: Path) -> Path:
+def as_file(source: Source, folder: Path) -> Path:
+    """Path of a source; one that is only text is written into `folder` first."""
     if isinstance(source, Path):
         return source
     path = folder / source.name
@@ -114,7 +120,8 @@ def _as_file(source: Source, folder: Path) -> Path:
     return path
 
 
-def _content_digest(sources: Sequence[Source], include_dirs: Sequence[Path], flags: Sequence[str]) -> str:
+def content_digest(sources: Sequence[Source], include_dirs: Sequence[Path], flags: Sequence[str]) -> str:
+    """Name of a build product: a hash of sources, headers, flags and compiler."""
     digest = hashlib.sha256(f"{zig_version()} {' '.join(flags)}".encode())
     if "-march=native" in flags:
         digest.update(_processor_identity().encode())

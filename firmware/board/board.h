@@ -1,0 +1,68 @@
+/*
+ * The board: STM32G071, two quadrature encoders, two PWM outputs with direction, one serial line.
+ *
+ *     PA0 PA1   elevation encoder (TIM2)      PA8  PB0   main motor PWM (TIM1 CH1), direction
+ *     PA6 PA7   azimuth encoder (TIM3)        PA9  PB1   tail motor PWM (TIM1 CH2), direction
+ *     PA2 PA3   serial line (USART2)
+ */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "path.h"
+
+#define BOARD_CLOCK_HZ 64000000u
+
+/* clock.c */
+void clock_start(void);       /* 64 MHz from HSI16 and PLL */
+void cycle_counter_start(void);
+uint32_t cycle_counter(void); /* core cycles, modulo 2^24, counting up */
+uint32_t cycles_between(uint32_t start, uint32_t end);
+
+/* pins.c */
+typedef enum { PORT_A, PORT_B } pin_port;
+void pins_start(void);
+void pin_alternate(pin_port port, uint32_t pin, uint32_t function, bool pull_up);
+void pin_output(pin_port port, uint32_t pin);
+void pin_write(pin_port port, uint32_t pin, bool high);
+
+/* encoders.c */
+typedef struct {
+    encoder_counts total;
+    uint16_t last_phi; /* 16-bit counter at the last reading */
+} encoder_state;
+void encoders_start(encoder_state *self);
+encoder_counts encoders_read(encoder_state *self); /* within every 32 767 counts of azimuth */
+
+/* pwm.c */
+void pwm_start(void);                              /* power stage off */
+void pwm_write(const duty_pair *duty, bool power); /* signed ticks; power = false opens the power stage at once */
+void pwm_safe(void);                               /* power stage off, whatever has happened */
+
+/* tick.c */
+void tick_start(void);
+uint32_t tick_take(void); /* control ticks since the last call */
+bool tick_waiting(void);
+uint32_t time_us(void);   /* modulo 2^32 */
+
+/* usart.c */
+void usart_start(void);
+bool usart_read(uint8_t *byte);
+bool usart_waiting(void);
+void usart_write(const uint8_t *line, size_t length); /* all of it or, counted, nothing */
+void usart_faults(board_faults *faults);
+
+/* watchdog.c */
+void watchdog_start(void);
+void watchdog_feed(void);
+
+/* identity.c */
+board_identity board_identify(void); /* reads and clears the reset cause */
+
+/* sleep.c */
+void board_sleep(void); /* until an interrupt has left work */
+
+#endif

@@ -1,0 +1,39 @@
+#include "board.h"
+#include "stm32g071.h"
+
+#define AF_TIM2 2u
+#define AF_TIM3 1u
+
+/* Quadrature on both inputs, four counts a line, glitches below 8 clocks ignored. The period of a counter is ARR + 1. */
+static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
+{
+    timer->CCMR1 =
+        TIM_CCMR1_CC1S_TI1 | TIM_CCMR1_CC2S_TI2 | TIM_CCMR1_IC1F_8_SAMPLES | TIM_CCMR1_IC2F_8_SAMPLES;
+    timer->SMCR = TIM_SMCR_SMS_BOTH_EDGES;
+    timer->ARR = last_count;
+    timer->CNT = 0;
+    timer->CR1 = TIM_CR1_CEN;
+}
+
+void encoders_start(encoder_state *self)
+{
+    RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
+    pin_alternate(PORT_A, 0, AF_TIM2, true);
+    pin_alternate(PORT_A, 1, AF_TIM2, true);
+    pin_alternate(PORT_A, 6, AF_TIM3, true);
+    pin_alternate(PORT_A, 7, AF_TIM3, true);
+    encoder_timer_start(TIM2, UINT32_MAX);
+    encoder_timer_start(TIM3, UINT16_MAX);
+    *self = (encoder_state){0};
+}
+
+encoder_counts encoders_read(encoder_state *self)
+{
+    /* The difference of two readings modulo 2^16 has no overflow event that could be missed. */
+    const uint16_t phi = (uint16_t)TIM3->CNT;
+    const int16_t moved = (int16_t)(uint16_t)(phi - self->last_phi);
+    self->last_phi = phi;
+    self->total.phi_counts = (int32_t)((uint32_t)self->total.phi_counts + (uint32_t)moved);
+    self->total.psi_counts = (int32_t)TIM2->CNT;
+    return self->total;
+}

@@ -1,0 +1,53 @@
+#include "board.h"
+#include "stm32g071.h"
+
+#define AF_TIM1 2u
+#define MAIN_PIN 8u
+#define TAIL_PIN 9u
+#define MAIN_DIRECTION_PIN 0u
+#define TAIL_DIRECTION_PIN 1u
+
+_Static_assert(LAW_PWM_TICKS >= 1000 && LAW_PWM_TICKS <= 65535, "a PWM period is 1000 to 65535 ticks of 64 MHz");
+
+/* With MOE off and OSSI on the timer itself holds both pins low. */
+void pwm_start(void)
+{
+    RCC->APBENR2 |= RCC_APBENR2_TIM1;
+    TIM1->BDTR = TIM_BDTR_OSSI;
+    TIM1->PSC = 0;
+    TIM1->ARR = LAW_PWM_TICKS - 1u;
+    TIM1->CCR1 = 0;
+    TIM1->CCR2 = 0;
+    TIM1->CCMR1 = TIM_CCMR1_OC1M_PWM1 | TIM_CCMR1_OC1PE | TIM_CCMR1_OC2M_PWM1 | TIM_CCMR1_OC2PE;
+    TIM1->CCER = TIM_CCER_CC1E | TIM_CCER_CC2E;
+    TIM1->EGR = TIM_EGR_UG;
+    TIM1->CR1 = TIM_CR1_CEN | TIM_CR1_ARPE;
+    pin_output(PORT_B, MAIN_DIRECTION_PIN);
+    pin_output(PORT_B, TAIL_DIRECTION_PIN);
+    pin_alternate(PORT_A, MAIN_PIN, AF_TIM1, false);
+    pin_alternate(PORT_A, TAIL_PIN, AF_TIM1, false);
+}
+
+static uint32_t magnitude(int32_t ticks)
+{
+    return ticks < 0 ? 0u - (uint32_t)ticks : (uint32_t)ticks;
+}
+
+void pwm_write(const duty_pair *duty, bool power)
+{
+    if (!power) {
+        pwm_safe();
+    }
+    pin_write(PORT_B, MAIN_DIRECTION_PIN, duty->main_ticks < 0);
+    pin_write(PORT_B, TAIL_DIRECTION_PIN, duty->tail_ticks < 0);
+    TIM1->CCR1 = magnitude(duty->main_ticks);
+    TIM1->CCR2 = magnitude(duty->tail_ticks);
+    if (power) {
+        TIM1->BDTR = TIM_BDTR_OSSI | TIM_BDTR_MOE;
+    }
+}
+
+void pwm_safe(void)
+{
+    TIM1->BDTR = TIM_BDTR_OSSI;
+}

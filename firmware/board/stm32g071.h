@@ -1,0 +1,204 @@
+/*
+ * The registers of the STM32G071 that this firmware uses, and no others.
+ *
+ * Sections are those of the reference manual RM0444 (STM32G0x1), of PM0223 for the core. Bit names are the manual's.
+ * Base addresses, interrupt numbers and memory sizes are compared with the public device description in the tests.
+ */
+#ifndef STM32G071_H
+#define STM32G071_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define BIT(n) (1u << (n))
+
+/* Memory, RM0444 2.2.2: 32 KiB of the SRAM are there whatever the parity option says. */
+#define FLASH_SIZE_BYTES (128u * 1024u)
+#define RAM_SIZE_BYTES (32u * 1024u)
+
+/* Interrupt numbers, RM0444 12.3, table of vectors. */
+#define IRQ_TIM6 17u
+#define IRQ_USART2 28u
+#define IRQ_COUNT 32u
+
+/* Reset and clock control, RM0444 5.4. */
+typedef struct {
+    volatile uint32_t CR;             /* 0x00, 5.4.1 */
+    volatile uint32_t ICSCR;          /* 0x04 */
+    volatile uint32_t CFGR;           /* 0x08, 5.4.3 */
+    volatile uint32_t PLLCFGR;        /* 0x0c, 5.4.4 */
+    uint32_t unused_10[9];
+    volatile uint32_t IOPENR;         /* 0x34, 5.4.13 */
+    volatile uint32_t AHBENR;         /* 0x38 */
+    volatile uint32_t APBENR1;        /* 0x3c, 5.4.15 */
+    volatile uint32_t APBENR2;        /* 0x40, 5.4.16 */
+    uint32_t unused_44[7];
+    volatile uint32_t CSR;            /* 0x60, 5.4.24 */
+} rcc_registers;
+_Static_assert(offsetof(rcc_registers, IOPENR) == 0x34, "RCC layout");
+_Static_assert(offsetof(rcc_registers, CSR) == 0x60, "RCC layout");
+#define RCC ((rcc_registers *)0x40021000u)
+
+#define RCC_CR_HSION BIT(8)
+#define RCC_CR_HSIRDY BIT(10)
+#define RCC_CR_PLLON BIT(24)
+#define RCC_CR_PLLRDY BIT(25)
+#define RCC_CFGR_SW_PLLRCLK 2u
+#define RCC_CFGR_SWS_MASK (7u << 3)
+#define RCC_CFGR_SWS_PLLRCLK (2u << 3)
+#define RCC_PLLCFGR_PLLSRC_HSI16 2u
+#define RCC_PLLCFGR_PLLM_1 (0u << 4)
+#define RCC_PLLCFGR_PLLN(n) ((uint32_t)(n) << 8)
+#define RCC_PLLCFGR_PLLREN BIT(28)
+#define RCC_PLLCFGR_PLLR_2 (1u << 29)
+#define RCC_IOPENR_GPIOA BIT(0)
+#define RCC_IOPENR_GPIOB BIT(1)
+#define RCC_APBENR1_TIM2 BIT(0)
+#define RCC_APBENR1_TIM3 BIT(1)
+#define RCC_APBENR1_TIM6 BIT(4)
+#define RCC_APBENR1_USART2 BIT(17)
+#define RCC_APBENR2_TIM1 BIT(11)
+#define RCC_CSR_RMVF BIT(23)
+#define RCC_CSR_PINRSTF BIT(26)
+#define RCC_CSR_PWRRSTF BIT(27)
+#define RCC_CSR_SFTRSTF BIT(28)
+#define RCC_CSR_IWDGRSTF BIT(29)
+
+/* Flash access control, RM0444 3.7.1. */
+#define FLASH_ACR (*(volatile uint32_t *)0x40022000u)
+#define FLASH_ACR_LATENCY_MASK 7u
+#define FLASH_ACR_LATENCY_2 2u
+#define FLASH_ACR_PRFTEN BIT(8)
+#define FLASH_ACR_ICEN BIT(9)
+
+/* General purpose pins, RM0444 7.4. */
+typedef struct {
+    volatile uint32_t MODER;   /* 0x00, 7.4.1 */
+    volatile uint32_t OTYPER;  /* 0x04 */
+    volatile uint32_t OSPEEDR; /* 0x08 */
+    volatile uint32_t PUPDR;   /* 0x0c, 7.4.4 */
+    volatile uint32_t IDR;     /* 0x10 */
+    volatile uint32_t ODR;     /* 0x14 */
+    volatile uint32_t BSRR;    /* 0x18, 7.4.7 */
+    uint32_t unused_1c;
+    volatile uint32_t AFR[2];  /* 0x20, 7.4.9 */
+} gpio_registers;
+_Static_assert(offsetof(gpio_registers, AFR) == 0x20, "GPIO layout");
+#define GPIOA ((gpio_registers *)0x50000000u)
+#define GPIOB ((gpio_registers *)0x50000400u)
+
+#define GPIO_MODE_OUTPUT 1u
+#define GPIO_MODE_ALTERNATE 2u
+#define GPIO_PULL_UP 1u
+
+/* Timers: TIM1 RM0444 21.4, TIM2/TIM3 22.4, TIM6 23.4; one layout, of which a basic timer has a part. */
+typedef struct {
+    volatile uint32_t CR1;   /* 0x00, 21.4.1 */
+    volatile uint32_t CR2;   /* 0x04 */
+    volatile uint32_t SMCR;  /* 0x08, 22.4.3 */
+    volatile uint32_t DIER;  /* 0x0c, 23.4.3 */
+    volatile uint32_t SR;    /* 0x10, 23.4.4 */
+    volatile uint32_t EGR;   /* 0x14 */
+    volatile uint32_t CCMR1; /* 0x18, 21.4.7 */
+    volatile uint32_t CCMR2; /* 0x1c */
+    volatile uint32_t CCER;  /* 0x20, 21.4.11 */
+    volatile uint32_t CNT;   /* 0x24 */
+    volatile uint32_t PSC;   /* 0x28 */
+    volatile uint32_t ARR;   /* 0x2c */
+    volatile uint32_t RCR;   /* 0x30 */
+    volatile uint32_t CCR1;  /* 0x34, 21.4.16 */
+    volatile uint32_t CCR2;  /* 0x38 */
+    volatile uint32_t CCR3;  /* 0x3c */
+    volatile uint32_t CCR4;  /* 0x40 */
+    volatile uint32_t BDTR;  /* 0x44, 21.4.20 */
+} timer_registers;
+_Static_assert(offsetof(timer_registers, CNT) == 0x24, "timer layout");
+_Static_assert(offsetof(timer_registers, BDTR) == 0x44, "timer layout");
+#define TIM1 ((timer_registers *)0x40012c00u)
+#define TIM2 ((timer_registers *)0x40000000u)
+#define TIM3 ((timer_registers *)0x40000400u)
+#define TIM6 ((timer_registers *)0x40001000u)
+
+#define TIM_CR1_CEN BIT(0)
+#define TIM_CR1_ARPE BIT(7)
+#define TIM_DIER_UIE BIT(0)
+#define TIM_SR_UIF BIT(0)
+#define TIM_EGR_UG BIT(0)
+#define TIM_SMCR_SMS_BOTH_EDGES 3u
+#define TIM_CCMR1_CC1S_TI1 1u
+#define TIM_CCMR1_CC2S_TI2 (1u << 8)
+#define TIM_CCMR1_IC1F_8_SAMPLES (3u << 4)
+#define TIM_CCMR1_IC2F_8_SAMPLES (3u << 12)
+#define TIM_CCMR1_OC1M_PWM1 (6u << 4)
+#define TIM_CCMR1_OC1PE BIT(3)
+#define TIM_CCMR1_OC2M_PWM1 (6u << 12)
+#define TIM_CCMR1_OC2PE BIT(11)
+#define TIM_CCER_CC1E BIT(0)
+#define TIM_CCER_CC2E BIT(4)
+#define TIM_BDTR_OSSI BIT(10)
+#define TIM_BDTR_MOE BIT(15)
+
+/* Serial port, RM0444 33.8. */
+typedef struct {
+    volatile uint32_t CR1;  /* 0x00, 33.8.1 */
+    volatile uint32_t CR2;  /* 0x04 */
+    volatile uint32_t CR3;  /* 0x08, 33.8.4 */
+    volatile uint32_t BRR;  /* 0x0c, 33.8.5 */
+    uint32_t unused_10[3];
+    volatile uint32_t ISR;  /* 0x1c, 33.8.9 */
+    volatile uint32_t ICR;  /* 0x20, 33.8.11 */
+    volatile uint32_t RDR;  /* 0x24 */
+    volatile uint32_t TDR;  /* 0x28 */
+} usart_registers;
+_Static_assert(offsetof(usart_registers, ISR) == 0x1c, "USART layout");
+_Static_assert(offsetof(usart_registers, TDR) == 0x28, "USART layout");
+#define USART2 ((usart_registers *)0x40004400u)
+
+#define USART_CR1_UE BIT(0)
+#define USART_CR1_RE BIT(2)
+#define USART_CR1_TE BIT(3)
+#define USART_CR1_RXNEIE BIT(5)
+#define USART_CR1_TXEIE BIT(7)
+#define USART_ISR_FE BIT(1)
+#define USART_ISR_NE BIT(2)
+#define USART_ISR_ORE BIT(3)
+#define USART_ISR_RXNE BIT(5)
+#define USART_ISR_TXE BIT(7)
+#define USART_ICR_FECF BIT(1)
+#define USART_ICR_NECF BIT(2)
+#define USART_ICR_ORECF BIT(3)
+
+/* Independent watchdog, RM0444 28.4. */
+typedef struct {
+    volatile uint32_t KR;  /* 0x00, 28.4.1 */
+    volatile uint32_t PR;  /* 0x04, 28.4.2 */
+    volatile uint32_t RLR; /* 0x08, 28.4.3 */
+    volatile uint32_t SR;  /* 0x0c, 28.4.4 */
+} iwdg_registers;
+#define IWDG ((iwdg_registers *)0x40003000u)
+
+#define IWDG_KR_START 0xccccu
+#define IWDG_KR_UNLOCK 0x5555u
+#define IWDG_KR_FEED 0xaaaau
+#define IWDG_PR_DIVIDE_16 2u
+#define IWDG_SR_PVU BIT(0)
+#define IWDG_SR_RVU BIT(1)
+
+/* Unique device number, RM0444 38.1. */
+#define UNIQUE_ID ((const volatile uint32_t *)0x1fff7590u)
+
+/* System timer, PM0223 4.4; interrupt controller, PM0223 4.2. */
+typedef struct {
+    volatile uint32_t CSR;
+    volatile uint32_t RVR;
+    volatile uint32_t CVR;
+} systick_registers;
+#define SYSTICK ((systick_registers *)0xe000e010u)
+#define SYSTICK_CSR_ENABLE BIT(0)
+#define SYSTICK_CSR_CORE_CLOCK BIT(2)
+#define SYSTICK_MASK 0x00ffffffu
+
+#define NVIC_ISER (*(volatile uint32_t *)0xe000e100u)
+#define NVIC_IPR ((volatile uint32_t *)0xe000e400u) /* four interrupts a word, two bits each, at the top of their byte */
+
+#endif

@@ -1,0 +1,53 @@
+#include "board.h"
+#include "interrupts.h"
+#include "stm32g071.h"
+
+#define COUNTS_PER_US (BOARD_CLOCK_HZ / 1000000u)
+_Static_assert(PATH_SAMPLE_PERIOD_US <= 65536u, "the period is counted by 16 bits in microseconds");
+
+static volatile uint32_t ticks;  /* since the start */
+static uint32_t ticks_taken;     /* by the main loop */
+
+void TIM6_Handler(void);
+
+void tick_start(void)
+{
+    RCC->APBENR1 |= RCC_APBENR1_TIM6;
+    TIM6->PSC = COUNTS_PER_US - 1u;
+    TIM6->ARR = PATH_SAMPLE_PERIOD_US - 1u;
+    TIM6->EGR = TIM_EGR_UG;
+    TIM6->SR = 0;
+    TIM6->DIER = TIM_DIER_UIE;
+    TIM6->CR1 = TIM_CR1_CEN;
+    interrupt_start(IRQ_TIM6, PRIORITY_TICK);
+}
+
+void TIM6_Handler(void)
+{
+    TIM6->SR = ~TIM_SR_UIF;
+    ticks++;
+}
+
+bool tick_waiting(void)
+{
+    return ticks != ticks_taken;
+}
+
+uint32_t tick_take(void)
+{
+    const uint32_t now = ticks;
+    const uint32_t passed = now - ticks_taken;
+    ticks_taken = now;
+    return passed;
+}
+
+uint32_t time_us(void)
+{
+    uint32_t before;
+    uint32_t count;
+    do {
+        before = ticks;
+        count = TIM6->CNT;
+    } while (before != ticks);
+    return before * PATH_SAMPLE_PERIOD_US + count;
+}

@@ -1,0 +1,129 @@
+#include "commands.h"
+
+#include "words.h"
+
+static path_demand reply(path_state *self, uint8_t type)
+{
+    self->reply_type = type;
+    return PATH_REPLY;
+}
+
+static path_demand reply_result(path_state *self, uint8_t command, uint8_t reason)
+{
+    self->reply_to = command;
+    self->reply_reason = reason;
+    return reply(self, PROTOCOL_TYPE_RESULT);
+}
+
+static bool same_digest(const uint8_t *head)
+{
+    for (size_t i = 0; i < sizeof(((protocol_arm *)0)->digest_head); i++) {
+        if (head[i] != LAW_TABLE_DIGEST[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static path_demand arm(path_state *self, const uint8_t *payload)
+{
+    protocol_arm wish;
+    protocol_arm_unpack(&wish, payload);
+    const bool was_armed = supervisor_is_armed(&self->supervisor);
+    const uint8_t reason = supervisor_arm(
+        &self->supervisor, wish.mode, same_digest(wish.digest_head), self->self_test_mismatches == 0u);
+    if (reason == PROTOCOL_REASON_DONE && !was_armed) {
+        self->law_reset_due = true;
+    }
+    return reply_result(self, PROTOCOL_TYPE_ARM, reason);
+}
+
+static path_demand disarm(path_state *self)
+{
+    supervisor_disarm(&self->supervisor);
+    self->output = (law_output){0};
+    return reply_result(self, PROTOCOL_TYPE_DISARM, PROTOCOL_REASON_DONE);
+}
+
+static path_demand reference(path_state *self, const uint8_t *payload)
+{
+    protocol_reference wish;
+    if (self->supervisor.state != PROTOCOL_STATE_FLYING) {
+        return reply_result(self, PROTOCOL_TYPE_REFERENCE, PROTOCOL_REASON_NOT_ARMED);
+    }
+    protocol_reference_unpack(&wish, payload);
+    self->input.psi_ref_rad = number_of_word(wish.psi_ref_rad);
+    self->input.phi_ref_rad = number_of_word(wish.phi_ref_rad);
+    supervisor_host_alive(&self->supervisor);
+    return PATH_NOTHING;
+}
+
+static path_demand sample(path_state *self, const link_frame *frame)
+{
+    protocol_sample given;
+    if (self->supervisor.state != PROTOCOL_STATE_LOOP) {
+        return reply_result(self, PROTOCOL_TYPE_SAMPLE, PROTOCOL_REASON_NOT_ARMED);
+    }
+    supervisor_host_alive(&self->supervisor);
+    self->reply_type = PROTOCOL_TYPE_ANSWER;
+    if (frame->repeated) {
+        return PATH_REPLY;
+    }
+    protocol_sample_unpack(&given, frame->payload);
+    self->input = (law_input){
+        .psi_ref_rad = number_of_word(given.psi_ref_rad),
+        .phi_ref_rad = number_of_word(given.phi_ref_rad),
+        .psi_rad = number_of_word(given.psi_rad),
+        .phi_rad = number_of_word(given.phi_rad),
+    };
+    self->law_reset_due = self->law_reset_due || (given.flags & PROTOCOL_SAMPLE_FLAG_RESET_LAW) != 0u;
+    return PATH_STEP;
+}
+
+static path_demand self_test(path_state *self)
+{
+    if (supervisor_is_armed(&self->supervisor)) {
+        return reply_result(self, PROTOCOL_TYPE_SELF_TEST, PROTOCOL_REASON_ARMED);
+    }
+    self->self_test_mismatches = law_self_test();
+    return reply(self, PROTOCOL_TYPE_SELF_TEST_RESULT);
+}
+
+static path_demand preset(path_state *self, const uint8_t *payload)
+{
+    protocol_preset now;
+    if (supervisor_is_armed(&self->supervisor)) {
+        return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_ARMED);
+    }
+    protocol_preset_unpack(&now, payload);
+    self->offset.psi_counts = (int32_t)((uint32_t)self->offset.psi_counts + (uint32_t)now.psi_counts
+                                        - (uint32_t)self->measured.psi_counts);
+    self->offset.phi_counts = (int32_t)((uint32_t)self->offset.phi_counts + (uint32_t)now.phi_counts
+                                        - (uint32_t)self->measured.phi_counts);
+    self->measured = (encoder_counts){.psi_counts = now.psi_counts, .phi_counts = now.phi_counts};
+    return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_DONE);
+}
+
+path_demand command_obey(path_state *self, const link_frame *frame)
+{
+    switch (frame->type) {
+    case PROTOCOL_TYPE_IDENTIFY:
+        return reply(self, PROTOCOL_TYPE_IDENTITY);
+    case PROTOCOL_TYPE_ARM:
+        return arm(self, frame->payload);
+    case PROTOCOL_TYPE_DISARM:
+        return disarm(self);
+    case PROTOCOL_TYPE_REFERENCE:
+        return reference(self, frame->payload);
+    case PROTOCOL_TYPE_SAMPLE:
+        return sample(self, frame);
+    case PROTOCOL_TYPE_GET_COUNTERS:
+        return reply(self, PROTOCOL_TYPE_COUNTERS);
+    case PROTOCOL_TYPE_SELF_TEST:
+        return self_test(self);
+    case PROTOCOL_TYPE_PRESET:
+        return preset(self, frame->payload);
+    default:
+        return PATH_NOTHING; /* the link lets no other type through */
+    }
+}

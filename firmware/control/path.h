@@ -1,0 +1,100 @@
+/*
+ * The control path without hardware, shared by the board and by the tests on a computer:
+ *
+ *     sensors -> commands of the line -> supervisor -> law -> limits -> outputs -> telemetry
+ *
+ * All state is in one structure of the caller. Numbers of the law cross the line as their raw 32-bit words.
+ */
+#ifndef PATH_H
+#define PATH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "law.h"
+#include "link.h"
+#include "protocol.h"
+#include "supervisor.h"
+
+#define PATH_FIRMWARE_VERSION 0x0001u /* major * 256 + minor */
+#define PATH_SAMPLE_PERIOD_US 10000u
+#ifdef LAW_SAMPLE_PERIOD_US
+_Static_assert(LAW_SAMPLE_PERIOD_US == PATH_SAMPLE_PERIOD_US, "the table was designed for another sample period");
+#endif
+_Static_assert(sizeof(law_number) == 4, "numbers cross the line as 32-bit words");
+_Static_assert(LAW_PWM_TICKS <= INT16_MAX, "duties cross the line as int16_t");
+
+/* What the board knows of itself at the start. */
+typedef struct {
+    uint8_t unique_id[12];
+    uint8_t reset_cause; /* PROTOCOL_RESET_CAUSE_... */
+    uint32_t resets;     /* since power on */
+} board_identity;
+
+/* Faults that the board layer counts. */
+typedef struct {
+    uint32_t uart_overruns;
+    uint32_t uart_framing_errors;
+    uint32_t uart_noise_errors;
+    uint32_t rx_ring_overflows;
+    uint32_t tx_frames_dropped;
+    uint32_t tick_overruns;
+} board_faults;
+
+/* Encoder positions in counts. */
+typedef struct {
+    int32_t psi_counts;
+    int32_t phi_counts;
+} encoder_counts;
+
+/* What a byte off the line asks the main loop to do. */
+typedef enum {
+    PATH_NOTHING,
+    PATH_REPLY, /* send path_reply() */
+    PATH_STEP,  /* run the law once, then send path_reply() */
+} path_demand;
+
+typedef struct {
+    link_state link;
+    supervisor_state supervisor;
+    law_state law;
+    law_input input;
+    law_output output;
+    bool law_reset_due; /* the next step starts the law at the angles of its input */
+    duty_pair applied;
+    uint32_t law_cycles; /* of the last step, measured by the board */
+    uint32_t tick;
+    encoder_counts measured; /* encoders as last read */
+    encoder_counts offset;   /* of PRESET */
+    uint32_t self_test_mismatches;
+    uint8_t reply_type;   /* message that path_reply() builds */
+    uint8_t reply_to;     /* command that a RESULT answers */
+    uint8_t reply_reason; /* PROTOCOL_REASON_... of a RESULT */
+    bool telemetry_due;
+    board_identity identity;
+    board_faults faults;
+} path_state;
+
+/* Disarmed, with the law's self-test run once. */
+void path_start(path_state *self, const board_identity *identity);
+
+/* Take one byte off the line and obey the command that it may complete. */
+path_demand path_receive(path_state *self, uint8_t byte);
+
+/* Begin a control tick with the encoders as read now; true when the law is due (flying). */
+bool path_tick(path_state *self, const encoder_counts *measured);
+
+/* One step of the law on the present input. */
+void path_law(path_state *self);
+
+/* The duties that may reach the motors now; they are remembered as applied. */
+const duty_pair *path_limits(path_state *self);
+
+/* Frame the reply to the last command into `line`; returns the bytes to send. */
+size_t path_reply(path_state *self, uint32_t now_us, uint8_t line[PROTOCOL_LINE_MAX]);
+
+/* Frame the telemetry of this tick into `line`; returns the bytes to send, 0 when none is due. */
+size_t path_telemetry(path_state *self, uint32_t now_us, uint8_t line[PROTOCOL_LINE_MAX]);
+
+#endif

@@ -1,0 +1,99 @@
+#include "supervisor.h"
+
+#include "protocol.h"
+
+/* RAMP_SAMPLES is a power of two: a Cortex-M0+ has no divide instruction. */
+#define RAMP_SHIFT 3
+_Static_assert(PROTOCOL_RAMP_SAMPLES == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
+
+void supervisor_start(supervisor_state *self)
+{
+    *self = (supervisor_state){.state = PROTOCOL_STATE_DISARMED};
+}
+
+bool supervisor_is_armed(const supervisor_state *self)
+{
+    return self->state == PROTOCOL_STATE_FLYING || self->state == PROTOCOL_STATE_LOOP;
+}
+
+bool supervisor_power_allowed(const supervisor_state *self)
+{
+    const bool driving = self->state == PROTOCOL_STATE_FLYING || self->state == PROTOCOL_STATE_RAMPING;
+    return driving && self->mode == PROTOCOL_MODE_FLYING;
+}
+
+uint8_t supervisor_arm(supervisor_state *self, uint8_t mode, bool table_matches, bool self_test_passed)
+{
+    if (mode != PROTOCOL_MODE_FLYING && mode != PROTOCOL_MODE_LOOP) {
+        return PROTOCOL_REASON_UNKNOWN_MODE;
+    }
+    if (!table_matches) {
+        return PROTOCOL_REASON_WRONG_TABLE;
+    }
+    if (!self_test_passed) {
+        return PROTOCOL_REASON_SELF_TEST_FAILED;
+    }
+    if (supervisor_is_armed(self)) {
+        return self->mode == mode ? PROTOCOL_REASON_DONE : PROTOCOL_REASON_OTHER_MODE;
+    }
+    self->state = mode == PROTOCOL_MODE_FLYING ? PROTOCOL_STATE_FLYING : PROTOCOL_STATE_LOOP;
+    self->mode = mode;
+    self->missed_samples = 0;
+    return PROTOCOL_REASON_DONE;
+}
+
+void supervisor_disarm(supervisor_state *self)
+{
+    self->state = PROTOCOL_STATE_DISARMED;
+}
+
+void supervisor_host_alive(supervisor_state *self)
+{
+    self->missed_samples = 0;
+}
+
+static void lose_host(supervisor_state *self, const duty_pair *applied)
+{
+    self->state = PROTOCOL_STATE_RAMPING;
+    self->ramp_left = PROTOCOL_RAMP_SAMPLES;
+    self->ramp_start = *applied;
+    self->host_losses++;
+}
+
+void supervisor_tick(supervisor_state *self, const duty_pair *applied)
+{
+    if (supervisor_is_armed(self)) {
+        self->missed_samples++;
+        if (self->missed_samples >= PROTOCOL_HOST_LOSS_SAMPLES) {
+            lose_host(self, applied);
+        }
+    }
+    if (self->state == PROTOCOL_STATE_RAMPING) {
+        self->ramp_left--;
+        if (self->ramp_left == 0u) {
+            self->state = PROTOCOL_STATE_LOST;
+        }
+    }
+}
+
+/* start * left / RAMP_SAMPLES, rounded toward zero; right shifts only of what is not negative. */
+static int32_t ramped(int32_t start, uint32_t left)
+{
+    const uint32_t magnitude = start < 0 ? 0u - (uint32_t)start : (uint32_t)start;
+    const int32_t scaled = (int32_t)((magnitude * left) >> RAMP_SHIFT);
+    return start < 0 ? -scaled : scaled;
+}
+
+duty_pair supervisor_limit(const supervisor_state *self, const duty_pair *wanted)
+{
+    if (supervisor_is_armed(self)) {
+        return *wanted;
+    }
+    if (self->state == PROTOCOL_STATE_RAMPING) {
+        return (duty_pair){
+            .main_ticks = ramped(self->ramp_start.main_ticks, self->ramp_left),
+            .tail_ticks = ramped(self->ramp_start.tail_ticks, self->ramp_left),
+        };
+    }
+    return (duty_pair){0};
+}

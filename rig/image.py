@@ -1,0 +1,64 @@
+"""The firmware image: generated law and protocol, control path and board layer, compiled and linked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from codegen.protocol_source import protocol_source
+from records.files import write_atomic
+from records.protocol import PROTOCOL
+from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
+from toolchain.host import CText, Source
+from toolchain.target import TARGET_FLAGS, build_image
+
+FIRMWARE_DIR = Path(__file__).resolve().parent.parent / "firmware"
+LINKER_SCRIPT = FIRMWARE_DIR / "board" / "link.ld"
+INCLUDE_DIRS = (FIRMWARE_DIR / "control", FIRMWARE_DIR / "board")
+
+
+@dataclass(frozen=True)
+class FirmwareImage:
+    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash."""
+
+    elf: bytes
+    binary: bytes
+    sizes: ImageSizes
+    symbols: Mapping[str, Symbol]
+
+
+def build_firmware(
+    generated: Mapping[str, str], out_dir: Path | None = None, *, optimisation: str = "-O2"
+) -> FirmwareImage:
+    """Build the firmware around the `generated` law (file name -> text: law.h, law.c and what they include).
+
+    With `out_dir` it leaves firmware.elf and firmware.bin there. The same texts give the same bytes. Raises BadInput with file
+    and line when the compiler refuses, or when flash, RAM or the stack's reserve are exceeded.
+    """
+    texts = {**generated, **protocol_source(PROTOCOL)}
+    sources: list[Source] = [
+        *control_sources(),
+        *board_sources(),
+        *(CText(name, text) for name, text in sorted(texts.items())),
+    ]
+    flags = (optimisation, *(flag for flag in TARGET_FLAGS if not flag.startswith("-O")))
+    elf = build_image("firmware", sources, LINKER_SCRIPT, include_dirs=INCLUDE_DIRS, flags=flags).read_bytes()
+    image = describe_image(elf, "firmware.elf")
+    if out_dir is not None:
+        write_atomic(out_dir / "firmware.elf", image.elf)
+        write_atomic(out_dir / "firmware.bin", image.binary)
+    return image
+
+
+def describe_image(elf: bytes, where: str) -> FirmwareImage:
+    """The record of an ELF image; raises BadInput when it is none."""
+    return FirmwareImage(elf, flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where))
+
+
+def control_sources() -> list[Path]:
+    """The control path, free of hardware, in a fixed order."""
+    return sorted((FIRMWARE_DIR / "control").glob("*.c"))
+
+
+def board_sources() -> list[Path]:
+    """The board layer and `main`, in a fixed order."""
+    return sorted((FIRMWARE_DIR / "board").glob("*.c"))

@@ -1,0 +1,104 @@
+"""C for the microcontroller: zig as compiler and linker for ARMv6-M, kept by the hash of everything that went into it."""
+
+import tempfile
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
+from pathlib import Path
+
+from toolchain.host import CACHE_DIR, CText, Source, as_file, content_digest, run_zig
+
+_MACHINE = ("-target", "thumb-freestanding-eabi", "-mcpu=cortex_m0plus")
+
+# As on the host, no contraction and no relaxed arithmetic: the law must give the same bits on both.
+TARGET_FLAGS = (
+    "-O2",
+    "-g",
+    "-std=c11",
+    "-ffreestanding",
+    "-ffp-contract=off",
+    "-fno-fast-math",
+    "-fno-sanitize=undefined",
+    "-fno-stack-protector",
+    "-fno-unwind-tables",
+    "-fno-asynchronous-unwind-tables",
+    "-ffunction-sections",
+    "-fdata-sections",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Wmissing-prototypes",
+    "-Wshadow",
+    "-Wstrict-prototypes",
+    "-Wundef",
+    "-Werror",
+)
+LINK_FLAGS = ("-O2", "-Wl,--gc-sections", "-Wl,--entry=Reset_Handler", "-Wl,--build-id=none")
+
+
+def build_image(
+    name: str,
+    sources: Sequence[Source],
+    linker_script: Path,
+    *,
+    include_dirs: Sequence[Path] = (),
+    flags: Sequence[str] = TARGET_FLAGS,
+) -> Path:
+    """Compile and link `sources` for the Cortex-M0+ and return the path of the ELF; the same content is built once only.
+
+    Sources that are headers only as text count as content and are found by `#include`. Raises BadInput with file and line when
+    compiler or linker refuse, which includes an image that does not fit the memories of `linker_script`.
+    """
+    key = content_digest([*sources, linker_script], include_dirs, [*flags, *LINK_FLAGS])
+    image = CACHE_DIR / "target" / f"{name}-{key}.elf"
+    if image.exists():
+        return image
+    objects = compile_objects(sources, include_dirs=include_dirs, flags=flags)
+    with tempfile.TemporaryDirectory(dir=image.parent) as work:
+        built = Path(work) / "out.elf"
+        run_zig(
+            ["cc", *_MACHINE, *LINK_FLAGS, "-T", str(linker_script), *map(str, objects), "-o", str(built)],
+            f"linking {name}",
+        )
+        built.replace(image)
+    return image
+
+
+def compile_objects(
+    sources: Sequence[Source], *, include_dirs: Sequence[Path] = (), flags: Sequence[str] = TARGET_FLAGS
+) -> list[Path]:
+    """Compile each C source of `sources` for the Cortex-M0+, side by side; returns the object files in the same order."""
+    folder = CACHE_DIR / "target" / "objects"
+    folder.mkdir(parents=True, exist_ok=True)
+    headers = [source for source in sources if not source.name.endswith(".c")]
+    units = [source for source in sources if source.name.endswith(".c")]
+    with tempfile.TemporaryDirectory(dir=folder) as work, ThreadPoolExecutor(cpu_count() or 1) as pool:
+        for header in headers:
+            as_file(header, Path(work))
+        return list(pool.map(lambda unit: _compile(unit, headers, Path(work), include_dirs, flags), units))
+
+
+def _compile(
+    unit: Source, headers: Sequence[Source], work: Path, include_dirs: Sequence[Path], flags: Sequence[str]
+) -> Path:
+    key = content_digest([unit, *headers], include_dirs, flags)
+    kept = CACHE_DIR / "target" / "objects" / f"{Path(unit.name).stem}-{key}.o"
+    if kept.exists():
+        return kept
+    path = as_file(unit, work)
+    built = work / f"{path.stem}-{key}.o"
+    includes = [f"-I{folder}" for folder in (*include_dirs, work)]
+    run_zig(
+        ["cc", *_MACHINE, *flags, *_portable_paths(unit, path, work), *includes, "-c", str(path), "-o", str(built)],
+        unit.name,
+    )
+    built.replace(kept)
+    return kept
+
+
+def _portable_paths(unit: Source, path: Path, work: Path) -> list[str]:
+    """Debug information without the place of the checkout, so that every checkout builds the same bytes."""
+    places = [(Path(__file__).resolve().parent.parent, ".")]
+    places.append((work, "generated") if isinstance(unit, CText) else (path.parent, path.parent.name))
+    return ["-fdebug-compilation-dir=.", *(f"-ffile-prefix-map={folder}={alias}" for folder, alias in places)]
