@@ -1,0 +1,53 @@
+"""The project's own rules: one-way imports, packages of this checkout, style, types, and a Makefile that explains itself."""
+
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+BIN = Path(sys.executable).parent
+PACKAGES = ("records", "toolchain", "sim", "design", "codegen", "verification", "rig", "twinlaw")
+
+
+def _run(*command: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_each_package_is_the_one_of_this_checkout(package: str) -> None:
+    module = importlib.import_module(package)
+    assert module.__file__ is not None
+    assert Path(module.__file__).resolve().parent == ROOT / package
+
+
+def test_stages_import_one_way_along_the_data() -> None:
+    done = _run(str(BIN / "lint-imports"))
+    assert done.returncode == 0, done.stdout
+
+
+def test_style_holds() -> None:
+    for command in (["check"], ["format", "--check"]):
+        done = _run(str(BIN / "ruff"), *command, ".")
+        assert done.returncode == 0, done.stdout
+
+
+def test_types_hold() -> None:
+    done = _run(str(BIN / "mypy"))
+    assert done.returncode == 0, done.stdout
+
+
+def test_every_make_target_is_explained_by_make_help() -> None:
+    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), flags=re.MULTILINE))
+    shown = set(re.findall(r"make ([a-z]+)", _run("make", "help").stdout))
+    assert targets == shown
+
+
+def test_no_generated_or_fetched_file_is_tracked() -> None:
+    tracked = _run("git", "ls-files").stdout.split()
+    if not tracked:
+        pytest.skip("this copy of the project is no git checkout")
+    assert not [name for name in tracked if name.endswith((".so", ".elf", ".bin", ".mat", ".pyc"))]

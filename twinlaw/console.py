@@ -1,0 +1,51 @@
+"""What a person sees of a command: progress on a terminal, tables, one line for an error."""
+
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TextIO
+
+
+def colours(stream: TextIO) -> bool:
+    """Whether `stream` wants colours: a terminal, and NO_COLOR (https://no-color.org) is not set."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def paint(text: str, code: int, stream: TextIO) -> str:
+    """`text` in an ANSI colour where the stream wants it."""
+    return f"\x1b[{code}m{text}\x1b[0m" if colours(stream) else text
+
+
+@contextmanager
+def stage(title: str) -> Iterator[None]:
+    """Show `title` on the terminal while the body works and how long it took; nothing in a pipe."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    began = time.monotonic()
+    sys.stderr.write(f"  {title} ...")
+    sys.stderr.flush()
+    mark = paint("failed", 31, sys.stderr)
+    try:
+        yield
+        mark = paint("done", 32, sys.stderr)
+    finally:
+        sys.stderr.write(f"\r  {title:<60} {mark} {time.monotonic() - began:6.1f} s\n")
+        sys.stderr.flush()
+
+
+def table(rows: Sequence[Sequence[str]], heading: Sequence[str] = ()) -> str:
+    """Columns aligned by width: the first to the left, the others too; the heading is underlined."""
+    lines = [*([heading] if heading else []), *rows]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
+    shown = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
+    if heading:
+        shown.insert(1, "  ".join("-" * width for width in widths))
+    return "\n".join(shown)
+
+
+def fail(message: str) -> None:
+    """Print one line on stderr, marked as an error."""
+    sys.stderr.write(f"{paint('twinlaw: error:', 31, sys.stderr)} {' '.join(message.split())}\n")

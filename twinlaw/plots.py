@@ -1,0 +1,94 @@
+"""Plots as SVG text: axes, units and legends on each, colours that a colour-blind reader tells apart, same bytes for the same data."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Okabe and Ito's palette.
+BLUE, ORANGE, GREEN, RED, GREY, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666", "#56B4E9"
+
+_STYLE: Any = {
+    "svg.hashsalt": "twinlaw",
+    "svg.fonttype": "none",
+    "font.family": "sans-serif",
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a panel: abscissa, ordinate, its name in the legend (empty: none) and its colour and dash pattern."""
+
+    x: Array
+    y: Array
+    label: str = ""
+    colour: str = BLUE
+    dash: str = "-"
+    marker: str = ""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes: curves over a common abscissa, and horizontal lines (value, label) for limits."""
+
+    ylabel: str
+    curves: Sequence[Curve]
+    limits: Sequence[tuple[float, str]] = ()
+
+
+def stack(panels: Sequence[Panel], xlabel: str, *, panel_height_in: float = 1.9) -> str:
+    """Panels one above the other over the same abscissa, as SVG text."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.0, panel_height_in * len(panels) + 0.5), layout="constrained")
+        rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, panel in zip(rows, panels, strict=True):
+            _draw(axes, panel)
+        rows[-1].set_xlabel(xlabel)
+        return _svg(figure)
+
+
+def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False, height_in: float = 3.6) -> str:
+    """Panels side by side with abscissas of their own, as SVG text; `equal` gives both axes one scale (pole maps)."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.0, height_in), layout="constrained")
+        columns = figure.subplots(1, len(panels), squeeze=False)[0]
+        for axes, panel, xlabel in zip(columns, panels, xlabels, strict=True):
+            _draw(axes, panel)
+            axes.set_xlabel(xlabel)
+            if equal:
+                axes.set_aspect("equal", adjustable="datalim")
+        return _svg(figure)
+
+
+def _draw(axes: Axes, panel: Panel) -> None:
+    for curve in panel.curves:
+        style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": 4.0}
+        axes.plot(curve.x, curve.y, label=curve.label or None, color=curve.colour, **style)
+    for value, label in panel.limits:
+        axes.axhline(value, color=GREY, linestyle=":", linewidth=1.0, label=label or None)
+    axes.set_ylabel(panel.ylabel)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
+
+
+def _svg(figure: Figure) -> str:
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    text = stream.getvalue()
+    return text[text.index("<svg") :]
