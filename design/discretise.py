@@ -62,6 +62,19 @@ def transfer_function(linear: LinearPlant, sample_period_s: float, where: str) -
     return result
 
 
+def transfer_from_polynomials(b_gamma: Array, a_gamma: Array) -> TransferFunction:
+    """The same transfer function from polynomials in gamma = z - 1, ascending powers, shapes (4,)."""
+    shifts = [np.atleast_1d(np.poly(np.ones(power))) for power in range(len(a_gamma))]
+
+    def in_z(ascending: Array) -> Array:
+        total = np.zeros(len(ascending))
+        for coefficient, shift in zip(ascending, shifts, strict=True):
+            total[len(total) - len(shift) :] += coefficient * shift
+        return total
+
+    return TransferFunction(b=in_z(b_gamma), a=in_z(a_gamma))
+
+
 def _check(found: TransferFunction, sampled: SampledPlant, where: str) -> None:
     count = 2 * len(found.a)
     wanted = _markov(sampled, count)

@@ -10,7 +10,7 @@ from design.direct_form import DeltaForm, to_delta
 from design.discretise import TransferFunction, transfer_function
 from design.linearise import linearise, subsystem
 from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
-from design.settings import AxisSettings, DesignSettings
+from design.settings import AXES, AxisSettings, DesignSettings
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 
@@ -34,6 +34,31 @@ def grid(settings: DesignSettings) -> Array:
 def equilibria(bound: BoundPlant, psi_rad: Array) -> tuple[OperatingPoint, ...]:
     """Eq (16) at each elevation; raises BadInput naming the angle and the input that would leave its limits."""
     return tuple(equilibrium(bound, float(psi)) for psi in psi_rad)
+
+
+@dataclass(frozen=True)
+class DesignPoints:
+    """Equilibria (points,) over the schedule's range and the controllers made for each of them."""
+
+    psi_rad: Array
+    equilibria: tuple[OperatingPoint, ...]
+    elevation: tuple[PointDesign, ...]
+    azimuth: tuple[PointDesign, ...]
+
+    def axis(self, name: str) -> tuple[PointDesign, ...]:
+        """The designs of the axis called `name`."""
+        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
+
+
+def design_points(bound: BoundPlant, settings: DesignSettings) -> DesignPoints:
+    """Design both axes at each operating point; raises BadInput naming angle and axis where that is not possible."""
+    psi_rad = grid(settings)
+    points = equilibria(bound, psi_rad)
+    elevation, azimuth = (
+        tuple(design_point(bound, point, axis, settings.axis(axis), settings.sample_period_s) for point in points)
+        for axis in AXES
+    )
+    return DesignPoints(psi_rad, points, elevation, azimuth)
 
 
 def design_point(

@@ -93,6 +93,10 @@ class DesignSettings:
     azimuth: AxisSettings
     margins: MarginLimits
 
+    def axis(self, name: str) -> AxisSettings:
+        """The wishes for the axis called `name`."""
+        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
+
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
     """The settings in the plant's [design] section; raises BadInput naming key, range or pole that cannot be used."""

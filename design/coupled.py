@@ -1,0 +1,52 @@
+"""Both loops closed on the whole linearised plant, with the cross-coupling that the design of each axis leaves out.
+
+The controllers stand here in the state that the law itself keeps, so this is also a second way to the poles of one axis.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.direct_form import DeltaForm
+from design.discretise import SampledPlant
+from design.loop import Poles, to_rad_s
+
+Array = NDArray[np.float64]
+
+MEMORY = 6
+
+
+def controller_states(controller: DeltaForm) -> tuple[Array, Array, Array, float]:
+    """A (6, 6), B (6,), C (6,), D of the unlimited law from e to v, in the state (e, its differences, s, its differences)."""
+    q_0, q_1, q_2, q_3 = controller.q
+    p_0, p_1, p_2 = controller.p
+    C = np.array([-(q_1 + q_2 + q_3), -(q_2 + q_3), -q_3, 1.0 - p_0, p_1, p_2])
+    D = float(q_0 + q_1 + q_2 + q_3)
+    A, B = np.zeros((MEMORY, MEMORY)), np.zeros(MEMORY)
+    for row in range(3):
+        A[row, :row] = -1.0
+        A[3 + row] = C
+        A[3 + row, 3 : 3 + row] -= 1.0
+    B[:3], B[3:] = 1.0, D
+    return A, B, C, D
+
+
+def coupled_step(plant: SampledPlant, controllers: tuple[DeltaForm, ...]) -> Array:
+    """The matrix of one sample of the closed loop minus I; order n + 6 for each controller, input i acting on output i."""
+    n = len(plant.N)
+    step = np.zeros((n + MEMORY * len(controllers),) * 2)
+    step[:n, :n] = plant.N
+    for index, controller in enumerate(controllers):
+        A, B, C, D = controller_states(controller)
+        rows = slice(n + MEMORY * index, n + MEMORY * (index + 1))
+        output, drive = plant.C[index], plant.B[:, index]
+        step[:n, :n] -= np.outer(drive, D * output)
+        step[:n, rows] = np.outer(drive, C)
+        step[rows, :n] = -np.outer(B, output)
+        step[rows, rows] = A - np.eye(MEMORY)
+    return step
+
+
+def coupled_poles(plant: SampledPlant, controllers: tuple[DeltaForm, ...]) -> Poles:
+    """Poles s_i [rad/s] of the closed loop; those that only shift memory lie at z = 0 and come out as very fast."""
+    gamma = np.linalg.eigvals(coupled_step(plant, controllers)).astype(complex)
+    return to_rad_s(gamma, plant.sample_period_s)

@@ -1,0 +1,174 @@
+"""What is known of a table: fit, pole migration, margins over the elevation, and both loops closed together."""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from design.coupled import coupled_poles
+from design.discretise import SampledPlant, sample
+from design.linearise import LinearPlant, linearise, subsystem
+from design.loop import Poles, controller_poles, open_loop
+from design.margins import Margins, margins
+from design.migration import STORAGES, Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of, stored
+from design.operating_points import DesignPoints, equilibria
+from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
+from design.settings import AXES, DesignSettings
+from records.table import AxisLaw, ControllerTable
+from sim.bind import BoundPlant
+
+Array = NDArray[np.float64]
+
+ANGLES_BETWEEN = 200
+
+
+@dataclass(frozen=True, eq=False)
+class AxisReport:
+    """One axis over the angles psi_rad of the report.
+
+    `poles_fitted_rad_s` and `poles_float32_rad_s` have shape (angles, 6); `margins` and `controller_radius`, the largest |z| of the
+    controller's own poles, belong to the table rounded to float32, as it flies. `largest_q_V_rad` is that of eq (22).
+    """
+
+    axis: str
+    poles_rad_s: tuple[complex, ...]
+    free_degree: str
+    largest_q_V_rad: float
+    condition: float
+    fit_error: FitError
+    feedforward_error_V: float
+    poles_fitted_rad_s: Poles
+    poles_float32_rad_s: Poles
+    designed_slowest_rad_s: float
+    after_fit: SlowestPole
+    after_float32: SlowestPole
+    migrations: tuple[Migration, ...]
+    margins: tuple[Margins, ...]
+    controller_radius: tuple[float, ...]
+
+    @property
+    def worst_margins(self) -> Margins:
+        """The worst of each margin over all angles; they need not come from the same angle."""
+        return Margins(
+            sensitivity=max(m.sensitivity for m in self.margins),
+            gain_up=min(m.gain_up for m in self.margins),
+            gain_down=max(m.gain_down for m in self.margins),
+            phase_rad=min(m.phase_rad for m in self.margins),
+            delay_s=min(m.delay_s for m in self.margins),
+            crossover_rad_s=max(m.crossover_rad_s for m in self.margins),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class DesignReport:
+    """Both axes over the elevations psi_rad (angles,): the operating points and at least 200 angles between them.
+
+    `coupled_slowest_rad_s` (angles,) is the slowest pole of both loops closed on the whole plant, and `coupled` its worst.
+    """
+
+    psi_rad: Array
+    elevation: AxisReport
+    azimuth: AxisReport
+    coupled_slowest_rad_s: Array
+    coupled: SlowestPole
+
+    def axis(self, name: str) -> AxisReport:
+        """The report on the axis called `name`."""
+        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
+
+    def pole_entries(self) -> list[dict[str, Any]]:
+        """The entries `poles` of verification.json: designed poles against the float32 table, per axis."""
+        return [
+            {
+                "axis": axis.axis,
+                "designed_slowest_rad_s": axis.designed_slowest_rad_s,
+                "worst_slowest_rad_s": axis.after_float32.worst_rad_s,
+                "at_psi_rad": axis.after_float32.at_psi_rad,
+                "stable": axis.after_float32.stable,
+            }
+            for axis in (self.elevation, self.azimuth)
+        ]
+
+
+def make_report(
+    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, points: DesignPoints
+) -> DesignReport:
+    """Examine `table` at the operating points and between them; raises BadInput where an angle cannot be held at rest."""
+    psi_rad = angles(points.psi_rad)
+    linear = [linearise(bound, point) for point in equilibria(bound, psi_rad)]
+    voltages_V = np.array([point.u0 for point in points.equilibria])
+    one = partial(_axis_report, bound, settings, table, points, psi_rad, linear)
+    elevation, azimuth = (one(axis, voltages_V[:, index]) for index, axis in enumerate(AXES))
+    poles = _coupled(table, settings, psi_rad, linear)
+    coupled_slowest = np.max(poles.real, axis=1)
+    return DesignReport(psi_rad, elevation, azimuth, coupled_slowest, slowest_of(psi_rad, poles))
+
+
+def angles(grid_rad: Array) -> Array:
+    """The operating points and, spread evenly strictly between them, at least ANGLES_BETWEEN angles."""
+    intervals = len(grid_rad) - 1
+    parts = -(-ANGLES_BETWEEN // intervals) + 1
+    return np.interp(np.arange(intervals * parts + 1) / parts, np.arange(len(grid_rad)), grid_rad)
+
+
+def _axis_report(
+    bound: BoundPlant,
+    settings: DesignSettings,
+    table: ControllerTable,
+    points: DesignPoints,
+    psi_rad: Array,
+    linear: list[LinearPlant],
+    axis: str,
+    voltages_V: Array,
+) -> AxisReport:
+    law: AxisLaw = getattr(table, axis)
+    plants = [sample(subsystem(bound, plant, axis), settings.sample_period_s) for plant in linear]
+    scheduled = _scheduled(settings, law, points, axis)
+    flown = stored(scheduled.schedule, STORAGES["float32"])
+    fitted = pole_map(plants, [evaluate(scheduled.schedule, float(psi)) for psi in psi_rad])
+    controllers = [evaluate(flown, float(psi)) for psi in psi_rad]
+    rounded = pole_map(plants, controllers)
+    designs = points.axis(axis)
+    return AxisReport(
+        axis=axis,
+        poles_rad_s=scheduled.wishes.poles_rad_s,
+        free_degree=scheduled.wishes.free_degree,
+        largest_q_V_rad=max(float(np.max(np.abs(design.placement.controller.q))) for design in designs),
+        condition=max(design.placement.condition for design in designs),
+        fit_error=fit_error(points.psi_rad, scheduled.designs, scheduled.schedule),
+        feedforward_error_V=float(np.max(np.abs(polyval(points.psi_rad, law.feedforward_V) - voltages_V))),
+        poles_fitted_rad_s=fitted,
+        poles_float32_rad_s=rounded,
+        designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.poles_rad_s),
+        after_fit=slowest_of(psi_rad, fitted),
+        after_float32=slowest_of(psi_rad, rounded),
+        migrations=migrations(scheduled, psi_rad, plants),
+        margins=tuple(margins(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)),
+        controller_radius=tuple(float(np.max(np.abs(1.0 + controller_poles(c)))) for c in controllers),
+    )
+
+
+def _scheduled(settings: DesignSettings, law: AxisLaw, points: DesignPoints, axis: str) -> ScheduledAxis:
+    return ScheduledAxis(
+        name=axis,
+        wishes=settings.axis(axis),
+        grid_rad=points.psi_rad,
+        designs=tuple(design.delta for design in points.axis(axis)),
+        degree=settings.coefficient_degree,
+        schedule=schedule_of(law),
+    )
+
+
+def _coupled(table: ControllerTable, settings: DesignSettings, psi_rad: Array, linear: list[LinearPlant]) -> Poles:
+    """Poles of both loops closed on the whole plant, shape (angles, states), for the table rounded to float32."""
+    schedules: list[Schedule] = [
+        stored(schedule_of(law), STORAGES["float32"]) for law in (table.elevation, table.azimuth)
+    ]
+    rows = []
+    for psi, plant in zip(psi_rad, linear, strict=True):
+        sampled: SampledPlant = sample(plant, settings.sample_period_s)
+        rows.append(coupled_poles(sampled, tuple(evaluate(schedule, float(psi)) for schedule in schedules)))
+    return np.array(rows)
