@@ -208,7 +208,7 @@ _ENUMERATIONS = (
     Enumeration(
         "arithmetic",
         "Arithmetic of the law, and of every number on the line.",
-        (Choice("FLOAT32", 0, "float32"), Choice("FIXED", 1, "fixed point")),
+        (Choice("FLOAT32", 0, "float32"), Choice("FIXED", 1, "fixed")),
     ),
     Enumeration(
         "reset_cause",
@@ -220,11 +220,6 @@ _ENUMERATIONS = (
             Choice("WATCHDOG", 3, "independent watchdog: a control step did not finish"),
             Choice("OTHER", 4, "another cause"),
         ),
-    ),
-    Enumeration(
-        "sample_flag",
-        "Bits of SAMPLE.flags.",
-        (Choice("RESET_LAW", 1, "start the law anew at the angles of this sample"),),
     ),
 )
 
@@ -247,7 +242,7 @@ _TO_BOARD = (
         0x05,
         True,
         "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory.",
-        (Field("flags", U8, "sample_flag", "what else to do"), *_REFERENCES, *_ANGLES),
+        (*_REFERENCES, *_ANGLES),
     ),
     Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
     Message("SELF_TEST", 0x07, True, "Run the law's self-test; refused while armed."),
@@ -261,6 +256,7 @@ _TO_BOARD = (
             Field("phi_counts", I32, "encoder counts", "azimuth at this moment"),
         ),
     ),
+    Message("RESET_LAW", 0x09, True, "In host-in-the-loop mode: start the law anew, at rest at these angles.", _ANGLES),
 )
 
 _FROM_BOARD = (

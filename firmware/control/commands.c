@@ -34,6 +34,9 @@ static path_demand arm(path_state *self, const uint8_t *payload)
         &self->supervisor, wish.mode, same_digest(wish.digest_head), self->self_test_mismatches == 0u);
     if (reason == PROTOCOL_REASON_DONE && !was_armed) {
         self->law_reset_due = true;
+        /* Hold the present place until the host names another. */
+        self->input.psi_ref_rad = law_angle_from_counts_psi(self->measured.psi_counts);
+        self->input.phi_ref_rad = law_angle_from_counts_phi(self->measured.phi_counts);
     }
     return reply_result(self, PROTOCOL_TYPE_ARM, reason);
 }
@@ -76,8 +79,20 @@ static path_demand sample(path_state *self, const link_frame *frame)
         .psi_rad = number_of_word(given.psi_rad),
         .phi_rad = number_of_word(given.phi_rad),
     };
-    self->law_reset_due = self->law_reset_due || (given.flags & PROTOCOL_SAMPLE_FLAG_RESET_LAW) != 0u;
     return PATH_STEP;
+}
+
+static path_demand restart_law(path_state *self, const uint8_t *payload)
+{
+    protocol_reset_law start;
+    if (self->supervisor.state != PROTOCOL_STATE_LOOP) {
+        return reply_result(self, PROTOCOL_TYPE_RESET_LAW, PROTOCOL_REASON_NOT_ARMED);
+    }
+    protocol_reset_law_unpack(&start, payload);
+    law_reset(&self->law, number_of_word(start.psi_rad), number_of_word(start.phi_rad));
+    self->law_reset_due = false;
+    supervisor_host_alive(&self->supervisor);
+    return reply_result(self, PROTOCOL_TYPE_RESET_LAW, PROTOCOL_REASON_DONE);
 }
 
 static path_demand self_test(path_state *self)
@@ -123,6 +138,8 @@ path_demand command_obey(path_state *self, const link_frame *frame)
         return self_test(self);
     case PROTOCOL_TYPE_PRESET:
         return preset(self, frame->payload);
+    case PROTOCOL_TYPE_RESET_LAW:
+        return restart_law(self, frame->payload);
     default:
         return PATH_NOTHING; /* the link lets no other type through */
     }

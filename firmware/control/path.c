@@ -50,11 +50,6 @@ void path_law(path_state *self)
 {
     if (self->law_reset_due) {
         law_reset(&self->law, self->input.psi_rad, self->input.phi_rad);
-        if (self->supervisor.state == PROTOCOL_STATE_FLYING) {
-            /* Hold the place where it was armed until the host names another. */
-            self->input.psi_ref_rad = self->input.psi_rad;
-            self->input.phi_ref_rad = self->input.phi_rad;
-        }
         self->law_reset_due = false;
     }
     law_step(&self->law, &self->input, &self->output);

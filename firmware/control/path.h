@@ -19,9 +19,8 @@
 
 #define PATH_FIRMWARE_VERSION 0x0001u /* major * 256 + minor */
 #define PATH_SAMPLE_PERIOD_US 10000u
-#ifdef LAW_SAMPLE_PERIOD_US
 _Static_assert(LAW_SAMPLE_PERIOD_US == PATH_SAMPLE_PERIOD_US, "the table was designed for another sample period");
-#endif
+_Static_assert(LAW_U_M_SAFE_V == 0 && LAW_U_T_SAFE_V == 0, "the safe state of this board is an open power stage, 0 V");
 _Static_assert(sizeof(law_number) == 4, "numbers cross the line as 32-bit words");
 _Static_assert(LAW_PWM_TICKS <= INT16_MAX, "duties cross the line as int16_t");
 

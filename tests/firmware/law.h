@@ -7,6 +7,8 @@
 #define LAW_ARITHMETIC_CODE 0
 #define LAW_PWM_TICKS 3200
 #define LAW_SAMPLE_PERIOD_US 10000
+#define LAW_U_M_SAFE_V 0.0f
+#define LAW_U_T_SAFE_V 0.0f
 
 typedef float law_number;
 

@@ -1,0 +1,109 @@
+"""Requests and replies over one serial line; it knows frames and time-outs, not what they mean."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from records.errors import BadInput
+from records.protocol import PROTOCOL
+from rig.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
+
+ATTEMPTS = 3
+# A line that is never silent would never time out; so many bytes without the reply are as good as silence.
+PATIENCE_BYTES = 4096
+
+
+@dataclass
+class Line:
+    """One end of the serial line: the port, its name for messages, and the number of the next frame."""
+
+    port: Any
+    where: str
+    receiver: FrameReceiver
+    sequence: int = 0
+
+    def send(self, name: str, values: Mapping[str, Value]) -> int:
+        """Send message `name` once and return its sequence number."""
+        sequence = self.sequence
+        self._write(encode_frame(PROTOCOL, name, sequence, values))
+        self.sequence = (sequence + 1) & 0xFFFF
+        return sequence
+
+    def request(self, name: str, values: Mapping[str, Value], reply_name: str) -> Frame:
+        """Send message `name` and return the reply to it: `reply_name`, or a RESULT that refuses it.
+
+        A lost frame is sent again under the same number, which the board recognises. Raises BadInput when no reply comes.
+        """
+        sequence = self.sequence
+        line = encode_frame(PROTOCOL, name, sequence, values)
+        self.sequence = (sequence + 1) & 0xFFFF
+        before = self.receiver.received
+        for attempt in range(ATTEMPTS):
+            # A delimiter first ends whatever a disturbance has left in the board's receiver.
+            self._write(DELIMITER + line if attempt else line)
+            reply = self._await({reply_name, "RESULT"}, sequence, line_length(PROTOCOL.message(reply_name)))
+            if reply is not None:
+                return reply
+        raise no_reply(self.where, name, before, self.receiver.received)
+
+    def next_frame(self, name: str) -> Frame | None:
+        """The next frame called `name`, or None when the port's time-out passes without one."""
+        return self._await({name}, None, line_length(PROTOCOL.message(name)))
+
+    def restart(self) -> None:
+        """Forget what was received so far, and end whatever the board has received so far."""
+        self.port.reset_input_buffer()
+        self.receiver.pending.clear()
+        self._write(DELIMITER)
+
+    def _await(self, names: set[str], echo: int | None, expected_bytes: int) -> Frame | None:
+        limit = self.receiver.received.bytes + PATIENCE_BYTES
+        while self.receiver.received.bytes < limit:
+            data = self._read(max(1, expected_bytes - len(self.receiver.pending)))
+            if not data:
+                return None
+            for frame in self.receiver.feed(data):
+                if frame.message.name in names and echo in (None, frame.values["echo_sequence"]):
+                    return frame
+        return None
+
+    def _write(self, data: bytes) -> None:
+        try:
+            self.port.write(data)
+        except OSError as error:
+            raise self._broken(error) from error
+
+    def _read(self, count: int) -> bytes:
+        try:
+            return bytes(self.port.read(count))
+        except OSError as error:
+            raise self._broken(error) from error
+
+    def _broken(self, error: OSError) -> BadInput:
+        return BadInput(
+            what="serial port",
+            where=self.where,
+            got=" ".join(str(error).split()) or type(error).__name__,
+            expected="a port that stays open",
+            remedy="check the cable and the board's supply",
+        )
+
+
+def no_reply(where: str, request: str, before: Received, after: Received) -> BadInput:
+    """What a missing reply says about the other end: silence, noise, another protocol, or a deaf board."""
+    received = after.bytes - before.bytes
+    if received == 0:
+        got, remedy = (
+            "no answer",
+            "check the board's supply and cable, press its reset button, flash it with `twinlaw flash`",
+        )
+    elif after.foreign > before.foreign:
+        got, remedy = "frames of another protocol", "flash the firmware of this version with `twinlaw flash`"
+    elif after.frames == before.frames:
+        got = f"noise ({received} bytes without one sound frame)"
+        remedy = "check that this is the board's port, its ground wire and its baud rate"
+    else:
+        got, remedy = "frames, but no reply to this one", "reset the board and try again"
+    return BadInput(
+        what=f"reply to {request}", where=where, got=got, expected="a board with twinlaw's firmware", remedy=remedy
+    )

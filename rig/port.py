@@ -1,0 +1,29 @@
+"""Opening a serial port by its URL: a device, a pty, or an emulated board, which are all the same to the client."""
+
+from typing import Any
+
+import serial
+
+from records.errors import BadInput
+from records.protocol import PROTOCOL
+
+_HANDLER_PACKAGE = "rig.emulator"
+
+
+def open_port(url: str, *, timeout_s: float) -> Any:
+    """Open the port `url` (a device path, or a pyserial URL such as emulated://PATH_TO_ELF) at the protocol's baud rate, 8N1.
+
+    Raises BadInput when it is not there or cannot be opened.
+    """
+    if _HANDLER_PACKAGE not in serial.protocol_handler_packages:
+        serial.protocol_handler_packages.append(_HANDLER_PACKAGE)
+    try:
+        return serial.serial_for_url(url, baudrate=PROTOCOL.constant("BAUD_RATE"), timeout=timeout_s)
+    except (OSError, ValueError) as error:
+        raise BadInput(
+            what="serial port",
+            where=url,
+            got=" ".join(str(error).split()) or type(error).__name__,
+            expected="a port that can be opened",
+            remedy="check the cable, the name given as --port, and that you may read and write it",
+        ) from error
