@@ -1,7 +1,8 @@
 """Requests and replies over one serial line; it knows frames and time-outs, not what they mean."""
 
+from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from records.errors import BadInput
@@ -11,6 +12,8 @@ from rig.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_
 ATTEMPTS = 3
 # A line that is never silent would never time out; so many bytes without the reply are as good as silence.
 PATIENCE_BYTES = 4096
+# Ten seconds of telemetry that came while replies were awaited; the oldest goes first.
+BACKLOG_FRAMES = 1000
 
 
 @dataclass
@@ -21,6 +24,7 @@ class Line:
     where: str
     receiver: FrameReceiver
     sequence: int = 0
+    backlog: deque[Frame] = field(default_factory=lambda: deque(maxlen=BACKLOG_FRAMES))
 
     def send(self, name: str, values: Mapping[str, Value]) -> int:
         """Send message `name` once and return its sequence number."""
@@ -54,17 +58,25 @@ class Line:
         """Forget what was received so far, and end whatever the board has received so far."""
         self.port.reset_input_buffer()
         self.receiver.pending.clear()
+        self.backlog.clear()
         self._write(DELIMITER)
 
     def _await(self, names: set[str], echo: int | None, expected_bytes: int) -> Frame | None:
         limit = self.receiver.received.bytes + PATIENCE_BYTES
-        while self.receiver.received.bytes < limit:
+        frame = self._take(names, echo)
+        while frame is None and self.receiver.received.bytes < limit:
             data = self._read(max(1, expected_bytes - len(self.receiver.pending)))
             if not data:
                 return None
-            for frame in self.receiver.feed(data):
-                if frame.message.name in names and echo in (None, frame.values["echo_sequence"]):
-                    return frame
+            self.backlog.extend(self.receiver.feed(data))
+            frame = self._take(names, echo)
+        return frame
+
+    def _take(self, names: set[str], echo: int | None) -> Frame | None:
+        for frame in self.backlog:
+            if frame.message.name in names and echo in (None, frame.values["echo_sequence"]):
+                self.backlog.remove(frame)
+                return frame
         return None
 
     def _write(self, data: bytes) -> None:
