@@ -72,12 +72,12 @@ def _solve(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ..
 
 
 def _middle(limits: tuple[sympy.Expr, sympy.Expr], values: Values) -> float:
-    return float(sum(limit.subs(values) for limit in limits)) / 2.0
+    return float(sum(limit.xreplace(values) for limit in limits)) / 2.0
 
 
 def _check_stops(bound: BoundPlant, axis: Axis, position: float, values: Values) -> None:
-    lower = -np.inf if axis.lower is None else float(axis.lower.subs(values))
-    upper = np.inf if axis.upper is None else float(axis.upper.subs(values))
+    lower = -np.inf if axis.lower is None else float(axis.lower.xreplace(values))
+    upper = np.inf if axis.upper is None else float(axis.upper.xreplace(values))
     if not lower <= position <= upper:
         raise BadInput(
             f"{axis.name} angle",
@@ -90,7 +90,7 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float, values: Values)
 
 def _check_inputs(bound: BoundPlant, u0: Array, values: Values, positions_rad: tuple[float, ...]) -> None:
     for variable, value in zip(bound.model.inputs, u0, strict=True):
-        lower, upper = (float(limit.subs(values)) for limit in bound.model.input_limits[variable])
+        lower, upper = (float(limit.xreplace(values)) for limit in bound.model.input_limits[variable])
         if not lower <= value <= upper:
             raise BadInput(
                 f"input {variable}",
