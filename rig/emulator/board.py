@@ -1,0 +1,279 @@
+"""The emulated STM32G071 board: the unmodified ELF runs on it in virtual time."""
+
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from rig.emulator import calls
+from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm, ReceivedByte, Reset
+from rig.emulator.coverage import LineCounts, lines_executed
+from rig.emulator.image import FLASH_BYTES, SRAM_BYTES, Image
+from rig.emulator.native import library
+from rig.emulator.stops import Stop, describe
+
+PS_PER_S = 10**12
+NEVER = 2**64 - 1
+TIMER_INDEX = {1: 0, 2: 1, 3: 2, 6: 3, 7: 4}
+RESET_CODES = {"pin": 1 << 26, "power": 1 << 27, "software": 1 << 28, "watchdog": 1 << 29}
+CCER, ARR, CCR1, CCR2, BDTR = 8, 11, 13, 14, 17  # word offsets, RM0444 22.4
+
+
+class EmulatedBoard:
+    """One STM32G071 with an image in its flash; several boards may live side by side.
+
+    Time is virtual and moves only in `run_*` calls; the same calls give the same cycles and bytes again.
+    Limits: GPIO A-C, TIM1/2/3/6/7, USART2 (8N1, no FIFO), IWDG, RCC, SysTick, NVIC; any other register stops the run.
+    """
+
+    def __init__(self, elf: bytes | Path, config: BoardConfig | None = None) -> None:
+        self.config = config or BoardConfig()
+        self._ffi, self._lib = library()
+        self.load(elf)
+
+    def load(self, elf: bytes | Path) -> None:
+        """Put another image into flash and power the board up afresh; raises BadInput for what is no image."""
+        self.image = Image(elf, "image in memory") if isinstance(elf, bytes) else Image.from_file(elf)
+        config = self.config
+        machine = self._lib.emulator_create(self.image.flash, FLASH_BYTES, list(config.unique_id))
+        self._finalizer = weakref.finalize(self, self._lib.emulator_destroy, machine)
+        self._machine = machine
+        limit = self.image.symbols.get("_stack_limit") if config.check_stack_limit else None
+        self._lib.emulator_configure(
+            machine,
+            config.stop_on_fault,
+            config.stop_on_reset,
+            limit.address if limit else 0,
+            round(PS_PER_S / config.host_baud),
+        )
+        self._lib.emulator_reset(machine, RESET_CODES["power"])
+
+    def set_host_baud(self, baud: int) -> None:
+        """Change the speed at which the host's end of the line sends and samples."""
+        self._lib.emulator_set_host_bit(self._machine, round(PS_PER_S / baud))
+
+    def reset(self) -> None:
+        """Pull the reset pin; RAM keeps its content."""
+        self._lib.emulator_reset(self._machine, RESET_CODES["pin"])
+
+    # --- time ---
+
+    def run_for(self, cycles: int) -> Stop:
+        """Run until `cycles` more core cycles have passed, or something stops the run earlier."""
+        return self._run(self.cycles + cycles, NEVER, NEVER)
+
+    def run_until_s(self, t_s: float) -> Stop:
+        """Run until virtual time `t_s`, counted from power-on."""
+        return self._run(NEVER, round(t_s * PS_PER_S), NEVER)
+
+    def run_until_bytes(self, count: int, t_s: float) -> Stop:
+        """Run until `count` bytes wait for `uart_read`, but not beyond virtual time `t_s`."""
+        return self._run(NEVER, round(t_s * PS_PER_S), count)
+
+    def run_until_symbol(self, name: str, t_s: float) -> Stop:
+        """Run until the instruction at symbol `name` is next, but not beyond virtual time `t_s`."""
+        address = self.symbol(name)[0]
+        self._lib.emulator_break(self._machine, address, 1)
+        stop = self.run_until_s(t_s)
+        self._lib.emulator_break(self._machine, address, 0)
+        return stop
+
+    def _run(self, limit_cycle: int, limit_ps: int, host_bytes: int) -> Stop:
+        if host_bytes and self._status().host_bytes >= host_bytes:
+            return describe(self.image, 2, self._status().pc, 0, 0)
+        self._lib.emulator_run(self._machine, limit_cycle, limit_ps, host_bytes)
+        status = self._status()
+        return describe(self.image, status.stop_kind, status.stop_pc, status.stop_address, status.stop_detail)
+
+    def _status(self) -> Any:
+        status = self._ffi.new("machine_status *")
+        self._lib.emulator_status(self._machine, status)
+        return status
+
+    @property
+    def time_s(self) -> float:
+        """Virtual time since power-on."""
+        return float(self._status().time_ps / PS_PER_S)
+
+    @property
+    def cycles(self) -> int:
+        """Core cycles since power-on, flash without wait states."""
+        return int(self._status().cycles)
+
+    @property
+    def instructions(self) -> int:
+        """Executed instructions, those of `call` included."""
+        return int(self._status().instructions)
+
+    @property
+    def flash_stalls(self) -> int:
+        """Flash accesses that the prefetch buffer cannot foresee: taken branches, exception entries, data reads."""
+        return int(self._status().flash_stalls)
+
+    @property
+    def clock_hz(self) -> int:
+        """Core clock."""
+        return int(self._status().clock_hz)
+
+    @property
+    def stack_bytes(self) -> int:
+        """Deepest use of the main stack so far, exception frames included."""
+        return int.from_bytes(self.image.flash[:4], "little") - int(self._status().lowest_sp_main)
+
+    # --- serial line ---
+
+    def uart_write(self, data: bytes, earliest_s: float = 0.0) -> None:
+        """Send bytes to the board at the host's speed, from `earliest_s` or as soon as the line is free."""
+        self._lib.emulator_send(self._machine, data, len(data), round(earliest_s * PS_PER_S))
+
+    def uart_line_free_s(self) -> float:
+        """When all bytes sent to the board so far have passed the line."""
+        return float(self._lib.emulator_line_free_ps(self._machine) / PS_PER_S)
+
+    def uart_waiting(self) -> int:
+        """Number of bytes that `uart_read` would give."""
+        return int(self._status().host_bytes)
+
+    def uart_read_timed(self, most: int | None = None) -> list[ReceivedByte]:
+        """Bytes that have completely left the board, each with the end of its stop bit."""
+        count = self.uart_waiting() if most is None else min(most, self.uart_waiting())
+        values, ends, errors = (self._ffi.new(f"{kind}[]", count) for kind in ("uint8_t", "uint64_t", "uint8_t"))
+        got = self._lib.emulator_receive(self._machine, values, ends, errors, count)
+        return [
+            ReceivedByte(values[i], ends[i] / PS_PER_S, bool(errors[i] & 1), bool(errors[i] & 2)) for i in range(got)
+        ]
+
+    def uart_read(self, most: int | None = None) -> bytes:
+        """Bytes that have completely left the board."""
+        return bytes(byte.value for byte in self.uart_read_timed(most))
+
+    # --- pins ---
+
+    def set_encoder(self, timer: int, counts: int) -> None:
+        """Turn the encoder on TIM2 or TIM3 to an absolute count; CNT becomes `counts` modulo ARR + 1."""
+        self._lib.emulator_set_encoder(self._machine, TIMER_INDEX[timer], counts)
+
+    def timer_register(self, timer: int, word: int) -> int:
+        """A timer's register by word offset (CNT is 9)."""
+        return int(self._lib.emulator_timer_register(self._machine, TIMER_INDEX[timer], word))
+
+    def pwm(self) -> Pwm:
+        """What TIM1 puts out on its channels 1 (main) and 2 (tail)."""
+        enabled = self.timer_register(1, CCER)
+        return Pwm(
+            main_ticks=self.timer_register(1, CCR1),
+            tail_ticks=self.timer_register(1, CCR2),
+            period_ticks=self.timer_register(1, ARR) + 1,
+            enabled=bool(self.timer_register(1, BDTR) >> 15 & 1),
+            channels_enabled=(bool(enabled & 1), bool(enabled >> 4 & 1)),
+        )
+
+    def gpio(self, port: str) -> Gpio:
+        """Mode and output latch of port "A", "B" or "C"."""
+        mode, output = self._ffi.new("uint32_t *"), self._ffi.new("uint32_t *")
+        self._lib.emulator_gpio(self._machine, "ABC".index(port), mode, output)
+        return Gpio(mode[0], output[0])
+
+    def drive_pin(self, port: str, pin: int, level: bool) -> None:
+        """Put a level on an input pin from outside."""
+        self._lib.emulator_drive_pins(self._machine, "ABC".index(port), 1 << pin, int(level) << pin)
+
+    # --- what happened ---
+
+    @property
+    def resets(self) -> list[Reset]:
+        """Resets so far, the power-on first (the last 64 are kept)."""
+        causes, times = self._ffi.new("uint32_t[64]"), self._ffi.new("uint64_t[64]")
+        names = {code: name for name, code in RESET_CODES.items()}
+        kept = self._lib.emulator_resets(self._machine, causes, times)
+        return [Reset(names[causes[i]], times[i] / PS_PER_S) for i in range(kept)]
+
+    def exception_counts(self) -> dict[int, int]:
+        """How often each exception number was taken (16 + n is interrupt n)."""
+        counts = self._ffi.new("uint64_t[48]")
+        self._lib.emulator_exception_counts(self._machine, counts)
+        return {number: int(counts[number]) for number in range(48) if counts[number]}
+
+    def execution_counts(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
+        """Executions per halfword of flash and of SRAM."""
+        flash, sram = np.zeros(FLASH_BYTES // 2, np.uint64), np.zeros(SRAM_BYTES // 2, np.uint64)
+        cast = self._ffi.cast
+        self._lib.emulator_execution_counts(
+            self._machine, cast("uint64_t *", flash.ctypes.data), cast("uint64_t *", sram.ctypes.data)
+        )
+        return flash, sram
+
+    def coverage(self) -> LineCounts:
+        """Executions per source line, by function: `{function: {(file, line): count}}`, lines never reached with 0."""
+        return lines_executed(self.image, self.execution_counts()[0])
+
+    # --- memory and functions ---
+
+    def symbol(self, name: str) -> tuple[int, int]:
+        """(address, size) of a name in the image; raises BadInput when it has none such."""
+        found = self.image.symbols.get(name)
+        if found is None:
+            raise BadInput(
+                "symbol",
+                self.image.where,
+                f"no `{name}`",
+                "a symbol of the image",
+                "build the image with its symbol table",
+            )
+        return found.address, found.size
+
+    def read_memory(self, address: int, size: int) -> bytes:
+        """Bytes of flash or SRAM; raises BadInput elsewhere."""
+        out = self._ffi.new("uint8_t[]", size)
+        if not self._lib.emulator_read(self._machine, address, out, size):
+            raise _no_memory(address, size)
+        return bytes(self._ffi.buffer(out))
+
+    def write_memory(self, address: int, data: bytes) -> None:
+        """Change bytes of flash or SRAM as a debugger would; raises BadInput elsewhere."""
+        if not self._lib.emulator_write(self._machine, address, data, len(data)):
+            raise _no_memory(address, len(data))
+
+    def registers(self) -> list[int]:
+        """r0-r15, xPSR, PRIMASK, CONTROL, MSP, PSP."""
+        out = self._ffi.new("uint32_t[21]")
+        self._lib.emulator_registers(self._machine, out)
+        return list(out)
+
+    def set_registers(self, values: Sequence[int]) -> None:
+        """Set r0-r15 and the flags (bits 31:28 of the 17th value)."""
+        self._lib.emulator_set_registers(self._machine, list(values))
+
+    def scratch_address(self) -> int:
+        """First free RAM behind the image's data, aligned to 8 bytes: room for arguments of `call`."""
+        return (self.image.ram_end + 7) & ~7
+
+    def call(self, name: str, *arguments: int, max_cycles: int = 64_000_000) -> CallResult:
+        """Run one function to its return with interrupts off and peripherals halted (AAPCS: up to 4 words in r0-r3)."""
+        return calls.call(self, self._machine, name, arguments, max_cycles)
+
+    def call_many(
+        self,
+        name: str,
+        arguments: Sequence[int],
+        inputs: Sequence[tuple[int, NDArray[Any]]],
+        outputs: Sequence[tuple[int, int]],
+        steps: int,
+        max_cycles: int = 64_000_000,
+    ) -> CallsResult:
+        """Call a function `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched."""
+        return calls.call_many(self, self._machine, name, arguments, inputs, outputs, steps, max_cycles)
+
+
+def _no_memory(address: int, size: int) -> BadInput:
+    return BadInput(
+        "memory access",
+        "emulated board",
+        f"{size} bytes at 0x{address:08x}",
+        "a range inside flash or SRAM",
+        "check the address",
+    )

@@ -1,0 +1,161 @@
+"""An ELF image as the emulated board and its messages need it: flash content, symbols, source lines."""
+
+import bisect
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from elftools.common.exceptions import ELFError
+from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import SymbolTableSection
+
+from records.errors import BadInput
+
+FLASH_BASE = 0x08000000
+FLASH_BYTES = 0x20000
+SRAM_BASE = 0x20000000
+SRAM_BYTES = 0x8000
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A name of the image: where it stands, how long it is, whether it is code."""
+
+    name: str
+    address: int
+    size: int
+    is_function: bool
+
+
+@dataclass(frozen=True)
+class SourceLine:
+    """One row of the line table: this line begins at `address`."""
+
+    address: int
+    file: str
+    line: int
+
+
+class Image:
+    """A linked ARM ELF file; `elf` is its bytes, `where` names it in messages.
+
+    Raises BadInput when it is not a 32-bit ARM ELF with content in flash.
+    """
+
+    def __init__(self, elf: bytes, where: str) -> None:
+        self.where = where
+        try:
+            self._elf = ELFFile(io.BytesIO(elf))
+        except ELFError as error:
+            raise _not_an_image(where, str(error)) from error
+        if self._elf["e_machine"] != "EM_ARM" or self._elf["e_ident"]["EI_CLASS"] != "ELFCLASS32":
+            raise _not_an_image(where, f"{self._elf['e_machine']}, {self._elf['e_ident']['EI_CLASS']}")
+        self.flash = self._flash_content()
+
+    @classmethod
+    def from_file(cls, path: Path) -> "Image":
+        """Read the image at `path`; raises BadInput when there is none."""
+        try:
+            return cls(path.read_bytes(), str(path))
+        except OSError as error:
+            raise _not_an_image(str(path), error.strerror or str(error)) from error
+
+    def _flash_content(self) -> bytes:
+        content = bytearray(b"\xff" * FLASH_BYTES)
+        loaded = 0
+        for segment in self._elf.iter_segments("PT_LOAD"):
+            start, data = segment["p_paddr"] - FLASH_BASE, segment.data()
+            if not data or not 0 <= start <= FLASH_BYTES - len(data):
+                continue
+            content[start : start + len(data)] = data
+            loaded += len(data)
+        if loaded < 8:
+            raise _not_an_image(self.where, "no content in flash")
+        return bytes(content)
+
+    @cached_property
+    def symbols(self) -> dict[str, Symbol]:
+        """Named functions, objects and linker symbols."""
+        table = self._elf.get_section_by_name(".symtab")
+        if not isinstance(table, SymbolTableSection):
+            return {}
+        return {symbol.name: symbol for symbol in _named(table)}
+
+    @cached_property
+    def functions(self) -> list[Symbol]:
+        """Functions in order of address."""
+        return sorted((s for s in self.symbols.values() if s.is_function), key=lambda s: s.address)
+
+    @cached_property
+    def lines(self) -> list[SourceLine]:
+        """The line table of all compilation units in order of address; empty without debug information."""
+        return sorted(self._line_rows(), key=lambda row: row.address)
+
+    @cached_property
+    def ram_end(self) -> int:
+        """First address behind everything the image places in RAM."""
+        ends = [
+            s["sh_addr"] + s["sh_size"]
+            for s in self._elf.iter_sections()
+            if s["sh_flags"] & 2 and s["sh_addr"] >= SRAM_BASE
+        ]
+        return max([SRAM_BASE, *ends])
+
+    def function_at(self, address: int) -> Symbol | None:
+        """The function that holds `address`."""
+        at = bisect.bisect_right([f.address for f in self.functions], address) - 1
+        found = self.functions[at] if at >= 0 else None
+        return found if found and address < found.address + max(found.size, 2) else None
+
+    def line_at(self, address: int) -> SourceLine | None:
+        """The source line of the instruction at `address`."""
+        at = bisect.bisect_right([row.address for row in self.lines], address) - 1
+        found = self.lines[at] if at >= 0 else None
+        return found if found and found.line else None
+
+    def place(self, address: int) -> str:
+        """`0x08000123 in main at main.c:42`, as far as the image knows."""
+        function, row = self.function_at(address), self.line_at(address)
+        inside = f" in {function.name}" if function else ""
+        return f"0x{address:08x}{inside}" + (f" at {row.file}:{row.line}" if row and function else "")
+
+    def _line_rows(self) -> Iterator[SourceLine]:
+        if not self._elf.has_dwarf_info():
+            return
+        dwarf = self._elf.get_dwarf_info()
+        for unit in dwarf.iter_CUs():
+            program = dwarf.line_program_for_CU(unit)
+            if program is None:
+                continue
+            first = 0 if program["version"] >= 5 else 1
+            files = [entry.name.decode() for entry in program["file_entry"]]
+            for entry in program.get_entries():
+                state = entry.state
+                if state is None:
+                    continue
+                number = state.file - first
+                name = files[number] if 0 <= number < len(files) else "?"
+                yield SourceLine(state.address, name, 0 if state.end_sequence else state.line)
+
+
+def _named(table: SymbolTableSection) -> Iterator[Symbol]:
+    for entry in table.iter_symbols():
+        kind = entry["st_info"]["type"]
+        if (
+            entry.name
+            and entry["st_shndx"] != "SHN_UNDEF"
+            and kind in ("STT_FUNC", "STT_OBJECT", "STT_NOTYPE")
+            and entry.name[0] != "$"
+        ):
+            is_function = kind == "STT_FUNC"
+            yield Symbol(
+                entry.name, entry["st_value"] & ~1 if is_function else entry["st_value"], entry["st_size"], is_function
+            )
+
+
+def _not_an_image(where: str, got: str) -> BadInput:
+    return BadInput(
+        "firmware image", where, got, "a 32-bit ARM ELF linked for flash at 0x08000000", "build it with `twinlaw build`"
+    )

@@ -1,0 +1,50 @@
+#include "reset.h"
+
+#include <string.h>
+
+#include "code.h"
+#include "fault.h"
+#include "peripherals.h"
+#include "schedule.h"
+
+#define RCC_CSR 24u
+#define RESET_CYCLES 0u /* the internal reset pulse of 20 us is not modelled */
+
+static uint32_t word_at(const machine *m, uint32_t offset) {
+    uint32_t word;
+    memcpy(&word, m->flash + offset, sizeof word);
+    return word;
+}
+
+/* Every internal reset also pulls the reset pin (RM0444 5.1.2). */
+static void note_cause(machine *m, uint32_t cause) {
+    m->device.rcc.reg[RCC_CSR] |= cause | RESET_PIN;
+    m->count.resets[m->count.resets_total % RESETS_KEPT] = (reset_record){cause, m->device.clock.hz ? now_ps(m) : 0};
+    m->count.resets_total++;
+}
+
+/* The core starts with the stack pointer and the address that stand first in flash (DDI0419 B1.5.5). */
+static void core_reset(machine *m) {
+    uint64_t now = m->core.now;
+    m->core = (core_state){.now = now, .z = 1};
+    m->core.r[13] = word_at(m, 0) & ~3u;
+    m->core.r[14] = 0xFFFFFFFFu;
+    if (m->count.lowest_sp[MAIN_STACK] > m->core.r[13] || m->count.lowest_sp[MAIN_STACK] == 0) m->count.lowest_sp[MAIN_STACK] = m->core.r[13];
+    go_to(m, word_at(m, 4));
+}
+
+void machine_reset(machine *m, uint32_t cause) {
+    note_cause(m, cause);
+    m->device.reset_request = 0;
+    rcc_reset(m);
+    m->device.systick = (systick_state){0};
+    m->device.due[DEV_SYSTICK] = NEVER;
+    gpio_reset(m);
+    timers_reset(m);
+    usart_reset(m);
+    iwdg_reset(m);
+    core_reset(m);
+    bool at_power_on = m->count.resets_total == 1;
+    if (m->stop_on_reset && !at_power_on) stop_run(m, STOP_RESET, 0, cause);
+    attention(m);
+}
