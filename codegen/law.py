@@ -58,6 +58,11 @@ class Axis:
     feedforward: str
     terms: tuple[Term, ...]
 
+    @property
+    def scheduled(self) -> bool:
+        """True when any coefficient varies with psi."""
+        return any("schedule_rad" in term.value for term in self.terms)
+
 
 def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c.

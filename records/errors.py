@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)  # not frozen: a context manager that an exception passes through sets its traceback
 class BadInput(Exception):
     """Input that cannot be used: what it is, where it stands, what was found, what was expected, what to do (exit status 2)."""
 

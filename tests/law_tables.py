@@ -1,7 +1,11 @@
-"""Controller tables for tests, placed here with NumPy alone so that they need no design stage."""
+"""Controller tables for tests, placed here with NumPy and SciPy so that they need no design stage."""
+
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import cont2discrete
 
 from records.table import AxisLaw, ControllerTable, Polynomial
 
@@ -10,6 +14,7 @@ RESOLUTION_RAD = 2.0 * np.pi / 4096.0
 PSI_GRID_RAD = np.radians(np.arange(-40.0, 41.0, 5.0))
 
 
+@cache
 def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> ControllerTable:
     """Like the CE150 of facts/ce150.md C4: an integrating elevation (dom2/int) and an azimuth without (eq4/q3)."""
     elevation_poles = np.exp(SAMPLE_PERIOD_S * np.array([-3.0, -4.0, -7.0, -12.0, -15.0, -20.0]))
@@ -75,8 +80,6 @@ def _azimuth_plant(psi_rad: float) -> NDArray[np.float64]:
 
 def _sampled(plant: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Zero-order hold of a third-order plant: B and A in powers of z^-1."""
-    from scipy.signal import cont2discrete
-
     numerator, denominator, _ = cont2discrete((plant[0][-1:], plant[1]), SAMPLE_PERIOD_S)
     B = np.asarray(numerator).ravel()
     return np.concatenate([np.zeros(4 - len(B)), B]), np.asarray(denominator)
@@ -114,3 +117,35 @@ def _recursion_delta_form(P: NDArray[np.float64]) -> NDArray[np.float64]:
     """p_0, p_1, p_2 of P = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2]."""
     bracket = _delta_form(-np.asarray(P)[1:])
     return np.array([1.0 - bracket[0], bracket[1], bracket[2]])
+
+
+@cache
+def dense_table(seed: int = 3) -> ControllerTable:
+    """A table in which every term is present and every coefficient moves the last digits of the result; it need not fly."""
+    rng = np.random.default_rng(seed)
+    table = ce150_table()
+    for name in ("elevation", "azimuth"):
+        axis = table.elevation if name == "elevation" else table.azimuth
+        table = changed_axis(
+            table,
+            name,
+            q_V_rad=tuple(_dense(scale, rng) for scale in (2.0, 5.0, 20.0, 80.0)),
+            p=tuple(_dense(scale, rng) for scale in (0.1, 0.9, 0.6)),
+            a=(0.125, 0.5, 0.125),
+            feedforward_V=_dense(0.3 * axis.u_max_V, rng)[:3],
+        )
+    return table
+
+
+def changed_axis(table: ControllerTable, name: str, **change: object) -> ControllerTable:
+    """`table` with fields of one axis replaced."""
+    axis = table.elevation if name == "elevation" else table.azimuth
+    changed: ControllerTable = replace(table, **{name: replace(axis, **change)})  # type: ignore[arg-type]
+    return changed
+
+
+def _dense(scale: float, rng: np.random.Generator) -> Polynomial:
+    return (
+        scale,
+        *(float(scale * sign * size) for sign, size in zip((1, -1, 1), rng.uniform(0.2, 0.6, 3), strict=True)),
+    )

@@ -91,9 +91,9 @@ class HostLaw:
         return bytes(self._lib.LAW_TABLE_DIGEST).hex()
 
     def _pointer(self, array: NDArray[Any]) -> Any:
-        # A strided view would be read as if it were dense.
-        if not array.flags["C_CONTIGUOUS"]:
-            raise ValueError("arrays for the C must be contiguous")
+        # The C would read a strided view, or numbers of another width, as if they were dense 32-bit words.
+        if not array.flags["C_CONTIGUOUS"] or array.itemsize != 4:
+            raise ValueError(f"arrays for the C must be contiguous and of 32-bit words, not {array.dtype}")
         return self._ffi.cast("void *", array.ctypes.data)
 
 

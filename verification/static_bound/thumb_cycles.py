@@ -1,0 +1,62 @@
+"""Cycles of each Thumb instruction on a Cortex-M0+ with the single-cycle multiplier (DDI0484C table 3-1), and its flash stalls."""
+
+from typing import NamedTuple
+
+from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
+
+FLASH_LINE_BYTES = 8
+WAIT_STATES = 2  # 64 MHz, voltage range 1 (RM0444 3.3.4)
+
+
+class Cycles(NamedTuple):
+    """Cycles without wait states, and with the two of 64 MHz."""
+
+    zero_wait: int
+    two_wait: int
+
+    def __add__(self, other: tuple[int, ...]) -> "Cycles":
+        return Cycles(self.zero_wait + other[0], self.two_wait + other[1])
+
+    def most(self, other: "Cycles") -> "Cycles":
+        """The larger of each figure; they may belong to different paths."""
+        return Cycles(max(self.zero_wait, other.zero_wait), max(self.two_wait, other.two_wait))
+
+
+NO_CYCLES = Cycles(0, 0)
+_TWO = frozenset({"bx", "blx", "b", "mov_pc", "add_pc"}) | LOADS | STORES | {"ldr_literal"}
+_THREE = frozenset({"bl", "msr", "mrs", "barrier"})
+_MULTIPLE = frozenset({"push", "pop", "ldm", "stm"})
+
+
+def instruction_cycles(instruction: Instruction, taken: bool = True) -> int:
+    """Cycles at zero wait states; `taken` matters to conditional branches only.
+
+    Where sources disagree the slower count stands: PUSH with lr 1 + N, POP with pc 3 + N, N counting lr or pc.
+    """
+    if instruction.op in _MULTIPLE:
+        return len(instruction.registers) + (3 if PC in instruction.registers else 1)
+    if instruction.op == "b_if":
+        return 2 if taken else 1
+    if instruction.op in _TWO:
+        return 2
+    return 3 if instruction.op in _THREE else 1
+
+
+def jump_stalls(target: int) -> int:
+    """Most wait states that a jump to `target` costs.
+
+    A prefetch in flight must end (2), the target's 64-bit line is read (2); where the target lies in the upper half of that
+    line, its successor is wanted before the prefetch has it (2). Straight code costs none: a line holds four instructions,
+    four cycles or more, and the prefetch buffer has the next one after three.
+    """
+    late_successor = target % FLASH_LINE_BYTES >= FLASH_LINE_BYTES // 2
+    return WAIT_STATES * (3 if late_successor else 2)
+
+
+def data_stalls(instruction: Instruction, may_read_flash: bool) -> int:
+    """Most wait states of a data access: for each word read from flash the prefetch ends (2), the read (2), the prefetch begins anew (2)."""
+    if instruction.op == "ldr_literal":
+        return 3 * WAIT_STATES
+    if instruction.op in LOADS and instruction.n != SP and may_read_flash:
+        return 3 * WAIT_STATES
+    return 3 * WAIT_STATES * len(instruction.registers) if instruction.op == "ldm" and may_read_flash else 0
