@@ -80,7 +80,7 @@ def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> 
         strict=True,
     )
     is_float = one.arithmetic == "float32"
-    unequal = differing(outputs[0], outputs[1], is_float).any(axis=-1)
+    unequal: NDArray[np.bool_] = np.any(differing(outputs[0], outputs[1], is_float), axis=-1)
     mismatches = int(unequal.sum())
     if mismatches:
         return mismatches, _first_output(stimulus, unequal, outputs)
@@ -94,12 +94,14 @@ def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> 
 
 def differing(one: Bits, other: Bits, is_float: bool) -> NDArray[np.bool_]:
     """Where the bits differ and, for floats, not both are NaN: its payload is the processor's business."""
-    unequal = one != other
-    return unequal & ~(_is_nan(one) & _is_nan(other)) if is_float else unequal
+    unequal = np.not_equal(one, other)
+    if not is_float:
+        return unequal
+    return np.logical_and(unequal, ~(_is_nan(one) & _is_nan(other)))
 
 
 def _is_nan(bits: Bits) -> NDArray[np.bool_]:
-    return (bits & np.uint32(0x7FFFFFFF)) > np.uint32(0x7F800000)
+    return np.greater(bits & np.uint32(0x7FFFFFFF), np.uint32(0x7F800000))
 
 
 def _first_output(stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: Sequence[Bits]) -> FirstMismatch:

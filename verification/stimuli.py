@@ -15,28 +15,9 @@ Numbers = NDArray[np.float32]
 # Quiet and signalling NaN with payloads, infinities, zeros, least and largest subnormal, least normal, largest, ordinary.
 SPECIAL_BITS = np.array(
     [
-        0x7FC00000,
-        0xFFC12345,
-        0x7F800001,
-        0xFF812345,
-        0x7F800000,
-        0xFF800000,
-        0x00000000,
-        0x80000000,
-        0x00000001,
-        0x80000001,
-    ]
-    + [
-        0x007FFFFF,
-        0x807FFFFF,
-        0x00800000,
-        0x7F7FFFFF,
-        0xFF7FFFFF,
-        0x3F800000,
-        0x3DCCCCCD,
-        0xC1200000,
-        0x4B800000,
-        0x35800000,
+        *(0x7FC00000, 0xFFC12345, 0x7F800001, 0xFF812345, 0x7F800000, 0xFF800000, 0x00000000, 0x80000000),
+        *(0x00000001, 0x80000001, 0x007FFFFF, 0x807FFFFF, 0x00800000, 0x7F7FFFFF, 0xFF7FFFFF),
+        *(0x3F800000, 0x3DCCCCCD, 0xC1200000, 0x4B800000, 0x35800000),
     ],
     dtype=np.uint32,
 )

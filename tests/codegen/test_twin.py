@@ -22,13 +22,13 @@ def test_at_constant_elevation_the_law_is_the_direct_form_of_its_polynomials(tab
     """Truth: A v = Q e + (A - P) s in powers of z^-1, float64, both axes in and out of saturation, to 1e-9 V."""
     table = _unfiltered(table)
     rng = np.random.default_rng(4)
-    references = np.repeat(rng.uniform(-0.05, 0.05, (40, 2)), 10, axis=0) + (PSI_RAD, 0.0)
+    references = np.repeat(rng.uniform(-0.05, 0.05, (40, 2)), 10, axis=0) + np.array([PSI_RAD, 0.0])
     outputs = _run_in_float64(table, references)
     for axis, column, angle in ((table.elevation, 0, PSI_RAD), (table.azimuth, 1, 0.0)):
         u_ff_V = np.polynomial.polynomial.polyval(references[:, 0], axis.feedforward_V)
         wanted = _direct_form(axis, references[:, column] - angle, u_ff_V)
         inside = (wanted > axis.u_min_V) & (wanted < axis.u_max_V)
-        assert 0.05 < inside.mean()
+        assert inside.mean() > 0.05
         assert np.abs(outputs[:, column] - wanted).max() < 1e-9
 
 
@@ -70,7 +70,7 @@ def test_a_broken_state_is_finite_after_three_samples_and_forgotten_within_fifte
     states = rng.integers(0, 2**32, (2000, STATE_WORDS), dtype=np.uint32)
     states, _ = twin.run(states, np.zeros((3, 2000, 4), dtype=np.uint32))
     assert np.isfinite(states.view(np.float32)).all()
-    states, outputs = twin.run(states, np.zeros((1497, 2000, 4), dtype=np.uint32))
+    states, _ = twin.run(states, np.zeros((1497, 2000, 4), dtype=np.uint32))
     axis = states.view(np.float32)[:, : len(AXIS_STATE_FIELDS)]
     by_name = dict(zip(AXIS_STATE_FIELDS, axis.T, strict=True))
     assert np.abs(by_name["s_0_V"]).max() <= 20.0
@@ -98,8 +98,10 @@ def test_a_missing_measurement_or_reference_is_replaced_by_the_last_accepted_one
         (5.0, 1600),
         (99.0, 3200),
         (-math.inf, -3200),
-    ]
-    + [(math.nan, 0), (1e-45, 0), (0.0046875, 2)],
+        (math.nan, 0),
+        (1e-45, 0),
+        (0.0046875, 2),
+    ],
 )
 def test_volts_become_the_nearest_pwm_tick_and_never_leave_full_scale(u_V: float, ticks: int) -> None:
     assert Float32Twin(ce150_table()).duty_tail(u_V) == ticks
