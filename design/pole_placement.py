@@ -97,12 +97,12 @@ def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Pl
 
 def _check_stable(controller: DirectForm, where: str) -> None:
     """Refuse poles of Q/P outside the unit circle; the root that P(1) = 0 puts at 1 is exact up to rounding."""
-    worst = max(controller_poles_z(controller), key=abs)
-    if abs(worst) > 1.0 + 1e-6:
+    worst = float(np.max(np.abs(controller_poles_z(controller))))
+    if worst > 1.0 + 1e-6:
         raise BadInput(
             "controller",
             where,
-            f"a pole of its own at z = {worst:.4g}",
+            f"a pole of its own with |z| = {worst:.4g}",
             "poles within the unit circle",
             "choose faster or slower poles, or another free_degree",
         )

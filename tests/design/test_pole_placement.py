@@ -1,0 +1,98 @@
+"""Eq (26) with each choice of its free degree, and the choices that only work on paper."""
+
+import numpy as np
+import pytest
+
+from design.direct_form import controller_poles_z, to_delta
+from design.discretise import transfer_function
+from design.linearise import linearise, subsystem
+from design.loop import closed_loop_poles, open_loop
+from design.margins import margins
+from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
+from records.errors import BadInput
+from sim.equilibrium import equilibrium
+from tests.design.helicopter import AZ_DOM, DOM, DOM2, SAMPLE_PERIOD_S, equal, helicopter, sampled
+
+EQ8 = equal(-8.0)
+
+
+def transfer(axis="elevation", psi_deg=0.0):
+    linear = linearise(helicopter(), equilibrium(helicopter(), np.radians(psi_deg)))
+    return transfer_function(subsystem(helicopter(), linear, axis), SAMPLE_PERIOD_S, axis)
+
+
+def wanted(poles):
+    return characteristic(poles_z(poles, SAMPLE_PERIOD_S))
+
+
+def placed(free, poles=EQ8, axis="elevation", psi_deg=0.0):
+    found = transfer(axis, psi_deg)
+    return place(found.b, found.a, wanted(poles), free, f"{axis} at {psi_deg:g} deg")
+
+
+@pytest.mark.parametrize(
+    ("name", "largest_q", "controller_pole", "sensitivity", "phase_margin_deg"),
+    [
+        ("integral", 619.0, 1.0, 1.97, 32.0),
+        ("q3_zero", 15.4, 0.909, 1.80, 42.0),
+        ("q0_zero", 15.6, 0.913, 1.85, 41.0),
+        ("q_nyquist_zero", 4.05, 0.911, 1.82, 41.0),
+    ],
+)
+def test_free_degree_gives_the_published_gain_and_margins(
+    name, largest_q, controller_pole, sensitivity, phase_margin_deg
+):
+    controller = placed(FREE_DEGREES[name]).controller
+    found = margins(open_loop(sampled("elevation", 0.0), to_delta(controller)))
+    assert np.max(np.abs(controller.q)) == pytest.approx(largest_q, rel=5e-3)
+    assert np.max(np.abs(controller_poles_z(controller))) == pytest.approx(controller_pole, abs=6e-4)
+    assert found.sensitivity == pytest.approx(sensitivity, abs=6e-3)
+    assert np.degrees(found.phase_rad) == pytest.approx(phase_margin_deg, abs=0.6)
+
+
+@pytest.mark.parametrize("poles", [DOM, DOM2, AZ_DOM, equal(-12.0)])
+@pytest.mark.parametrize("name", FREE_DEGREES)
+@pytest.mark.parametrize(("axis", "psi_deg"), [("elevation", -40.0), ("elevation", 40.0), ("azimuth", 20.0)])
+def test_closed_loop_has_the_wanted_polynomial_and_the_condition_holds(axis, psi_deg, poles, name):
+    found, free = transfer(axis, psi_deg), FREE_DEGREES[name]
+    placement = place(found.b, found.a, wanted(poles), free, axis)
+    controller = placement.controller
+    closed = np.convolve(found.a, controller.p) + np.convolve(found.b, controller.q)
+    unknowns = np.append(controller.p[1:], controller.q)
+    np.testing.assert_allclose(closed, wanted(poles), atol=1e-12)
+    assert abs(np.dot(free.row, unknowns) - free.value) < 1e-12 * np.max(np.abs(unknowns))
+    assert placement.condition < 200.0
+
+
+def test_distinct_poles_come_out_to_six_digits():
+    controller = to_delta(placed(FREE_DEGREES["integral"], DOM2).controller)
+    poles = closed_loop_poles(open_loop(sampled("elevation", 0.0), controller))
+    np.testing.assert_allclose(sorted(poles.real), sorted(DOM2), rtol=1e-6)
+
+
+def test_scaling_takes_the_condition_number_from_a_million_to_about_fifty():
+    found = transfer()
+    raw = np.vstack([sylvester(found.b, found.a), FREE_DEGREES["integral"].row])
+    assert 1e6 < np.linalg.cond(raw) < 1e7
+    assert 40.0 < placed(FREE_DEGREES["integral"]).condition < 65.0
+
+
+def test_least_norm_places_the_poles_on_paper_only_and_is_refused():
+    found = transfer()
+    scale = np.max(np.abs(found.b))
+    null = np.linalg.svd(sylvester(found.b / scale, found.a))[2][-1] * np.array([1.0] * 3 + [scale] * 4)
+    with pytest.raises(BadInput, match=r"elevation at 0 deg.*pole of its own with \|z\| = 1\.406") as caught:
+        placed(FreeDegree(tuple(null), 0.0, "least norm"))
+    assert "free_degree" in caught.value.remedy
+
+
+def test_p3_zero_is_refused_as_the_controller_is_unstable():
+    with pytest.raises(BadInput, match=r"pole of its own with \|z\| = 2\.2[34]"):
+        placed(FreeDegree((0, 0, 1, 0, 0, 0, 0), 0.0, "p_3 = 0"))
+
+
+def test_a_plant_whose_polynomials_share_a_root_is_refused_as_ill_conditioned():
+    shared = np.array([1.0, -0.9])
+    a, b = np.convolve(shared, [1.0, -1.8, 0.81]), np.append(0.0, np.convolve(shared, [1.0, 0.2]))
+    with pytest.raises(BadInput, match=r"azimuth at 5 deg.*condition number"):
+        place(b, a, wanted(EQ8), FREE_DEGREES["q3_zero"], "azimuth at 5 deg")
