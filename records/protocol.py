@@ -245,7 +245,7 @@ _TO_BOARD = (
         (*_REFERENCES, *_ANGLES),
     ),
     Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
-    Message("SELF_TEST", 0x07, True, "Run the law's self-test; refused while armed."),
+    Message("SELF_TEST", 0x07, True, "Ask for the result of the law's self-test, which the board runs once at its start."),
     Message(
         "PRESET",
         0x08,

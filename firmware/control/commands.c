@@ -95,15 +95,6 @@ static path_demand restart_law(path_state *self, const uint8_t *payload)
     return reply_result(self, PROTOCOL_TYPE_RESET_LAW, PROTOCOL_REASON_DONE);
 }
 
-static path_demand self_test(path_state *self)
-{
-    if (supervisor_is_armed(&self->supervisor)) {
-        return reply_result(self, PROTOCOL_TYPE_SELF_TEST, PROTOCOL_REASON_ARMED);
-    }
-    self->self_test_mismatches = law_self_test();
-    return reply(self, PROTOCOL_TYPE_SELF_TEST_RESULT);
-}
-
 static path_demand preset(path_state *self, const uint8_t *payload)
 {
     protocol_preset now;
@@ -135,7 +126,7 @@ path_demand command_obey(path_state *self, const link_frame *frame)
     case PROTOCOL_TYPE_GET_COUNTERS:
         return reply(self, PROTOCOL_TYPE_COUNTERS);
     case PROTOCOL_TYPE_SELF_TEST:
-        return self_test(self);
+        return reply(self, PROTOCOL_TYPE_SELF_TEST_RESULT);
     case PROTOCOL_TYPE_PRESET:
         return preset(self, frame->payload);
     case PROTOCOL_TYPE_RESET_LAW:

@@ -75,7 +75,7 @@ typedef struct {
     board_faults faults;
 } path_state;
 
-/* Disarmed, with the law's self-test run once. */
+/* Disarmed, with the law's self-test run once: it lasts longer than the watchdog waits, so never later. */
 void path_start(path_state *self, const board_identity *identity);
 
 /* Take one byte off the line and obey the command that it may complete. */

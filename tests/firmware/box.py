@@ -36,6 +36,11 @@ def word(value: float) -> int:
     return Float32Numbers().to_word(value, "1")
 
 
+def stand_in_law() -> dict[str, str]:
+    """The stand-in law's texts by file name."""
+    return {name: (HERE / name).read_text() for name in ("law.h", "law.c")}
+
+
 @cache
 def compiled() -> tuple[Any, Any]:
     """The control path as (ffi, lib)."""

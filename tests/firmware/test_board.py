@@ -1,0 +1,305 @@
+"""The real image on the emulated board: clocks, encoders, outputs, serial line at full speed, watchdog, faults."""
+
+import struct
+
+import pytest
+
+from codegen.law import generate_law
+from records.protocol import PROTOCOL
+from rig.emulator.answers import BoardConfig
+from rig.emulator.board import EmulatedBoard
+from rig.frames import Frame, FrameReceiver, encode_frame
+from rig.image import build_firmware
+from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
+from tests.law_tables import ce150_table
+
+BIT_S = 1.0 / 921_600
+TICK_S = 0.01
+WATCHDOG_S = 0.125
+LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
+RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+MODES = {choice.name: choice.code for choice in PROTOCOL.enumeration("mode").choices}
+STATES = {choice.code: choice.name for choice in PROTOCOL.enumeration("state").choices}
+CAUSES = {choice.code: choice.name for choice in PROTOCOL.enumeration("reset_cause").choices}
+INTERRUPTS_ON_AND_BRANCH_TO_SELF = bytes.fromhex("62b6fee7")
+
+
+class Desk:
+    """An emulated board on the desk with its host: frames there and back in virtual time."""
+
+    def __init__(self, elf: bytes, digest: bytes = DIGEST, config: BoardConfig | None = None) -> None:
+        self.board = EmulatedBoard(elf, config)
+        self.digest = digest
+        self.receiver = FrameReceiver(PROTOCOL)
+        self.sequence = 0
+        self.start()
+
+    def start(self) -> None:
+        """Let the board come up."""
+        self.board.run_until_s(self.board.time_s + 0.2)
+
+    def put(self, name: str, **values) -> bytes:
+        """The next frame's bytes."""
+        line = encode_frame(PROTOCOL, name, self.sequence, values)
+        self.sequence = (self.sequence + 1) & 0xFFFF
+        return line
+
+    def run(self, duration_s: float) -> list[Frame]:
+        """Let time pass; returns what the board said."""
+        stop = self.board.run_until_s(self.board.time_s + duration_s)
+        assert "end of the run" in str(stop)
+        return self.receiver.feed(self.board.uart_read())
+
+    def ask(self, name: str, **values) -> Frame:
+        """One frame and the first frame that echoes it."""
+        number = self.sequence
+        self.board.uart_write(self.put(name, **values))
+        frames = self.run(0.003)
+        return next(f for f in frames if f.values["echo_sequence"] == number and f.message.name != "TELEMETRY")
+
+    def arm(self, mode: str) -> None:
+        """Arm, which must succeed."""
+        assert self.ask("ARM", mode=MODES[mode], digest_head=self.digest[:8]).number("reason") == 0
+
+    def refer(self, psi_ref_rad: float) -> None:
+        """A reference with azimuth zero."""
+        self.board.uart_write(self.put("REFERENCE", psi_ref_rad=word(psi_ref_rad), phi_ref_rad=word(0.0)))
+
+    @property
+    def counters(self) -> dict:
+        return dict(self.ask("GET_COUNTERS").values)
+
+    @property
+    def state(self) -> str:
+        return STATES[self.ask("GET_COUNTERS").number("state")]
+
+    def hang(self) -> None:
+        """What a control step that never finishes does: the main loop stands still, interrupts go on."""
+        address = self.board.scratch_address()
+        self.board.write_memory(address, INTERRUPTS_ON_AND_BRANCH_TO_SELF)
+        registers = self.board.registers()
+        self.board.set_registers([*registers[:15], address, registers[16]])
+
+    def poke(self, name: str, value: int) -> None:
+        """Change a word of RAM."""
+        self.board.write_memory(self.board.symbol(name)[0], struct.pack("<I", value & 0xFFFFFFFF))
+
+    def peek(self, name: str) -> int:
+        """Read a word of RAM."""
+        return int.from_bytes(self.board.read_memory(self.board.symbol(name)[0], 4), "little")
+
+
+@pytest.fixture(scope="module")
+def stand_in() -> bytes:
+    return build_firmware(stand_in_law()).elf
+
+
+@pytest.fixture(scope="module")
+def float32() -> bytes:
+    return build_firmware(generate_law(ce150_table())).elf
+
+
+@pytest.fixture
+def desk(stand_in) -> Desk:
+    return Desk(stand_in)
+
+
+def test_it_comes_up_at_64_MHz_with_every_output_off(desk):
+    pwm = desk.board.pwm()
+    assert desk.board.clock_hz == 64_000_000
+    assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks, pwm.period_ticks) == (False, 0, 0, 3200)
+    assert [desk.board.gpio("B").drives(pin) for pin in (0, 1)] == [False, False]
+    assert [desk.board.gpio("A").mode >> 2 * pin & 3 for pin in (0, 1, 2, 3, 6, 7, 8, 9)] == [2] * 8
+
+
+def test_it_tells_who_it_is(desk):
+    identity = desk.ask("IDENTIFY")
+    unique_id = b"".join(part.to_bytes(4, "little") for part in desk.board.config.unique_id)
+    assert identity.octets("unique_id") == unique_id
+    assert identity.octets("table_digest") == DIGEST
+    assert CAUSES[identity.number("reset_cause")] == "POWER"
+
+
+def test_its_clock_and_its_tick_keep_time(desk):
+    first = desk.ask("GET_COUNTERS").number("device_time_us")
+    start_s = desk.board.time_s
+    desk.run(1.0)
+    later = desk.ask("GET_COUNTERS").number("device_time_us")
+    assert later - first == pytest.approx((desk.board.time_s - start_s) * 1e6, abs=20)  # what the main loop needs to answer
+    assert desk.peek("ticks") == later // 10_000
+
+
+def test_flying_follows_the_encoders_over_the_wrap_of_the_16_bit_counter(desk):
+    desk.arm("FLYING")
+    seen = []
+    for turn in range(12):
+        desk.board.set_encoder(2, -500 * turn)
+        desk.board.set_encoder(3, -30_000 * turn)
+        desk.refer(0.0)
+        seen += [f for f in desk.run(TICK_S) if f.message.name == "TELEMETRY"]
+    last = seen[-1]
+    assert (last.number("psi_counts"), last.number("phi_counts")) == (-500 * 11, -30_000 * 11)
+    for turn in range(11, -12, -1):
+        desk.board.set_encoder(3, -30_000 * turn)
+        desk.refer(0.0)
+        seen += [f for f in desk.run(TICK_S) if f.message.name == "TELEMETRY"]
+    assert seen[-1].number("phi_counts") == 30_000 * 11
+
+
+@pytest.mark.parametrize("psi_ref_rad", [0.5, -0.5])
+def test_flying_drives_magnitude_and_direction(desk, psi_ref_rad):
+    desk.arm("FLYING")
+    desk.refer(psi_ref_rad)
+    desk.run(TICK_S)
+    pwm = desk.board.pwm()
+    assert (pwm.enabled, pwm.main_ticks) == (True, 1600)
+    assert desk.board.gpio("B").drives(0) is (psi_ref_rad < 0)
+    desk.ask("DISARM")
+    assert (desk.board.pwm().enabled, desk.board.pwm().main_ticks) == (False, 0)
+
+
+def test_in_the_loop_the_power_stage_stays_off_and_the_duties_follow(desk):
+    desk.arm("LOOP")
+    answer = desk.ask("SAMPLE", **sample_words(0.5, 0.25))
+    assert answer.number("u_M_V") == word(2.5)
+    assert (answer.number("duty_main_ticks"), desk.board.pwm().main_ticks) == (800, 800)
+    assert desk.board.pwm().enabled is False
+
+
+def test_a_silent_host_means_a_linear_ramp_to_zero_and_power_off(desk):
+    desk.arm("FLYING")
+    desk.refer(0.5)
+    desk.run(0.1 * TICK_S)
+    duties, powers = [], []
+    for _ in range(LOSS + RAMP + 1):
+        desk.run(TICK_S)
+        duties.append(desk.board.pwm().main_ticks)
+        powers.append(desk.board.pwm().enabled)
+    ramp = [1600 * left // RAMP for left in range(RAMP - 1, -1, -1)]
+    held = LOSS - 1
+    assert duties == [1600] * held + ramp + [0] * (len(duties) - held - RAMP)
+    assert powers == [True] * (held + RAMP - 1) + [False] * (len(powers) - held - RAMP + 1)
+    assert desk.state == "LOST"
+
+
+def test_no_byte_is_lost_at_full_line_speed_while_the_float_law_flies(float32):
+    desk = Desk(float32, bytes.fromhex(ce150_table().digest))
+    desk.arm("FLYING")
+    frames = 3000
+    desk.board.uart_write(
+        b"".join(desk.put("REFERENCE", psi_ref_rad=word(0.1), phi_ref_rad=word(0.0)) for _ in range(frames))
+    )
+    line_s = desk.board.uart_line_free_s() - desk.board.time_s
+    assert line_s == pytest.approx(frames * 18 * 10 * BIT_S, rel=0.01)
+    telemetry = [f for f in desk.run(line_s + 0.02) if f.message.name == "TELEMETRY"]
+    counted = desk.counters
+    assert counted["frames_accepted"] == frames + 2
+    for name in ("uart_overruns", "rx_ring_overflows", "crc_errors", "cobs_errors", "frames_lost", "tick_overruns"):
+        assert counted[name] == 0, name
+    assert len(telemetry) == pytest.approx(line_s / TICK_S, abs=4)
+    assert desk.receiver.received.noise == 0
+    law_time_s = telemetry[-1].number("law_cycles") / desk.board.clock_hz
+    assert law_time_s > 15 * 10 * BIT_S  # the law outlasts many bytes: only the receive interrupt can have saved them
+
+
+def test_stack_stays_far_from_its_limit(float32):
+    desk = Desk(float32, bytes.fromhex(ce150_table().digest))
+    desk.arm("FLYING")
+    for _ in range(20):
+        desk.refer(0.1)
+        desk.run(TICK_S)
+    assert desk.board.stack_bytes < 2048
+
+
+def test_line_errors_of_a_wrong_speed_are_counted_and_cleared(desk):
+    desk.board.set_host_baud(230_400)
+    desk.board.uart_write(bytes(range(1, 200)) + b"\0")
+    desk.run(0.02)
+    desk.board.set_host_baud(921_600)
+    desk.board.uart_write(b"\0")
+    assert desk.ask("IDENTIFY").message.name == "IDENTITY"
+    counted = desk.counters
+    assert counted["uart_framing_errors"] + counted["uart_noise_errors"] > 0
+    assert counted["uart_overruns"] == 0
+
+
+def test_a_late_main_loop_counts_every_tick_that_it_missed(desk):
+    desk.poke("ticks", desk.peek("ticks") + 3)
+    desk.run(2 * TICK_S)
+    assert desk.counters["tick_overruns"] == 3
+
+
+def test_a_receive_ring_that_is_full_counts_every_byte_that_it_lost(desk):
+    place = desk.board.registers()
+    desk.hang()
+    desk.board.uart_write(b"\x01" * 600)
+    desk.run(600 * 10 * BIT_S + 0.0005)
+    desk.board.set_registers([*place[:16], place[16]])
+    desk.run(TICK_S)  # until the ring is empty again
+    desk.board.uart_write(b"\0")
+    counted = desk.counters
+    assert counted["rx_ring_overflows"] == 600 - 512
+    assert counted["too_long"] == 1
+    assert counted["tick_overruns"] == 0
+
+
+def test_a_control_step_that_hangs_is_ended_by_the_watchdog_with_the_outputs_off(desk):
+    desk.arm("FLYING")
+    desk.refer(0.5)
+    desk.run(TICK_S)
+    assert desk.board.pwm().enabled
+    desk.hang()
+    hung_s = desk.board.time_s
+    desk.run(0.4)
+    first, second = desk.board.resets
+    assert (first.cause, second.cause) == ("power", "watchdog")
+    assert second.time_s - hung_s <= WATCHDOG_S
+    assert desk.board.pwm().enabled is False
+    identity = desk.ask("IDENTIFY")
+    assert CAUSES[identity.number("reset_cause")] == "WATCHDOG"
+    assert STATES[identity.number("state")] == "DISARMED"
+    assert desk.counters["resets"] == 1
+
+
+def test_a_healthy_board_is_never_reset_by_its_watchdog(desk):
+    desk.run(5.0)
+    assert [reset.cause for reset in desk.board.resets] == ["power"]
+
+
+def test_a_fault_turns_the_rotors_off_at_once(stand_in):
+    desk = Desk(stand_in, config=BoardConfig(stop_on_fault=False))
+    desk.arm("FLYING")
+    desk.refer(0.5)
+    desk.run(TICK_S)
+    desk.board.run_until_symbol("path_tick", desk.board.time_s + 2 * TICK_S)
+    assert desk.board.pwm().enabled
+    registers = desk.board.registers()
+    desk.board.set_registers([*registers[:15], 0x60000000, registers[16]])
+    desk.board.run_for(200)
+    assert desk.board.pwm().enabled is False
+    desk.board.run_until_s(desk.board.time_s + 0.4)
+    assert desk.board.resets[-1].cause == "watchdog"
+
+
+def test_the_reset_button_is_told_from_power(desk):
+    desk.board.reset()
+    desk.start()
+    desk.board.uart_read()
+    assert CAUSES[desk.ask("IDENTIFY").number("reset_cause")] == "PIN"
+
+
+def test_the_float_law_in_the_loop_says_how_long_it_took(float32):
+    desk = Desk(float32, bytes.fromhex(ce150_table().digest))
+    desk.arm("LOOP")
+    cycles = [desk.ask("SAMPLE", **sample_words(0.1, 0.0)).number("law_cycles") for _ in range(5)]
+    assert min(cycles) > 1000
+    assert max(cycles) < 64_000_000 * TICK_S
+
+
+def test_a_self_test_that_fails_on_the_board_forbids_arming():
+    failing = stand_in_law()
+    failing["law.c"] = failing["law.c"].replace("== 2.5f ? 0u : 1u", "== 2.5f ? 7u : 1u")
+    desk = Desk(build_firmware(failing).elf)
+    assert desk.ask("SELF_TEST").number("mismatches") == 7
+    result = desk.ask("ARM", mode=MODES["LOOP"], digest_head=DIGEST[:8])
+    assert result.number("reason") == PROTOCOL.enumeration("reason").code("SELF_TEST_FAILED")
