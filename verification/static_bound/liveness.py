@@ -6,7 +6,7 @@ A location is a register r0..r12 by its number, `FLAGS`, or a word of the stack 
 from collections.abc import Mapping
 
 from verification.static_bound.control_flow import FlowGraph
-from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
+from verification.static_bound.thumb import LOADS, SP, STORES, Instruction
 
 FLAGS = 16
 SLOTS = 1 << 20
@@ -45,9 +45,9 @@ def effects(i: Instruction, sp: int) -> tuple[Locations, Locations]:
             places = [slot(sp + 4 * k) for k in range(len(i.registers))]
             return frozenset(places), frozenset(i.registers) & REGISTERS
         case "ldm":
-            return frozenset({i.n}), frozenset(i.registers)
+            return frozenset({i.n}), frozenset({i.n, *i.registers})
         case "stm":
-            return frozenset({i.n, *i.registers}), NOTHING
+            return frozenset({i.n, *i.registers}), frozenset({i.n})
     reads = {i.m} if i.op in SOURCE_ONLY else {i.n, i.m}
     writes = {written_register(i)}
     if i.op in STORES:
@@ -56,7 +56,7 @@ def effects(i: Instruction, sp: int) -> tuple[Locations, Locations]:
         (reads if i.op in LOADS else writes).add(slot(sp + i.imm))
     if i.op in FLAG_READERS:
         reads.add(FLAGS)
-    if i.op in FLAG_WRITERS and not (i.op == "adds" and i.d == PC):
+    if i.op in FLAG_WRITERS:
         writes.add(FLAGS)
     return _locations(reads), _locations(writes)
 

@@ -54,7 +54,7 @@ def _by_top_bits(code: int, at: int) -> Instruction | None:
         return _shift_or_add(code, at)
     if top <= 3:
         op = ("movs", "cmp", "adds", "subs")[code >> 11 & 3]
-        return Instruction(at, 2, op, d=high, n=high, imm=imm8)
+        return Instruction(at, 2, op, d=high, n=-1 if op == "movs" else high, imm=imm8)
     if top == 4:
         return _data_processing(code, at)
     if top == 5:
