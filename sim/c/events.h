@@ -1,0 +1,25 @@
+/* Steps in which an axis stops, turns, breaks away or meets a stop. */
+#ifndef EVENTS_H
+#define EVENTS_H
+
+#include <stdint.h>
+
+enum { EVENT_NONE, EVENT_REST, EVENT_LOWER, EVENT_UPPER, EVENT_BREAK_UP, EVENT_BREAK_DOWN };
+
+#define MAX_EVENTS 16
+
+/* A stretch of a step without events in it, and the event of `axis` that ended it. */
+typedef struct {
+    double t_s, h_s;
+    int32_t axis, event;
+} event_piece;
+
+/* Advance one run by h_s through all events, at most MAX_EVENTS of them, after which its axes are held for the rest.
+ * `pieces` takes up to MAX_EVENTS + 1 stretches and may be NULL; returns how many there were. */
+int events_advance(double *x, double *sign, double *move, double t_s, double h_s, const double *u, const double *c,
+                   event_piece *pieces);
+
+/* Decide for every axis at its present state whether it moves or is held, and put it back between its stops. */
+void events_settle(double *x, double *sign, double *move, double t_s, const double *u, const double *c);
+
+#endif

@@ -1,0 +1,133 @@
+"""A model's equations as the C header `model.h` that the fixed kernels of sim/c include; a pure function of the model."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+import sympy
+
+from sim.assignments import Constants, assignments, constant_lines
+from sim.model import TIME, Model
+
+_ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
+
+
+def model_header(model: Model) -> str:
+    """C text of a model: sizes, constants of the parameters, rates with torques, outputs, Jacobians for the sensitivities."""
+    limits = [limit for row in _limits(model).values() for limit in row]
+    variables = frozenset((TIME, *model.states, *model.inputs, *model.friction_signs))
+    constants = Constants(variables, limits, reserved=len(limits))
+    functions = [_rates(model, constants), _outputs(model, constants), _jacobians(model, constants)]
+    fill = constant_lines(constants, model.parameter_symbols)
+    sizes = {
+        "N_STATES": len(model.states),
+        "N_INPUTS": len(model.inputs),
+        "N_OUTPUTS": len(model.outputs),
+        "N_AXES": len(model.axes),
+        "N_PARAMETERS": len(model.parameter_symbols),
+        "N_CONSTANTS": max(1, len(constants.expressions)),
+    }
+    return "\n".join(
+        [
+            f"/* Equations of {model.name}, generated; see sim/plants. */",
+            *(f"#define {name} {value}" for name, value in sizes.items()),
+            *_index_tables(model),
+            _function("static inline void model_constants(const num *p, num *c)", fill),
+            *functions,
+            "",
+        ]
+    )
+
+
+def _limits(model: Model) -> dict[str, list[sympy.Expr]]:
+    """The limits, which take the first places of the constants."""
+    bounds = [model.input_limits[variable] for variable in model.inputs]
+    return {
+        "AXIS_LOWER": [_bound(axis.lower, -sympy.oo) for axis in model.axes],
+        "AXIS_UPPER": [_bound(axis.upper, sympy.oo) for axis in model.axes],
+        "INPUT_LOWER": [sympy.sympify(lower) for lower, _ in bounds],
+        "INPUT_UPPER": [sympy.sympify(upper) for _, upper in bounds],
+    }
+
+
+def _index_tables(model: Model) -> list[str]:
+    """Which states are an axis' position and velocity, which constants are limits."""
+    index = {state: place for place, state in enumerate(model.states)}
+    tables = {
+        "AXIS_POSITION": [index[axis.position] for axis in model.axes],
+        "AXIS_VELOCITY": [index[axis.velocity] for axis in model.axes],
+    }
+    places = itertools.count()
+    tables |= {name: [next(places) for _ in limits] for name, limits in _limits(model).items()}
+    return [f"static const int {name}[] = {{{', '.join(map(str, values or [0]))}}};" for name, values in tables.items()]
+
+
+def _bound(stop: sympy.Expr | None, absent: sympy.Expr) -> sympy.Expr:
+    return absent if stop is None else sympy.sympify(stop)
+
+
+def _rates(model: Model, constants: Constants) -> str:
+    """dx/dt, the torque of each axis and its breakaway levels up and down (the dry friction at rest against either direction)."""
+    targets = _rest_rates(model)
+    for place, (axis, sign) in enumerate(zip(model.axes, model.friction_signs, strict=True)):
+        at_rest = {axis.velocity: 0}
+        coulomb = sympy.sympify(axis.coulomb)
+        targets |= {
+            f"torque[{place}]": axis.torque,
+            f"up[{place}]": coulomb.xreplace({sign: sympy.Integer(1)}).subs(at_rest),
+            f"down[{place}]": coulomb.xreplace({sign: sympy.Integer(-1)}).subs(at_rest),
+            f"const num friction_{place}": coulomb * sign,
+            f"const num inverse_inertia_{place}": 1 / axis.inertia,
+        }
+    lines = [*_locals(model), *assignments(targets, constants)]
+    for place, axis in enumerate(model.axes):
+        row = model.states.index(axis.velocity)
+        lines.append(f"dx[{row}] = move[{place}]*((torque[{place}] - friction_{place})*inverse_inertia_{place});")
+    head = f"static inline void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
+    return _function(f"{head} num *dx, num *torque, num *up, num *down)", lines)
+
+
+def _rest_rates(model: Model) -> dict[str, sympy.Expr]:
+    """Rates of the states that are no axis' velocity."""
+    return {f"dx[{row}]": model.rates[state] for row, state in enumerate(model.states) if state in model.rates}
+
+
+def _outputs(model: Model, constants: Constants) -> str:
+    targets = {f"y[{row}]": expression for row, expression in enumerate(model.outputs.values())}
+    head = "static inline void model_outputs(num t_s, const num *x, const num *c, num *y)"
+    lines = [*_locals(model, inputs=False), *assignments(targets, constants)]
+    return _function(head, lines)
+
+
+def _jacobians(model: Model, constants: Constants) -> str:
+    """A += df/dx, B += df/du, D += df/dp, H += dy/dx where they are not identically zero; rows of held velocities are the caller's."""
+    rates, outputs = model.state_rates(), sympy.Matrix(list(model.outputs.values()))
+    blocks: Mapping[str, tuple[sympy.Matrix, Sequence[sympy.Symbol]]] = {
+        "A": (rates, model.states),
+        "B": (rates, model.inputs),
+        "D": (rates, model.parameter_symbols),
+        "H": (outputs, model.states),
+    }
+    targets = {}
+    for name, (functions, variables) in blocks.items():
+        jacobian = smooth(functions.jacobian(sympy.Matrix(variables)))
+        for (row, column), entry in jacobian.todok().items():
+            targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
+    head = f"static inline void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H)"
+    return _function(head, [*_locals(model), *assignments(targets, constants)])
+
+
+def smooth(jacobian: sympy.Matrix) -> sympy.Matrix:
+    """Drop the impulses that SymPy makes of slopes of steps: events and sample times carry those, not slopes."""
+    return jacobian.replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
+
+
+def _locals(model: Model, *, inputs: bool = True) -> list[str]:
+    lines = [f"const num {state} = x[{row}];" for row, state in enumerate(model.states)]
+    if inputs:
+        lines += [f"const num {variable} = u[{column}];" for column, variable in enumerate(model.inputs)]
+        lines += [f"const num {sign} = sign[{place}];" for place, sign in enumerate(model.friction_signs)]
+    return lines
+
+
+def _function(head: str, lines: Sequence[str]) -> str:
+    return "\n".join(["", head, "{", *(f"    {line}" for line in lines), "}"])

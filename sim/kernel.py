@@ -1,0 +1,51 @@
+"""Compiled kernels: a model's equations in C with the fixed loops of sim/c, single and side by side."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.generate import model_header
+from sim.model import Model
+from sim.sincos import sincos_header
+from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
+
+C_DIR = Path(__file__).parent / "c"
+SOURCES = ("single.c", "batch.c", "events.c", "sensitivity.c")
+BATCH_LANES = 8
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """A model's compiled functions: `lib` as declared in sim/c/kernel.cdef, called through `ffi`."""
+
+    model: Model
+    ffi: Any
+    lib: Any
+
+    def pointer(self, array: NDArray[Any] | None) -> Any:
+        """The C address of a contiguous array; NULL for None."""
+        return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+
+
+@lru_cache(maxsize=64)
+def kernel(model: Model) -> Kernel:
+    """The kernel of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
+    sources: list[Source] = [
+        CText("model.h", model_header(model)),
+        CText("sincos_coefficients.h", sincos_header()),
+        *(C_DIR / name for name in SOURCES),
+    ]
+    flags = (*FAST_FLAGS, f"-DBATCH_LANES={BATCH_LANES}")
+    path = build_shared(f"kernel-{model.name}", sources, include_dirs=[C_DIR], flags=flags)
+    ffi, lib = load_shared(_declarations(), path)
+    return Kernel(model, ffi, lib)
+
+
+def _declarations() -> str:
+    """What cffi must know: the plain structs and the exported functions."""
+    return (C_DIR / "kernel.cdef").read_text(encoding="utf-8")

@@ -1,0 +1,78 @@
+"""How well a flight followed its references, read from its log alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.log import RunLog
+from sim.columns import reference_name
+
+Array = NDArray[np.float64]
+
+STEADY_S = 1.0  # the error at rest is the mean over this long before the next change of any reference
+SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """One output over a flight.
+
+    `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `steady_error_rad` the
+    largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight.
+    """
+
+    output: str
+    holds: int
+    overshoot: float
+    steady_error_rad: float
+    mean_error_rad: float
+
+
+@dataclass(frozen=True)
+class _Hold:
+    """Rows begin..end in which no reference changes; `change` of this output's reference since its hold before."""
+
+    begin: int
+    end: int
+    change: float
+
+
+def tracking(log: RunLog, output: str) -> Tracking:
+    """Judge one output of a flight whose log has the references of all outputs; a log without such a hold gives zeros."""
+    references = {name: log.column(reference_name(name)) for name in log.columns.outputs}
+    reference, measured = references[output], log.column(output)
+    holds = _holds(log.t_s, references, reference)
+    errors = [float(np.nanmean((reference - measured)[_last(log.t_s, hold)])) for hold in holds]
+    overshoots = [_overshoot(reference, measured, hold) for hold in holds if hold.change]
+    return Tracking(
+        output=output,
+        holds=len(holds),
+        overshoot=max(overshoots, default=0.0),
+        steady_error_rad=max((abs(error) for error in errors), default=0.0),
+        mean_error_rad=float(np.nanmean(np.abs(reference - measured))),
+    )
+
+
+def _holds(t_s: Array, references: dict[str, Array], own: Array) -> list[_Hold]:
+    changed = np.any([np.diff(values) != 0.0 for values in references.values()], axis=0)
+    begins = np.concatenate([[0], np.flatnonzero(changed) + 1])
+    ends = np.concatenate([begins[1:], [len(t_s)]])
+    holds: list[_Hold] = []
+    before = float(own[0])
+    for begin, end in zip(begins, ends, strict=True):
+        if t_s[end - 1] - t_s[begin] >= SHORTEST_HOLD_S:
+            holds.append(_Hold(int(begin), int(end), float(own[begin]) - before))
+            before = float(own[begin])
+    return holds
+
+
+def _last(t_s: Array, hold: _Hold) -> slice:
+    begin = int(np.searchsorted(t_s, t_s[hold.end - 1] - STEADY_S))
+    return slice(max(begin, hold.begin), hold.end)
+
+
+def _overshoot(reference: Array, measured: Array, hold: _Hold) -> float:
+    """Beyond the reference, in the direction of the change."""
+    beyond = np.sign(hold.change) * (measured - reference)[hold.begin : hold.end]
+    return float(max(np.nanmax(beyond), 0.0) / abs(hold.change))
