@@ -14,6 +14,7 @@ from records.errors import BadInput
 from records.files import write_atomic
 from records.log_csv import read_rows, rows_text
 from records.plant import read_toml
+from records.source import Source, parse_source, source_table
 
 SCHEMA = "run-log/1"
 LOOPS = ("open", "closed")
@@ -36,7 +37,8 @@ class RunLog:
     """A run of n samples: y[k] measured at t_s[k], u[k] commanded from then until t_s[k + 1], after the controller's limits.
 
     Shapes: t_s (n,), u (n, inputs), y (n, outputs; NaN where nothing was measured), `extra` optional columns (n,), `seq` (n,) the
-    board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none.
+    board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none;
+    `source` the published recording that the log was imported from, None for a log of this project's own making.
     """
 
     columns: LogColumns
@@ -49,6 +51,7 @@ class RunLog:
     seq: NDArray[np.int64] | None = None
     locked: tuple[str, ...] = ()
     table_digest: str | None = None
+    source: Source | None = None
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -88,6 +91,8 @@ def sidecar_text(log: RunLog) -> str:
     document["locked"] = list(log.locked)
     if log.table_digest is not None:
         document["controller"] = {"table_digest": log.table_digest}
+    if log.source is not None:
+        document["source"] = source_table(log.source)
     return tomlkit.dumps(document)
 
 
@@ -115,6 +120,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         seq=data["seq"].astype(np.int64) if "seq" in data else None,
         locked=tuple(sidecar["locked"]),
         table_digest=controller,
+        source=parse_source(sidecar["source"], f"{sidecar_path}: source") if "source" in sidecar else None,
     )
 
 
@@ -129,7 +135,7 @@ def plant_of_log(path: Path) -> str:
 def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> str | None:
     """Check every key; returns the digest of the controller table, if one is named."""
     checks.schema(sidecar, f"{where}: schema", SCHEMA)
-    checks.keys(sidecar, where, ("schema", "plant", "sample_period_s", "loop", "locked"), ("controller",))
+    checks.keys(sidecar, where, ("schema", "plant", "sample_period_s", "loop", "locked"), ("controller", "source"))
     if checks.text(sidecar["plant"], f"{where}: plant") != columns.plant:
         raise BadInput(
             "plant", where, repr(sidecar["plant"]), repr(columns.plant), "give the log and the plant of one rig"

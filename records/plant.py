@@ -10,7 +10,7 @@ import tomlkit
 
 from records import checks
 from records.errors import BadInput
-from records.units import dimensions
+from records.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
 Value = float | tuple[float, ...]
@@ -43,7 +43,8 @@ class Parameter:
 class Plant:
     """A plant as its file states it.
 
-    `sensors` maps an output name ("psi_rad") to the step of its encoder; `design` holds the file's wishes for the controller
+    `sensors` maps an output name ("psi_rad") to the step of its encoder and `sensor_noise` to the standard deviation of the white
+    noise before it, where there is any; `design` holds the file's wishes for the controller
     (section [design], read by the design stage) and `effects` the added effects (sections [effects.PLACE.NAME]) as plain tables.
     """
 
@@ -53,6 +54,7 @@ class Plant:
     sensors: Mapping[str, float]
     design: Mapping[str, Any] = field(default_factory=dict)
     effects: Mapping[str, Any] = field(default_factory=dict)
+    sensor_noise: Mapping[str, float] = field(default_factory=dict)
 
 
 def load_plant(path: Path) -> Plant:
@@ -79,13 +81,15 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
     checks.keys(content, where, ("schema", "model", "parameters", "sensors"), ("design", "effects", "correlation"))
     parameters = checks.table(content["parameters"], f"{where}: parameters")
     sensors = checks.table(content["sensors"], f"{where}: sensors")
+    steps = {key: _sensor(key, value, f"{where}: sensors.{key}") for key, value in sensors.items()}
     return Plant(
         name=name,
         model=checks.text(content["model"], f"{where}: model"),
         parameters={key: _parameter(value, f"{where}: parameters.{key}") for key, value in parameters.items()},
-        sensors={key: _resolution(value, f"{where}: sensors.{key}") for key, value in sensors.items()},
+        sensors={key: resolution for key, (resolution, _) in steps.items()},
         design=checks.table(content.get("design", {}), f"{where}: design"),
         effects=checks.table(content.get("effects", {}), f"{where}: effects"),
+        sensor_noise={key: noise for key, (_, noise) in steps.items() if noise > 0.0},
     )
 
 
@@ -98,7 +102,7 @@ def plant_text(plant: Plant) -> str:
         key: {"value": _plain(entry.value), "sd": _plain(entry.sd), "unit": entry.unit, "source": entry.source}
         for key, entry in plant.parameters.items()
     }
-    document["sensors"] = {key: {"resolution_rad": step} for key, step in plant.sensors.items()}
+    document["sensors"] = {key: _sensor_table(plant, key) for key in plant.sensors}
     for section in ("design", "effects"):
         if getattr(plant, section):
             document[section] = dict(getattr(plant, section))
@@ -143,7 +147,21 @@ def _check_unit(parameter: Parameter, where: str) -> None:
         raise BadInput("unit", where, repr(parameter.unit), count, "give one unit for each coefficient")
 
 
-def _resolution(entry: Any, where: str) -> float:
+def _sensor(name: str, entry: Any, where: str) -> tuple[float, float]:
+    """Step of the encoder and noise of a sensor, whose keys bear its unit: resolution_rad of psi_rad, resolution_m of q_m."""
+    step, noise = _sensor_keys(name)
     section = checks.table(entry, where)
-    checks.keys(section, where, ("resolution_rad",))
-    return checks.positive(section["resolution_rad"], f"{where}.resolution_rad")
+    checks.keys(section, where, (step,), (noise,))
+    resolution = checks.positive(section[step], f"{where}.{step}")
+    return resolution, checks.positive(section[noise], f"{where}.{noise}") if noise in section else 0.0
+
+
+def _sensor_table(plant: Plant, name: str) -> dict[str, float]:
+    step, noise = _sensor_keys(name)
+    table = {step: plant.sensors[name]}
+    return {**table, noise: plant.sensor_noise[name]} if name in plant.sensor_noise else table
+
+
+def _sensor_keys(name: str) -> tuple[str, str]:
+    unit = unit_suffix(name)
+    return (f"resolution_{unit}", f"noise_{unit}") if unit else ("resolution", "noise")

@@ -16,6 +16,7 @@ _SYMBOLS: Mapping[str, Dimension] = {
     "1": (0, 0, 0, 0),
     "-": (0, 0, 0, 0),
 }
+_SUFFIXES = ("rad_s2", "rad_s", "m_s2", "m_s", "rad", "m", "V", "N", "s")  # a longer one before its own ending
 _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+))?$")
 
 
@@ -41,6 +42,11 @@ def dimensions(unit: str) -> tuple[Dimension, ...]:
     if text.startswith("[") and text.endswith("]"):
         return tuple(dimension(entry) for entry in text[1:-1].split(","))
     return (dimension(text),)
+
+
+def unit_suffix(name: str) -> str:
+    """The unit that a name ends with: "rad" of psi_rad, "rad_s" of q_rad_s, "" of M, which has none."""
+    return next((unit for unit in _SUFFIXES if name.endswith(f"_{unit}")), "")
 
 
 def _parts(unit: str) -> list[tuple[int, str]]:

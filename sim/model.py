@@ -1,7 +1,7 @@
 """A plant as symbolic equations, from which everything else is derived: reference, kernels, Jacobians, linearisation."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy
@@ -52,7 +52,8 @@ class Axis:
 class Model:
     """A plant's equations: states x with rates, inputs u clamped to `input_limits`, outputs y, parameters p; argument order (t, x, u, p).
 
-    `rates` covers every state but the velocities of `axes`, whose rates follow from the axes.
+    `rates` covers every state but the velocities of `axes`, whose rates follow from the axes. `signals` are further quantities
+    that a log of the plant may carry (the speed of a rotor that has no state), by column name.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Model:
     rates: Mapping[sympy.Symbol, sympy.Expr]
     axes: tuple[Axis, ...]
     input_limits: Mapping[sympy.Symbol, tuple[sympy.Expr, sympy.Expr]]
+    signals: Mapping[str, sympy.Expr] = field(default_factory=dict)
 
     @property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:
