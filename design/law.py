@@ -41,14 +41,18 @@ class LawState:
     azimuth: AxisState
 
 
-def law_reset(psi_rad: float, phi_rad: float) -> LawState:
-    """The state at rest at the measured angles: no error, no feedback; an angle that is not finite counts as 0."""
-    return LawState(_axis_reset(psi_rad), _axis_reset(phi_rad))
+def law_reset(table: ControllerTable, psi_rad: float, phi_rad: float) -> LawState:
+    """The state at rest at the measured angles; an angle that is not finite counts as 0.
+
+    The filtered reference starts at the angle, or at the end of its range next to it; no difference of the error is pending.
+    """
+    return LawState(_axis_reset(table.elevation, psi_rad), _axis_reset(table.azimuth, phi_rad))
 
 
-def _axis_reset(angle_rad: float) -> AxisState:
-    start = _finite(angle_rad, 0.0)
-    return AxisState(reference_rad=start, angle_rad=start, x1_rad=start, x2_rad=start)
+def _axis_reset(law: AxisLaw, angle_rad: float) -> AxisState:
+    angle = _finite(angle_rad, 0.0)
+    start = _clamp(angle, law.reference_min_rad, law.reference_max_rad)
+    return AxisState(reference_rad=start, angle_rad=angle, x1_rad=start, x2_rad=start, e=(start - angle, 0.0, 0.0))
 
 
 def law_step(
@@ -142,11 +146,11 @@ class FloatLaw:
 
     def __init__(self, table: ControllerTable) -> None:
         self._table = table
-        self._state = law_reset(0.0, 0.0)
+        self._state = law_reset(table, 0.0, 0.0)
 
     def reset(self, psi_rad: float, phi_rad: float) -> None:
         """Start at rest at the measured angles."""
-        self._state = law_reset(psi_rad, phi_rad)
+        self._state = law_reset(self._table, psi_rad, phi_rad)
 
     def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
         """One sample: u_M_V, u_T_V."""

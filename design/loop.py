@@ -77,7 +77,11 @@ def controller_poles(controller: DeltaForm) -> Poles:
 def to_rad_s(gamma: Poles, sample_period_s: float) -> Poles:
     """s = ln(1 + gamma)/Ts; a pole at z = 0 becomes -inf, which is as fast as can be."""
     with np.errstate(divide="ignore"):
-        return np.asarray(np.log1p(gamma.astype(complex)) / sample_period_s)
+        logarithm = np.log1p(gamma.astype(complex))
+    result = np.empty_like(logarithm)
+    # Parts are divided on their own: a complex division would make NaN of -inf + 0j.
+    result.real, result.imag = logarithm.real / sample_period_s, logarithm.imag / sample_period_s
+    return result
 
 
 def polynomial_roots(ascending: Array) -> Poles:

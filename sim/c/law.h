@@ -47,13 +47,17 @@ static inline void law_differences(num value, const num *previous, num *differen
         differences[order] = differences[order - 1] - previous[order - 1];
 }
 
-static inline void law_reset(law_state *self, const num *angle_rad)
+/* At rest at these angles: the filtered reference is the angle, or the end of the reference's range next to it. */
+static inline void law_reset(law_state *self, const law_table *table, const num *angle_rad)
 {
     for (int i = 0; i < 2; i++) {
+        const law_axis *law = &table->axis[i];
         const num zero = NUM(0.0), angle = law_finite(angle_rad[i], zero);
-        self->axis[i] = (law_axis_state){.reference_rad = angle, .angle_rad = angle, .x1_rad = angle, .x2_rad = angle, .v_V = zero};
+        const num start = lane_clamp(angle, NUM(law->reference_min_rad), NUM(law->reference_max_rad));
+        self->axis[i] = (law_axis_state){.reference_rad = start, .angle_rad = angle, .x1_rad = start, .x2_rad = start, .v_V = zero};
         for (int order = 0; order < 3; order++)
             self->axis[i].e[order] = self->axis[i].s[order] = self->axis[i].w[order] = zero;
+        self->axis[i].e[0] = start - angle;
     }
 }
 

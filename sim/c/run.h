@@ -134,7 +134,7 @@ static inline void command(lane_group *group, int64_t sample, const num *y, num 
 #if N_OUTPUTS == 2 && N_INPUTS == 2
     num wanted[2] = {NUM(reference[0]), NUM(reference[1])};
     if (sample == 0)
-        law_reset(&group->law, y);
+        law_reset(&group->law, request->law, y);
     law_step(&group->law, request->law, wanted, y, u);
 #endif
 }
