@@ -94,14 +94,15 @@ def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> 
 
 def differing(one: Bits, other: Bits, is_float: bool) -> NDArray[np.bool_]:
     """Where the bits differ and, for floats, not both are NaN: its payload is the processor's business."""
-    unequal = np.not_equal(one, other)
-    if not is_float:
-        return unequal
-    return np.logical_and(unequal, ~(_is_nan(one) & _is_nan(other)))
+    unequal: NDArray[np.bool_] = np.not_equal(one, other)
+    if is_float:
+        unequal = np.logical_and(unequal, ~np.logical_and(_is_nan(one), _is_nan(other)))
+    return unequal
 
 
 def _is_nan(bits: Bits) -> NDArray[np.bool_]:
-    return np.greater(bits & np.uint32(0x7FFFFFFF), np.uint32(0x7F800000))
+    beyond_infinity: NDArray[np.bool_] = np.greater(bits & np.uint32(0x7FFFFFFF), np.uint32(0x7F800000))
+    return beyond_infinity
 
 
 def _first_output(stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: Sequence[Bits]) -> FirstMismatch:

@@ -1,6 +1,7 @@
 """The float32 twin: it computes the law of records/table.py, and it stays finite and within limits whatever comes."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from codegen.law_constants import law_constants
 from codegen.law_equations import AXIS_STATE_FIELDS, STATE_WORDS, LawInput, law_reset, law_step
 from codegen.twin import Float32Scalars, Float32Twin
+from design.law import FloatLaw
 from records.table import AxisLaw, ControllerTable
 from tests.law_tables import ce150_table, changed_axis, dense_table
 
@@ -23,13 +25,27 @@ def test_at_constant_elevation_the_law_is_the_direct_form_of_its_polynomials(tab
     table = _unfiltered(table)
     rng = np.random.default_rng(4)
     references = np.repeat(rng.uniform(-0.05, 0.05, (40, 2)), 10, axis=0) + np.array([PSI_RAD, 0.0])
-    outputs = _run_in_float64(table, references)
+    outputs = _run_in_float64(table, references, np.broadcast_to([PSI_RAD, 0.0], references.shape))
     for axis, column, angle in ((table.elevation, 0, PSI_RAD), (table.azimuth, 1, 0.0)):
         u_ff_V = np.polynomial.polynomial.polyval(references[:, 0], axis.feedforward_V)
         wanted = _direct_form(axis, references[:, column] - angle, u_ff_V)
         inside = (wanted > axis.u_min_V) & (wanted < axis.u_max_V)
         assert inside.mean() > 0.05
         assert np.abs(outputs[:, column] - wanted).max() < 1e-9
+
+
+def test_in_double_precision_the_equations_are_those_of_the_design_stage() -> None:
+    """Truth: design.law.FloatLaw, written on its own; both axes with prefilter, schedule and limits, to 1e-9 V."""
+    table = ce150_table()
+    rng = np.random.default_rng(13)
+    references = np.repeat(rng.uniform(-0.6, 0.6, (20, 2)), 50, axis=0)
+    angles = np.cumsum(np.vstack([np.zeros((1, 2)), rng.uniform(-0.004, 0.004, (999, 2))]), axis=0)
+    reference_law = FloatLaw(table)
+    reference_law.reset(0.0, 0.0)
+    wanted = np.array([reference_law.step(*given) for given in np.hstack([references, angles]).tolist()])
+    outputs = _run_in_float64(table, references, angles)
+    assert np.abs(outputs - wanted).max() < 1e-9
+    assert 0.1 < np.mean(outputs[:, 0] == table.elevation.u_max_V) < 0.9
 
 
 def test_an_integrating_axis_under_a_constant_error_climbs_by_q_0_e_over_1_minus_p_1_each_sample() -> None:
@@ -125,14 +141,15 @@ def _unfiltered(table: ControllerTable) -> ControllerTable:
     )
 
 
-def _run_in_float64(table: ControllerTable, references: NDArray[np.float64]) -> NDArray[np.float64]:
-    law = law_constants(table, float)
-    decisions = Float32Scalars()
-    state = law_reset(law, decisions, PSI_RAD, 0.0)  # type: ignore[type-var,arg-type]
+def _run_in_float64(
+    table: ControllerTable, references: NDArray[np.float64], angles: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    law: Any = law_constants(table, float)
+    decisions: Any = Float32Scalars()
+    state = law_reset(law, decisions, *angles[0].tolist())
     outputs = []
-    for psi_ref_rad, phi_ref_rad in references.tolist():
-        given_now = LawInput(psi_ref_rad, phi_ref_rad, PSI_RAD, 0.0)
-        state, output = law_step(law, decisions, state, given_now)  # type: ignore[type-var,arg-type]
+    for given_now in np.hstack([references, angles]).tolist():
+        state, output = law_step(law, decisions, state, LawInput(*given_now))
         outputs.append((output.u_M_V, output.u_T_V))
     return np.array(outputs)
 
