@@ -14,7 +14,7 @@ from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm
 from rig.emulator.coverage import LineCounts, lines_executed
 from rig.emulator.image import FLASH_BYTES, SRAM_BYTES, Image
 from rig.emulator.native import library
-from rig.emulator.stops import Stop, describe
+from rig.emulator.stops import Stop, StopKind
 
 PS_PER_S = 10**12
 NEVER = 2**64 - 1
@@ -84,10 +84,15 @@ class EmulatedBoard:
 
     def _run(self, limit_cycle: int, limit_ps: int, host_bytes: int) -> Stop:
         if host_bytes and self._status().host_bytes >= host_bytes:
-            return describe(self.image, 2, self._status().pc, 0, 0)
+            return Stop(StopKind.HOST_BYTES, self._status().pc, 0, 0, self.image)
         self._lib.emulator_run(self._machine, limit_cycle, limit_ps, host_bytes)
+        return self.last_stop
+
+    @property
+    def last_stop(self) -> Stop:
+        """Why the last run, or the last call, ended."""
         status = self._status()
-        return describe(self.image, status.stop_kind, status.stop_pc, status.stop_address, status.stop_detail)
+        return Stop(StopKind(status.stop_kind), status.stop_pc, status.stop_address, status.stop_detail, self.image)
 
     def _status(self) -> Any:
         status = self._ffi.new("machine_status *")

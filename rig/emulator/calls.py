@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from rig.emulator.answers import CallResult, CallsResult, StoppedError
 from rig.emulator.native import library
-from rig.emulator.stops import StopKind, describe
+from rig.emulator.stops import StopKind
 
 if TYPE_CHECKING:
     from rig.emulator.board import EmulatedBoard
@@ -25,13 +25,9 @@ def _words(arguments: Sequence[int]) -> list[int]:
     return [value & 0xFFFFFFFF for value in (*arguments, 0, 0, 0, 0)[:4]]
 
 
-def _check(board: "EmulatedBoard", machine: Any, kind: int) -> None:
-    if kind == StopKind.RETURNED:
-        return
-    ffi, lib = library()
-    status = ffi.new("machine_status *")
-    lib.emulator_status(machine, status)
-    raise StoppedError(describe(board.image, status.stop_kind, status.stop_pc, status.stop_address, status.stop_detail))
+def _check(board: "EmulatedBoard", kind: int) -> None:
+    if kind != StopKind.RETURNED:
+        raise StoppedError(board.last_stop)
 
 
 def call(board: "EmulatedBoard", machine: Any, name: str, arguments: Sequence[int], max_cycles: int) -> CallResult:
@@ -39,7 +35,7 @@ def call(board: "EmulatedBoard", machine: Any, name: str, arguments: Sequence[in
     ffi, lib = library()
     report = ffi.new("call_report *")
     lib.emulator_call(machine, board.symbol(name)[0], _words(arguments), max_cycles, report)
-    _check(board, machine, report.stop_kind)
+    _check(board, report.stop_kind)
     estimate = report.cycles + WAIT_STATES * report.flash_stalls
     return CallResult(report.result, report.cycles, estimate, report.instructions, report.stack_bytes)
 
@@ -65,7 +61,7 @@ def call_many(
         _blocks(rows), len(rows), _blocks(wells), len(wells),
         ffi.cast("uint32_t *", results.ctypes.data), ffi.cast("uint64_t *", cycles.ctypes.data), report,
     )  # fmt: skip
-    _check(board, machine, report.stop_kind if steps else StopKind.RETURNED)
+    _check(board, report.stop_kind if steps else StopKind.RETURNED)
     estimate = int(cycles.sum()) + WAIT_STATES * int(report.flash_stalls)
     return CallsResult(
         results, cycles, tuple(out for _, out in wells), report.instructions, estimate, report.stack_bytes

@@ -34,10 +34,10 @@ struct op {
 /* Count the instruction, charge its cycles and go on `step` halfwords further. */
 #define NEXT_BY(step, cost)                        \
     do {                                           \
+        left -= (cost); /* may be told by `ip` */  \
         ip->count++;                               \
         done++;                                    \
         ip += (step);                              \
-        left -= (cost);                            \
         if (!LIKELY(left > 0)) JUMP service(PASS); \
         JUMP ip->run(PASS);                        \
     } while (0)

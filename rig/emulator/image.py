@@ -105,13 +105,13 @@ class Image:
 
     def function_at(self, address: int) -> Symbol | None:
         """The function that holds `address`."""
-        at = bisect.bisect_right([f.address for f in self.functions], address) - 1
+        at = bisect.bisect_right(self.functions, address, key=lambda f: f.address) - 1
         found = self.functions[at] if at >= 0 else None
         return found if found and address < found.address + max(found.size, 2) else None
 
     def line_at(self, address: int) -> SourceLine | None:
         """The source line of the instruction at `address`."""
-        at = bisect.bisect_right([row.address for row in self.lines], address) - 1
+        at = bisect.bisect_right(self.lines, address, key=lambda row: row.address) - 1
         found = self.lines[at] if at >= 0 else None
         return found if found and found.line else None
 

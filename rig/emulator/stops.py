@@ -1,6 +1,6 @@
 """Why a run of the emulated board ended, in numbers and in a sentence."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 from rig.emulator.image import Image
@@ -57,24 +57,24 @@ SENTENCES = {
 
 @dataclass(frozen=True)
 class Stop:
-    """The end of a run: kind, pc, the address concerned, a detail, and one line with function and source line."""
+    """The end of a run: kind, pc, the address concerned and a detail; `image` gives the message its names."""
 
     kind: StopKind
     pc: int
     address: int
     detail: int
-    message: str
+    image: Image = field(repr=False, compare=False)
 
     @property
     def is_fault(self) -> bool:
         """Whether the firmware did something that ended the run."""
         return self.kind in FAULTS
 
+    @property
+    def message(self) -> str:
+        """One line: what happened, then pc, function, file and line."""
+        sentence = SENTENCES[self.kind].format(address=self.address, detail=self.detail)
+        return f"{sentence}; pc {self.image.place(self.pc)}"
+
     def __str__(self) -> str:
         return self.message
-
-
-def describe(image: Image, kind: int, pc: int, address: int, detail: int) -> Stop:
-    """The stop record with its sentence: what happened, then pc, function, file and line."""
-    sentence = SENTENCES[StopKind(kind)].format(address=address, detail=detail)
-    return Stop(StopKind(kind), pc, address, detail, f"{sentence}; pc {image.place(pc)}")

@@ -1,0 +1,45 @@
+"""Small target programs for the tests of the emulated board: a prelude of register addresses, and their build."""
+
+from pathlib import Path
+
+from rig.emulator.answers import BoardConfig
+from rig.emulator.board import EmulatedBoard
+from toolchain.host import CText
+from toolchain.target import build_image
+
+FOLDER = Path(__file__).resolve().parent
+FLAGS = ("-O2", "-g", "-std=gnu11", "-ffreestanding", "-fno-sanitize=undefined", "-fno-stack-protector", "-Wall", "-Werror")
+
+PRELUDE = """
+#include <stdint.h>
+#define REG(address) (*(volatile uint32_t *)(address))
+#define BARRIER() __asm volatile("dsb\\n isb" ::: "memory")
+extern uint32_t _stack_top;
+void Reset_Handler(void);
+typedef void (*vector)(void);
+#define VECTORS(...) __attribute__((section(".vectors"), used)) static const vector table[48] = {(vector)&_stack_top, Reset_Handler, __VA_ARGS__}
+#define NAKED __attribute__((naked, noinline, used))
+#define STOP() __asm volatile("bkpt 0")
+__attribute__((unused)) static void clock_64_mhz(void) {
+    REG(0x40022000) = 0x702;
+    REG(0x4002100C) = 2u | 8u << 8 | 1u << 28 | 1u << 29;
+    REG(0x40021000) |= 1u << 24;
+    while (!(REG(0x40021000) & 1u << 25)) {}
+    REG(0x40021008) = 2;
+}
+"""
+
+
+def build(name: str, source: str) -> Path:
+    """The ELF of one C text, with the prelude before it."""
+    return build_image(f"test-{name}", [CText(f"{name}.c", PRELUDE + source)], FOLDER / "board.ld", flags=FLAGS)
+
+
+def powered(name: str, source: str, config: BoardConfig | None = None) -> EmulatedBoard:
+    """A board with that program, just powered up."""
+    return EmulatedBoard(build(name, source), config)
+
+
+def word(board: EmulatedBoard, name: str, index: int = 0) -> int:
+    """A 32-bit variable of the program, or an element of an array."""
+    return int.from_bytes(board.read_memory(board.symbol(name)[0] + 4 * index, 4), "little")
