@@ -1,0 +1,80 @@
+"""The law inside the firmware image, stepped on the emulated board: an execution to compare with twin and host, and what it costs."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.law_equations import STATE_WORDS
+from rig.emulator.answers import CallsResult
+from rig.emulator.board import EmulatedBoard
+
+Bits = NDArray[np.uint32]
+
+_STATE_BYTES, _INPUT_BYTES, _OUTPUT_BYTES = 4 * STATE_WORDS, 16, 8
+
+
+class TargetLaw:
+    """`law_reset` and `law_step` of the unmodified image, called one step at a time with interrupts off.
+
+    `cycles_max` (flash without wait states) and `stack_bytes` are the largest over all steps so far.
+    """
+
+    name = "target"
+
+    def __init__(self, board: EmulatedBoard, arithmetic: str = "float32") -> None:
+        self.arithmetic = arithmetic
+        self.cycles_max = 0
+        self.cycles_min = 2**63
+        self.stack_bytes = 0
+        self._board = board
+        self._state = board.scratch_address()
+        self._input = self._state + _STATE_BYTES
+        self._output = self._input + _INPUT_BYTES
+
+    def start(self, angles: Bits) -> Bits:
+        """States at rest [lanes, STATE_WORDS] for angles psi, phi as bits [lanes, 2]."""
+        return np.array([self._start_lane(int(psi), int(phi)) for psi, phi in angles], dtype=np.uint32)
+
+    def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
+        """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2]."""
+        if len(inputs) == 1:
+            return self._one_step(states, inputs)
+        lanes = [self._run_lane(state, inputs[:, lane]) for lane, state in enumerate(states)]
+        return np.array([state for state, _ in lanes]), np.stack([outputs for _, outputs in lanes], axis=1)
+
+    def self_test(self) -> int:
+        """Mismatches that the emitted self-test finds on the target."""
+        return self._board.call("law_self_test").result
+
+    def table_digest(self) -> str:
+        """The digest in the image's flash."""
+        address, size = self._board.symbol("LAW_TABLE_DIGEST")
+        return self._board.read_memory(address, size).hex()
+
+    def _start_lane(self, psi_bits: int, phi_bits: int) -> Bits:
+        self._board.write_memory(self._state, bytes(_STATE_BYTES))
+        self._board.call("law_reset", self._state, psi_bits, phi_bits)
+        return self._read_state()
+
+    def _run_lane(self, state: Bits, inputs: Bits) -> tuple[Bits, Bits]:
+        """One lane: the state stays in the board's memory from step to step."""
+        self._board.write_memory(self._state, np.ascontiguousarray(state).tobytes())
+        done = self._call([(self._input, inputs)], [(self._output, _OUTPUT_BYTES)], len(inputs))
+        return self._read_state(), done.outputs[0].view(np.uint32)
+
+    def _one_step(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
+        """All lanes in one batch, each with its own state."""
+        rows = [(self._state, states), (self._input, inputs[0])]
+        wells = [(self._state, _STATE_BYTES), (self._output, _OUTPUT_BYTES)]
+        done = self._call(rows, wells, len(states))
+        return done.outputs[0].view(np.uint32), done.outputs[1].view(np.uint32)[np.newaxis]
+
+    def _call(self, rows: list[tuple[int, Bits]], wells: list[tuple[int, int]], steps: int) -> CallsResult:
+        arguments = (self._state, self._input, self._output)
+        done = self._board.call_many("law_step", arguments, rows, wells, steps)
+        self.cycles_max = max(self.cycles_max, done.cycles_max)
+        self.cycles_min = min(self.cycles_min, done.cycles_min)
+        self.stack_bytes = max(self.stack_bytes, done.stack_bytes)
+        return done
+
+    def _read_state(self) -> Bits:
+        return np.frombuffer(self._board.read_memory(self._state, _STATE_BYTES), np.uint32).copy()

@@ -1,0 +1,64 @@
+"""A recorded run as a stimulus for every execution of the law, and the law's answer against what the log says was sent."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from records.log import RunLog
+from records.table import ControllerTable
+from records.verification import Equality
+from verification.equality import BatchStepper
+from verification.stimuli import Stimulus, replayed
+
+Array = NDArray[np.float64]
+
+# Measured angles, whatever the rig calls them: elevation (pitch) first, azimuth (yaw) second.
+ANGLES = (("psi_rad", "phi_rad"), ("theta_rad", "psi_rad"))
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A log's references and angles, and the inputs u [n, 2] that it says `table` sent; None where another law, or none, flew."""
+
+    stimulus: Stimulus
+    u_V: Array | None
+
+
+def replay_of(log: RunLog, table: ControllerTable, path: Path) -> Replay:
+    """The log at `path` as a replay; a log without references is replayed with references at zero.
+
+    Raises BadInput when it names another controller table, or has no two measured angles.
+    """
+    if log.table_digest is not None and log.table_digest != table.digest:
+        raise BadInput(
+            "run log",
+            str(path),
+            f"a flight of table {log.table_digest[:16]}",
+            f"one of table {table.digest[:16]}",
+            "give the table that flew with --table, or a log of this table",
+        )
+    psi, phi = _angles(log, path)
+    references = [log.extra.get(name, np.zeros(len(log.t_s))) for name in ("psi_ref_rad", "phi_ref_rad")]
+    stimulus = replayed(path.name, *(np.asarray(values, np.float32) for values in (*references, psi, phi)))
+    is_own = log.table_digest is not None and {"psi_ref_rad", "phi_ref_rad"} <= log.extra.keys()
+    return Replay(stimulus, log.u if is_own else None)
+
+
+def replayed_equality(replay: Replay, law: BatchStepper) -> Equality | None:
+    """Rows of the log whose inputs are not, bit for bit, what `law` sends from rest at the first row; None without such inputs."""
+    if replay.u_V is None:
+        return None
+    _, outputs = law.run(law.start(replay.stimulus.angles), replay.stimulus.inputs)
+    unequal = (outputs[:, 0] != np.asarray(replay.u_V, np.float32).view(np.uint32)).any(axis=1)
+    return Equality(("log", law.name), law.arithmetic, len(unequal), int(unequal.sum()))
+
+
+def _angles(log: RunLog, path: Path) -> tuple[Array, Array]:
+    for psi, phi in ANGLES:
+        if psi in log.columns.outputs and phi in log.columns.outputs:
+            return log.column(psi), log.column(phi)
+    expected = " or ".join(" and ".join(pair) for pair in ANGLES)
+    raise BadInput("run log", str(path), f"columns {', '.join(log.columns.outputs)}", expected, "replay a log of two angles")
