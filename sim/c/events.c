@@ -10,48 +10,40 @@ typedef struct {
     const double *u, *c;
 } moment;
 
-static double torque_of(const moment *at, const double *x, double t_s, int axis, double *up, double *down)
+/* An axis at rest: held while its torque is within breakaway, or towards a stop that it lies against. */
+static void settle_axis(moment *at, int axis, double torque, double up, double down)
 {
-    double dx[N_STATES], torque[AXES], ups[AXES], downs[AXES];
-    model_rates(t_s, x, at->u, at->c, at->body.sign, at->body.move, dx, torque, ups, downs);
-    *up = ups[axis];
-    *down = downs[axis];
-    return torque[axis];
+    const double position = at->body.x[AXIS_POSITION[axis]];
+    const bool below = position <= at->c[AXIS_LOWER[axis]], above = position >= at->c[AXIS_UPPER[axis]];
+    const bool rubs = up + down > 0.0;
+    const int direction = torque > up && !above ? 1 : torque < -down && !below ? -1 : 0;
+    at->body.move[axis] = direction != 0 || (!rubs && !below && !above); /* without friction it passes through rest */
+    at->body.sign[axis] = rubs ? direction : 0.0;
 }
 
-/* An axis at rest: held while its torque is within breakaway, or towards a stop that it lies against. */
-static void settle_axis(moment *at, int axis)
+static void torques(const moment *at, const double *x, double t_s, double *torque, double *up, double *down)
 {
-    double *const x = at->body.x;
-    double up, down;
-    const double torque = torque_of(at, x, at->t_s, axis, &up, &down);
-    const bool below = x[AXIS_POSITION[axis]] <= at->c[AXIS_LOWER[axis]];
-    const bool above = x[AXIS_POSITION[axis]] >= at->c[AXIS_UPPER[axis]];
-    const bool free = !(up + down > 0.0) && !below && !above; /* no friction: passes through rest */
-    const int direction = torque > up && !above ? 1 : torque < -down && !below ? -1 : 0;
-    at->body.move[axis] = free || direction != 0;
-    at->body.sign[axis] = up + down > 0.0 ? direction : 0.0;
+    double dx[N_STATES];
+    model_rates(t_s, x, at->u, at->c, at->body.sign, at->body.move, dx, torque, up, down);
 }
 
 static void settle_all(moment *at)
 {
     double *const x = at->body.x;
+    double torque[AXES], up[AXES], down[AXES];
+    torques(at, x, at->t_s, torque, up, down);
     for (int a = 0; a < N_AXES; a++) {
         const double lower = at->c[AXIS_LOWER[a]], upper = at->c[AXIS_UPPER[a]];
         double *const position = &x[AXIS_POSITION[a]], *const velocity = &x[AXIS_VELOCITY[a]];
         if ((*position <= lower && *velocity < 0.0) || (*position >= upper && *velocity > 0.0))
             *velocity = 0.0;
         *position = *position < lower ? lower : *position > upper ? upper : *position;
-        at->body.move[a] = 1.0;
-        at->body.sign[a] = *velocity > 0.0 ? 1.0 : -1.0;
-    }
-    for (int a = 0; a < N_AXES; a++) {
-        double up, down;
-        torque_of(at, x, at->t_s, a, &up, &down);
-        if (x[AXIS_VELOCITY[a]] == 0.0)
-            settle_axis(at, a);
-        else if (!(up + down > 0.0))
-            at->body.sign[a] = 0.0;
+        if (*velocity == 0.0) {
+            settle_axis(at, a, torque[a], up[a], down[a]);
+        } else {
+            at->body.move[a] = 1.0;
+            at->body.sign[a] = !(up[a] + down[a] > 0.0) ? 0.0 : *velocity > 0.0 ? 1.0 : -1.0;
+        }
     }
 }
 
@@ -74,79 +66,147 @@ static bool watched(const moment *at, int axis, int event)
 
 /* The plant h_s later, its modes unchanged. */
 typedef struct {
-    double x[N_STATES], torque[AXES], up[AXES], down[AXES];
+    double h_s, x[N_STATES];
     step_stages seen;
 } view;
 
-static view look(const moment *at, double h_s)
+static void look(const moment *at, double h_s, view *then)
 {
-    view then;
-    double dx[N_STATES];
-    rk4_step(at->t_s, h_s, &at->body, at->u, at->c, then.x, &then.seen);
-    model_rates(at->t_s + h_s, then.x, at->u, at->c, at->body.sign, at->body.move, dx, then.torque, then.up, then.down);
-    return then;
+    then->h_s = h_s;
+    rk4_step(at->t_s, h_s, &at->body, at->u, at->c, then->x, &then->seen);
 }
 
-/* How far `event` still is: positive before it, negative past it. */
-static double margin(const moment *at, const view *then, int axis, int event)
+/* How far `event` is in a stage of a step: positive before it, negative past it; the torque at the end is that of the last stage. */
+static double break_margin(const step_stages *seen, int stage, int axis, int event)
+{
+    const double torque = seen->torque[stage][axis];
+    return event == EVENT_BREAK_UP ? seen->up[stage][axis] - torque : torque + seen->down[stage][axis];
+}
+
+static double state_margin(const moment *at, const double *x, int axis, int event)
 {
     switch (event) {
     case EVENT_REST:
-        return at->body.sign[axis] * then->x[AXIS_VELOCITY[axis]];
+        return at->body.sign[axis] * x[AXIS_VELOCITY[axis]];
     case EVENT_LOWER:
-        return then->x[AXIS_POSITION[axis]] - at->c[AXIS_LOWER[axis]];
-    case EVENT_UPPER:
-        return at->c[AXIS_UPPER[axis]] - then->x[AXIS_POSITION[axis]];
-    case EVENT_BREAK_UP:
-        return then->up[axis] - then->torque[axis];
+        return x[AXIS_POSITION[axis]] - at->c[AXIS_LOWER[axis]];
     default:
-        return then->torque[axis] + then->down[axis];
+        return at->c[AXIS_UPPER[axis]] - x[AXIS_POSITION[axis]];
     }
 }
 
-static double margin_after(const moment *at, double h_s, int axis, int event)
+static bool is_break(int event)
 {
-    const view then = look(at, h_s);
-    return margin(at, &then, axis, event);
+    return event == EVENT_BREAK_UP || event == EVENT_BREAK_DOWN;
 }
 
-/* The instant within (0, late] at which `event` happens, its margin at `late` being past zero: regula falsi, halving the weight of an
- * end that stays (Illinois). A margin of zero at the start belongs to the event just passed; the search then starts behind it. */
-static double locate(const moment *at, double late, int axis, int event)
+static double margin(const moment *at, const view *then, int axis, int event)
 {
-    double early = 0.0, before = margin_after(at, 0.0, axis, event), after = margin_after(at, late, axis, event);
-    const double noise = 1e-13 * (fabs(before) + fabs(after));
-    for (double trial = 0.5 * late; before <= noise && trial > 1e-12 * late; trial *= 0.5) {
-        const double value = margin_after(at, trial, axis, event);
-        if (value > noise) {
-            early = trial;
-            before = value;
-        } else {
-            late = trial;
-            after = value;
-        }
+    return is_break(event) ? break_margin(&then->seen, 3, axis, event) : state_margin(at, then->x, axis, event);
+}
+
+/* The margin after h_s, with the torque of a held axis taken at the very state reached. */
+static double margin_after(const moment *at, double h_s, int axis, int event, view *then)
+{
+    look(at, h_s, then);
+    if (is_break(event))
+        torques(at, then->x, at->t_s + h_s, then->seen.torque[3], then->seen.up[3], then->seen.down[3]);
+    return margin(at, then, axis, event);
+}
+
+/* A margin within a step as a cubic of the fraction of the step: values and slopes at both ends. */
+typedef struct {
+    double value_0, slope_0, square, cube;
+} cubic;
+
+static double cubic_slope(const cubic *g, double s)
+{
+    return g->slope_0 + s * (2.0 * g->square + 3.0 * s * g->cube);
+}
+
+static double cubic_value(const cubic *g, double s)
+{
+    return g->value_0 + s * (g->slope_0 + s * (g->square + s * g->cube));
+}
+
+static cubic margin_cubic(const moment *at, const view *end, int axis, int event)
+{
+    const step_stages *const seen = &end->seen;
+    const int velocity = AXIS_VELOCITY[axis];
+    const double direction = event == EVENT_REST ? at->body.sign[axis] : event == EVENT_LOWER ? 1.0 : -1.0;
+    double first, last = margin(at, end, axis, event), slope_0, slope_1;
+    if (is_break(event)) { /* through the ends and the two middle stages' mean */
+        first = break_margin(seen, 0, axis, event);
+        const double middle = 0.5 * (break_margin(seen, 1, axis, event) + break_margin(seen, 2, axis, event));
+        slope_0 = 4.0 * middle - 3.0 * first - last;
+        slope_1 = first - 4.0 * middle + 3.0 * last;
+    } else {
+        first = state_margin(at, at->body.x, axis, event);
+        slope_0 = direction * end->h_s * (event == EVENT_REST ? seen->start[axis] : at->body.x[velocity]);
+        slope_1 = direction * end->h_s * (event == EVENT_REST ? seen->end[axis] : end->x[velocity]);
     }
-    if (before <= 0.0)
-        return late;
-    double kept = 0.0;
-    for (int round = 0; round < 60 && late - early > 1e-15 * late && after < 0.0; round++) {
-        const double trial = late - after * (late - early) / (after - before);
-        const double value = margin_after(at, trial, axis, event);
-        if (value > 0.0) {
-            early = trial;
-            before = value;
-            after = kept > 0.0 ? 0.5 * after : after;
-            kept = 1.0;
-        } else {
-            late = trial;
-            after = value;
-            before = kept < 0.0 ? 0.5 * before : before;
-            kept = -1.0;
-        }
-        if (fabs(value) <= 1e-2 * noise)
-            return trial;
+    return (cubic){first, slope_0, 3.0 * (last - first) - 2.0 * slope_0 - slope_1, 2.0 * (first - last) + slope_0 + slope_1};
+}
+
+/* A root of the cubic in (0, 1), positive at 0 and negative at 1: Newton's method within a shrinking bracket. */
+static double cubic_root(const cubic *g)
+{
+    double low = 0.0, high = 1.0, s = g->value_0 / (g->value_0 - cubic_value(g, 1.0));
+    for (int round = 0; round < 12; round++) {
+        const double value = cubic_value(g, s), step = value / cubic_slope(g, s);
+        if (value > 0.0)
+            low = s;
+        else
+            high = s;
+        if (fabs(step) < 1e-9)
+            break;
+        s = s - step > low && s - step < high ? s - step : 0.5 * (low + high);
     }
-    return late;
+    return s;
+}
+
+/* Narrow [early, late] to an instant with a positive margin at its start, for a margin that starts at zero: that zero belongs to the
+ * event just passed. Returns false when the margin is not positive anywhere before. */
+static bool leave_zero(const moment *at, double noise, double *early, double *late, int axis, int event)
+{
+    view then;
+    for (double trial = 0.5 * *late; trial > 1e-12 * *late; trial *= 0.5) {
+        if (margin_after(at, trial, axis, event, &then) > noise) {
+            *early = trial;
+            return true;
+        }
+        *late = trial;
+    }
+    return false;
+}
+
+/* The instant within the step to `end` at which the margin of `event`, past zero there, goes through zero: the root of the cubic, improved
+ * with its slope, halving where that does not help. `then` is the plant at that instant. */
+static void locate(const moment *at, const view *end, int axis, int event, view *then)
+{
+    const cubic g = margin_cubic(at, end, axis, event);
+    const double noise = 1e-10 * (fabs(g.value_0) + fabs(cubic_value(&g, 1.0)));
+    double early = 0.0, late = end->h_s, at_h = late, slope = -1.0, last = INFINITY;
+    if (g.value_0 > noise && cubic_value(&g, 1.0) < 0.0) {
+        const double s = cubic_root(&g);
+        at_h = s * late;
+        slope = cubic_slope(&g, s) / late;
+    } else if (!(g.value_0 > noise) && !leave_zero(at, noise, &early, &late, axis, event)) {
+        at_h = late;
+        early = late;
+    }
+    for (int round = 0; round < 60; round++) {
+        const double value = margin_after(at, at_h, axis, event, then);
+        if (fabs(value) <= noise || !(late - early > 1e-14 * end->h_s))
+            break;
+        if (value > 0.0)
+            early = at_h;
+        else
+            late = at_h;
+        const double next = at_h - value / slope;
+        at_h = fabs(value) < 0.5 * last && next > early && next < late ? next : 0.5 * (early + late);
+        last = fabs(value);
+    }
 }
 
 /* Where within h_s an axis may have been past an event although it is not at the end: the lowest point of the velocity's cubic through
@@ -165,62 +225,66 @@ static double doubtful_instant(const moment *at, double h_s, int axis, const vie
 }
 
 typedef struct {
-    double h_s;
     int axis, event;
 } next_event;
 
-static bool passed(const moment *at, const view *then, double h_s, const next_event *known, next_event *found)
+static bool passed(const moment *at, const view *then, next_event known, next_event *found)
 {
     for (int a = 0; a < N_AXES; a++)
         for (int event = EVENT_REST; event <= EVENT_BREAK_DOWN; event++) {
-            if ((known->event == event && known->axis == a) || !watched(at, a, event))
+            if ((known.event == event && known.axis == a) || !watched(at, a, event))
                 continue;
             const double value = margin(at, then, a, event);
             if (value < 0.0 || (value == 0.0 && event == EVENT_REST)) {
-                *found = (next_event){h_s, a, event};
+                *found = (next_event){a, event};
                 return true;
             }
         }
     return false;
 }
 
-static bool passed_within(const moment *at, const view *end, double h_s, const next_event *known, next_event *found)
+/* Whether an event may have been passed and taken back before `end`; `then` is the plant at such an instant. */
+static bool passed_within(const moment *at, const view *end, view *then, next_event *found)
 {
+    const next_event none = {0, EVENT_NONE};
     for (int a = 0; a < N_AXES; a++) {
-        const double instant = doubtful_instant(at, h_s, a, end);
-        if (instant > 0.0 && instant < h_s) {
-            const view then = look(at, instant);
-            if (passed(at, &then, instant, known, found))
+        const double instant = doubtful_instant(at, end->h_s, a, end);
+        if (instant > 0.0 && instant < end->h_s) {
+            look(at, instant, then);
+            if (passed(at, then, none, found))
                 return true;
         }
     }
     return false;
 }
 
-/* The first event within h_s, or EVENT_NONE at h_s, and the plant at that instant. */
-static next_event first_event(const moment *at, double h_s, view *then)
+/* The first event on the way to `end`, or EVENT_NONE; `then` is the plant at that event, or at the end. */
+static next_event first_event(const moment *at, const view *end, view *then)
 {
-    next_event first = {h_s, 0, EVENT_NONE}, found;
-    *then = look(at, h_s);
-    if (!passed(at, then, h_s, &first, &found) && !passed_within(at, then, h_s, &first, &found))
+    next_event first = {0, EVENT_NONE}, found;
+    view past = *end;
+    if (!passed(at, end, first, &found) && !passed_within(at, end, &past, &found)) {
+        *then = *end;
         return first;
+    }
     for (int round = 0; round < 4 * AXES; round++) {
-        first = (next_event){locate(at, found.h_s, found.axis, found.event), found.axis, found.event};
-        *then = look(at, first.h_s);
-        if (!passed(at, then, first.h_s, &first, &found))
+        first = found;
+        locate(at, &past, found.axis, found.event, then);
+        if (!passed(at, then, first, &found))
             break;
+        past = *then;
     }
     return first;
 }
 
-static void apply(moment *at, const next_event *event)
+static void apply(moment *at, next_event event)
 {
-    const int axis = event->axis;
-    switch (event->event) {
+    const int axis = event.axis;
+    switch (event.event) {
     case EVENT_BREAK_UP:
     case EVENT_BREAK_DOWN:
         at->body.move[axis] = 1.0;
-        at->body.sign[axis] = event->event == EVENT_BREAK_UP ? 1.0 : -1.0;
+        at->body.sign[axis] = event.event == EVENT_BREAK_UP ? 1.0 : -1.0;
         return;
     case EVENT_LOWER:
         at->body.x[AXIS_POSITION[axis]] = at->c[AXIS_LOWER[axis]];
@@ -232,7 +296,9 @@ static void apply(moment *at, const next_event *event)
         break;
     }
     at->body.x[AXIS_VELOCITY[axis]] = 0.0;
-    settle_axis(at, axis);
+    double torque[AXES], up[AXES], down[AXES];
+    torques(at, at->body.x, at->t_s, torque, up, down);
+    settle_axis(at, axis, torque[axis], up[axis], down[axis]);
 }
 
 static void hold_all(moment *at)
@@ -279,20 +345,21 @@ int events_advance(double *x, double *sign, double *move, double t_s, double h_s
     settle_all(&at);
     int count = 0;
     for (double left = h_s;;) {
+        view end, then;
         if (count == MAX_EVENTS)
             hold_all(&at);
-        view then;
-        const next_event next = first_event(&at, left, &then);
+        look(&at, left, &end);
+        const next_event next = first_event(&at, &end, &then);
         if (pieces)
-            pieces[count] = (event_piece){at.t_s, next.h_s, next.axis, next.event};
+            pieces[count] = (event_piece){at.t_s, then.h_s, next.axis, next.event};
         count++;
         for (int i = 0; i < N_STATES; i++)
             at.body.x[i] = then.x[i];
         if (next.event == EVENT_NONE || count > MAX_EVENTS)
             break;
-        at.t_s += next.h_s;
-        left -= next.h_s;
-        apply(&at, &next);
+        at.t_s += then.h_s;
+        left -= then.h_s;
+        apply(&at, next);
     }
     store(&at, x, sign, move);
     return count;

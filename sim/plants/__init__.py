@@ -3,9 +3,24 @@
 from collections.abc import Callable, Mapping
 
 from sim.model import Model
-from sim.plants import ce150, ce150_seed_literal
+from sim.plants import (
+    aeroshield,
+    aeroshield_two_clocks,
+    antx_2dof_drone,
+    ce150,
+    ce150_seed_literal,
+    emps,
+    pamh_aeropendulum,
+    quanser_aero,
+)
 
 MODELS: Mapping[str, Callable[[], Model]] = {
     "ce150": ce150.model,
     "ce150_seed_literal": ce150_seed_literal.model,
+    "quanser_aero": quanser_aero.model,
+    "aeroshield": aeroshield.model,
+    "aeroshield_two_clocks": aeroshield_two_clocks.model,
+    "antx_2dof_drone": antx_2dof_drone.model,
+    "emps": emps.model,
+    "pamh_aeropendulum": pamh_aeropendulum.model,
 }
