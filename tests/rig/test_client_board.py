@@ -1,0 +1,116 @@
+"""The client and the real image through `emulated://`: the same bits as the compiled law, nothing lost, flights on encoders."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from codegen.law import generate_law
+from records.errors import BadInput
+from records.protocol import PROTOCOL
+from rig.client import BoardClient
+from rig.controller import BoardController
+from rig.image import build_firmware
+from rig.numbers import Float32Numbers
+from rig.port import open_port
+from tests.law_tables import ce150_table
+from verification.host_law import HostLaw
+
+TABLE = ce150_table()
+STEP_RAD = 2.0 * np.pi / 4096.0
+TICK_S = 0.01
+ERRORS = ("cobs_errors", "too_long", "crc_errors", "frames_lost", "uart_overruns", "rx_ring_overflows", "tick_overruns")
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory) -> str:
+    folder = tmp_path_factory.mktemp("image")
+    build_firmware(generate_law(TABLE), folder)
+    return f"emulated://{folder / 'firmware.elf'}"
+
+
+def bits(values) -> bytes:
+    return struct.pack("<2f", *values)
+
+
+def wandering(steps: int, seed: int) -> np.ndarray:
+    """Rows of psi_ref, phi_ref, psi, phi [rad]: jumping references, angles quantised as by the encoders."""
+    source = np.random.default_rng(seed)
+    references = np.repeat(source.uniform(-0.6, 0.6, (steps // 50 + 1, 2)), 50, axis=0)[:steps]
+    angles = np.cumsum(source.normal(0.0, 0.004, (steps, 2)), axis=0)
+    return np.hstack([references, np.round(angles / STEP_RAD) * STEP_RAD])
+
+
+def test_a_thousand_samples_over_the_line_give_the_bits_of_the_compiled_law(url):
+    rows = wandering(1000, seed=2)
+    host = HostLaw(generate_law(TABLE))
+    with BoardClient.connect(url, table_digest=TABLE.digest) as client:
+        board = BoardController(client)
+        for controller in (board, host):
+            controller.reset(rows[0, 2], rows[0, 3])
+        answers = [board.step(*row) for row in rows]
+        counted = client.counters()
+    assert [bits(answer) for answer in answers] == [bits(host.step(*row)) for row in rows]
+    assert {name: counted[name] for name in ERRORS} == dict.fromkeys(ERRORS, 0)
+    assert len({bits(answer) for answer in answers}) > 500
+
+
+def test_the_board_of_another_table_is_refused_before_anything_runs(url):
+    with pytest.raises(BadInput, match="flash the image of this table"):
+        BoardClient.connect(url, table_digest="00" * 32)
+
+
+def test_an_image_that_is_not_there_is_one_clear_line():
+    with pytest.raises(BadInput, match=r"not-there\.elf") as caught:
+        BoardClient.connect("emulated:///not-there.elf")
+    assert "\n" not in str(caught.value)
+
+
+def test_the_self_test_of_the_law_passes_on_the_board(url):
+    with BoardClient.connect(url, table_digest=TABLE.digest) as client:
+        assert client.self_test() == 0
+
+
+def test_a_flight_on_its_own_encoders_gives_the_bits_of_the_compiled_law(url):
+    port = open_port(url, timeout_s=0.25)
+    client = BoardClient.over(port, url, table_digest=TABLE.digest, numbers=Float32Numbers())
+    host = HostLaw(generate_law(TABLE))
+    source = np.random.default_rng(4)
+    counts = np.cumsum(source.integers(-3, 4, (300, 2)), axis=0)
+    client.arm("FLYING")
+    seen = []
+    for k, (psi_counts, phi_counts) in enumerate(counts):
+        port.board.set_encoder(2, int(psi_counts))
+        port.board.set_encoder(3, int(phi_counts))
+        client.reference(0.2 if k % 100 < 50 else -0.2, 0.1)
+        telemetry = client.telemetry()
+        assert telemetry is not None
+        seen.append(telemetry)
+    client.disarm()
+    assert port.board.pwm().enabled is False
+    host.reset(seen[0].psi_rad, seen[0].phi_rad)
+    expected = [host.step(t.psi_ref_rad, t.phi_ref_rad, t.psi_rad, t.phi_rad) for t in seen]
+    assert [bits((t.u_M_V, t.u_T_V)) for t in seen] == [bits(answer) for answer in expected]
+    assert [t.tick - seen[0].tick for t in seen] == list(range(len(seen)))
+    assert np.allclose([t.psi_rad for t in seen], [t.psi_counts * STEP_RAD for t in seen], rtol=1e-6, atol=0.0)
+    assert seen[-1].duty_main_ticks == round(seen[-1].u_M_V * 320)
+    assert len({t.psi_counts for t in seen}) > 10
+
+
+def test_a_host_that_goes_away_leaves_the_rotors_off(url):
+    port = open_port(url, timeout_s=0.25)
+    client = BoardClient.over(port, url, table_digest=TABLE.digest, numbers=Float32Numbers())
+    client.arm("FLYING")
+    client.reference(0.5, 0.0)
+    port.wait(0.05)
+    assert port.board.pwm().enabled
+    port.wait((PROTOCOL.constant("HOST_LOSS_SAMPLES") + PROTOCOL.constant("RAMP_SAMPLES")) * TICK_S)
+    pwm = port.board.pwm()
+    assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks) == (False, 0, 0)
+
+
+def test_a_line_at_another_speed_says_noise_or_nothing(url):
+    port = open_port(url, timeout_s=0.25)
+    port.baudrate = 115_200
+    with pytest.raises(BadInput, match=r"noise|no answer"):
+        BoardClient.over(port, url, table_digest=None, numbers=Float32Numbers())
