@@ -8,7 +8,7 @@ from toolchain.host import CText
 from toolchain.target import build_image
 
 FOLDER = Path(__file__).resolve().parent
-FLAGS = ("-O2", "-g", "-std=gnu11", "-ffreestanding", "-fno-sanitize=undefined", "-fno-stack-protector", "-Wall", "-Werror")
+FLAGS = ("-O2", "-g", "-std=gnu11", "-ffreestanding", "-fno-sanitize=undefined", "-fno-stack-protector", "-Wall", "-Wno-unused-function", "-Werror")
 
 PRELUDE = """
 #include <stdint.h>
@@ -20,7 +20,7 @@ typedef void (*vector)(void);
 #define VECTORS(...) __attribute__((section(".vectors"), used)) static const vector table[48] = {(vector)&_stack_top, Reset_Handler, __VA_ARGS__}
 #define NAKED __attribute__((naked, noinline, used))
 #define STOP() __asm volatile("bkpt 0")
-__attribute__((unused)) static void clock_64_mhz(void) {
+static void clock_64_mhz(void) {
     REG(0x40022000) = 0x702;
     REG(0x4002100C) = 2u | 8u << 8 | 1u << 28 | 1u << 29;
     REG(0x40021000) |= 1u << 24;

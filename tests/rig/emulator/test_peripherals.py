@@ -1,0 +1,261 @@
+"""Clock tree, timers, encoders, PWM, pins, watchdog, identity."""
+
+import pytest
+
+from rig.emulator.answers import BoardConfig
+from rig.emulator.board import EmulatedBoard
+from rig.emulator.stops import StopKind
+from tests.rig.emulator.programs import powered, word
+
+LSI_HZ = 32_000
+
+
+def stopped(name: str, source: str, cycles: int = 200_000) -> EmulatedBoard:
+    board = powered(name, source)
+    stop = board.run_for(cycles)
+    assert stop.kind == StopKind.BREAKPOINT, str(stop)
+    return board
+
+
+def test_the_core_runs_at_16_mhz_after_reset_and_at_64_from_the_pll() -> None:
+    board = powered("clock", "void Reset_Handler(void) { clock_64_mhz(); STOP(); } VECTORS(0);")
+    assert board.clock_hz == 16_000_000
+    board.run_for(1000)
+    assert board.clock_hz == 64_000_000
+    before_s, before = board.time_s, board.cycles
+    source = "void Reset_Handler(void) { clock_64_mhz(); for (;;) {} } VECTORS(0);"
+    board = powered("clock_loop", source)
+    board.run_for(1000)
+    before_s, before = board.time_s, board.cycles
+    board.run_for(64_000)
+    assert board.time_s - before_s == pytest.approx((board.cycles - before) / 64e6, abs=1e-12)
+    assert board.time_s - before_s == pytest.approx(1e-3, abs=1e-7)
+
+
+def test_64_mhz_without_flash_wait_states_is_refused() -> None:
+    source = "void Reset_Handler(void) { clock_64_mhz(); REG(0x40022000) = 0; STOP(); } VECTORS(0);"
+    stop = powered("latency", source).run_for(1000)
+    assert stop.kind == StopKind.FLASH_LATENCY
+    assert "64000000" in stop.message
+
+
+def test_prescalers_divide_core_and_timer_clock() -> None:
+    source = """
+    volatile uint32_t first, second;
+    void Reset_Handler(void) {
+        REG(0x4002103C) = 1u << 4;
+        REG(0x40021008) = 5u << 12; /* APB / 4: timers run at half the core clock */
+        REG(0x40001000) = 1;
+        first = REG(0x40001024);
+        for (int i = 0; i < 100; i++) __asm volatile("nop");
+        second = REG(0x40001024);
+        REG(0x40021008) = 9u << 8; /* AHB / 4 */
+        STOP();
+    }
+    VECTORS(0);
+    """
+    board = stopped("prescalers", source)
+    assert board.clock_hz == 4_000_000
+    # 100 turns of nop, subtract, taken branch: 4 cycles each, half as many counts
+    assert word(board, "second") - word(board, "first") == pytest.approx(200, abs=8)
+
+
+TICK = """
+volatile uint32_t ticks;
+void tick(void) { REG(0x40001010) = 0; ticks++; }
+void Reset_Handler(void) {
+    clock_64_mhz();
+    REG(0x4002103C) = 3u << 4;
+    REG(0x40001028) = 63;
+    REG(0x4000102C) = 9999;
+    REG(0x40001014) = 1;
+    REG(0x40001010) = 0;
+    REG(0x4000100C) = 1;
+    REG(0x40001000) = 1;
+    REG(0xE000E100) = 1u << 17;
+    for (;;) __asm volatile("wfi");
+}
+VECTORS([16 + 17] = tick);
+"""
+
+
+def test_tim6_interrupts_every_ten_milliseconds_without_drift() -> None:
+    board = powered("tick", TICK)
+    board.run_until_s(1.0005)
+    assert word(board, "ticks") == 100
+    board.run_until_s(60.0005)
+    assert word(board, "ticks") == 6000
+    assert board.exception_counts() == {16 + 17: 6000}
+
+
+BUFFERED = """
+volatile uint32_t counts[6];
+void Reset_Handler(void) {
+    REG(0x4002103C) = 3u << 4;
+    REG(0x4000142C) = 99;
+    REG(0x40001400) = 1 | OPTIONS;
+    for (int i = 0; i < 100; i++) __asm volatile("nop");
+    counts[0] = REG(0x40001410);
+    REG(0x40001410) = 0;
+    counts[1] = REG(0x40001410);
+    REG(0x40001414) = 1;
+    counts[2] = REG(0x40001410);
+    counts[3] = REG(0x40001400);
+    REG(0x40001424) = 77;
+    counts[4] = REG(0x40001424);
+    STOP();
+}
+VECTORS(0);
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "flags", "after_generation", "running"),
+    [("0", 1, 1, True), ("4", 1, 0, True), ("2", 0, 0, True), ("8", 1, 1, False)],
+    ids=["plain", "URS: software update sets no flag", "UDIS: no update", "one pulse stops at the update"],
+)
+def test_update_flag_and_one_pulse_mode_follow_the_control_bits(options: str, flags: int, after_generation: int, running: bool) -> None:
+    board = stopped(f"buffered{options}", BUFFERED.replace("OPTIONS", options))
+    seen = [word(board, "counts", i) for i in range(5)]
+    assert seen[:3] == [flags, 0, after_generation]
+    assert bool(seen[3] & 1) == running
+    assert 77 <= seen[4] <= 77 + (8 if running else 0)
+
+
+ENCODERS = """
+volatile uint32_t go, low, high, direction;
+void Reset_Handler(void) {
+    REG(0x4002103C) = 3;
+    REG(0x40000008) = 3;
+    REG(0x40000408) = 3;
+    REG(0x4000042C) = 4095;
+    REG(0x40000000) = REG(0x40000400) = 1;
+    for (;;) { low = REG(0x40000424); high = REG(0x40000024); direction = REG(0x40000400) >> 4 & 1; }
+}
+VECTORS(0);
+"""
+
+
+@pytest.mark.parametrize(
+    ("counts", "tim2", "tim3"), [(5, 5, 5), (-1, 0xFFFFFFFF, 4095), (4096, 4096, 0), (-5000, 2**32 - 5000, 3192), (70_000, 70_000, 368)]
+)
+def test_encoder_counters_wrap_at_their_reload_plus_one(counts: int, tim2: int, tim3: int) -> None:
+    board = powered("encoders", ENCODERS)
+    board.run_for(500)
+    board.set_encoder(2, counts)
+    board.set_encoder(3, counts)
+    board.run_for(500)
+    assert (word(board, "high"), word(board, "low")) == (tim2, tim3)
+    assert word(board, "direction") == (1 if counts < 0 else 0)
+
+
+def test_pwm_reports_compare_values_period_and_the_main_output_enable() -> None:
+    source = """
+    void Reset_Handler(void) {
+        REG(0x40021040) = 1u << 11;
+        REG(0x40012C2C) = 3199; REG(0x40012C34) = 800; REG(0x40012C38) = 1600; REG(0x40012C20) = 0x11;
+        REG(0x40012C00) = 1;
+        BDTR
+        STOP();
+    }
+    VECTORS(0);
+    """
+    off = stopped("pwm_off", source.replace("BDTR", "")).pwm()
+    assert (off.main_ticks, off.tail_ticks, off.period_ticks, off.enabled, off.channels_enabled) == (800, 1600, 3200, False, (True, True))
+    assert stopped("pwm_on", source.replace("BDTR", "REG(0x40012C44) = 1u << 15;")).pwm().enabled
+
+
+def test_pins_follow_their_latch_and_read_what_the_host_drives() -> None:
+    source = """
+    volatile uint32_t in[3];
+    void Reset_Handler(void) {
+        REG(0x40021034) = 7;
+        REG(0x50000400) = 1u << 2 * 3;
+        REG(0x50000418) = 1u << 3 | 1u << 7;
+        in[0] = REG(0x50000410);
+        REG(0x50000418) = 1u << (16 + 3);
+        in[1] = REG(0x50000410);
+        *(volatile uint16_t *)0x50000414 = 0x8008;
+        in[2] = REG(0x50000414);
+        STOP();
+    }
+    VECTORS(0);
+    """
+    board = powered("pins", source)
+    board.drive_pin("B", 1, True)
+    board.run_for(1000)
+    assert [word(board, "in", i) for i in range(3)] == [1 << 3 | 1 << 1, 1 << 1, 0x8008]
+    assert board.gpio("B").drives(3) is True
+    assert board.gpio("B").drives(4) is None
+
+
+WATCHDOG = """
+void Reset_Handler(void) {
+    if (REG(0x40021060) & 1u << 29) STOP();
+    REG(0x40003000) = 0xCCCC;
+    REG(0x40003000) = 0x5555;
+    REG(0x40003004) = 1; /* divide by 8 */
+    REG(0x40003008) = 399; /* 400 counts: 100 ms */
+    while (REG(0x4000300C)) {}
+    for (uint32_t i = 0; i < FEEDS; i++) {
+        REG(0x40003000) = 0xAAAA;
+        for (uint32_t k = 0; k < 200000; k++) __asm volatile("nop");
+    }
+    REG(0x40003000) = 0xAAAA;
+    for (;;) {}
+}
+VECTORS(0);
+"""
+
+
+@pytest.mark.parametrize("feeds", [0, 5])
+def test_the_watchdog_bites_100_ms_after_the_last_feed_and_the_reset_names_it(feeds: int) -> None:
+    board = powered(f"watchdog{feeds}", WATCHDOG.replace("FEEDS", str(feeds)))
+    stop = board.run_until_s(2.0)
+    assert stop.kind == StopKind.BREAKPOINT
+    causes = [reset.cause for reset in board.resets]
+    assert causes == ["power", "watchdog"]
+    feeding_s = feeds * 200_000 * 4 / 16e6
+    assert board.resets[1].time_s == pytest.approx(feeding_s + 400 * 8 / LSI_HZ, rel=0.01)
+
+
+def test_a_run_can_end_at_a_reset() -> None:
+    board = powered("watchdog0", WATCHDOG.replace("FEEDS", "0"), BoardConfig(stop_on_reset=True))
+    stop = board.run_until_s(2.0)
+    assert stop.kind == StopKind.RESET
+    assert board.time_s == pytest.approx(0.1, rel=0.01)
+
+
+def test_the_pin_resets_without_touching_ram() -> None:
+    board = powered("tick", TICK)
+    board.run_until_s(0.1)
+    ticks = word(board, "ticks")
+    board.reset()
+    assert [reset.cause for reset in board.resets] == ["power", "pin"]
+    assert word(board, "ticks") == ticks > 0
+
+
+def test_the_unique_id_is_the_configured_one() -> None:
+    source = "volatile uint32_t id[3]; void Reset_Handler(void) { for (int i = 0; i < 3; i++) id[i] = REG(0x1FFF7590 + 4 * i); STOP(); } VECTORS(0);"
+    board = powered("identity", source, BoardConfig(unique_id=(1, 2, 3)))
+    board.run_for(1000)
+    assert [word(board, "id", i) for i in range(3)] == [1, 2, 3]
+
+
+def test_system_timer_counts_down_through_zero_and_reloads() -> None:
+    source = """
+    volatile uint32_t values[4];
+    void Reset_Handler(void) {
+        REG(0xE000E014) = 9; REG(0xE000E018) = 0; REG(0xE000E010) = 5;
+        values[0] = REG(0xE000E010) >> 16 & 1;
+        for (int i = 0; i < 50; i++) __asm volatile("nop");
+        values[1] = REG(0xE000E010) >> 16 & 1;
+        values[2] = REG(0xE000E018);
+        REG(0xE000E010) = 0;
+        STOP();
+    }
+    VECTORS(0);
+    """
+    board = stopped("systick", source)
+    assert [word(board, "values", i) for i in range(2)] == [0, 1]
+    assert word(board, "values", 2) <= 9
