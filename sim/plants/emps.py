@@ -7,8 +7,6 @@ q the position of the carriage, u the motor voltage behind its limits, gtau the 
 
 from functools import cache
 
-import sympy
-
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
 
 Q, Q_DOT = symbol("q_m"), symbol("q_dot_m_s")
