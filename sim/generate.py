@@ -31,7 +31,7 @@ def model_header(model: Model) -> str:
             f"/* Equations of {model.name}, generated; see sim/plants. */",
             *(f"#define {name} {value}" for name, value in sizes.items()),
             *_index_tables(model),
-            _function("static inline void model_constants(const num *p, num *c)", fill),
+            _function("ALWAYS_INLINE void model_constants(const num *p, num *c)", fill),
             *functions,
             "",
         ]
@@ -82,7 +82,7 @@ def _rates(model: Model, constants: Constants) -> str:
     for place, axis in enumerate(model.axes):
         row = model.states.index(axis.velocity)
         lines.append(f"dx[{row}] = move[{place}]*((torque[{place}] - friction_{place})*inverse_inertia_{place});")
-    head = f"static inline void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
+    head = f"ALWAYS_INLINE void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
     return _function(f"{head} num *dx, num *torque, num *up, num *down)", lines)
 
 
@@ -93,7 +93,7 @@ def _rest_rates(model: Model) -> dict[str, sympy.Expr]:
 
 def _outputs(model: Model, constants: Constants) -> str:
     targets = {f"y[{row}]": expression for row, expression in enumerate(model.outputs.values())}
-    head = "static inline void model_outputs(num t_s, const num *x, const num *c, num *y)"
+    head = "ALWAYS_INLINE void model_outputs(num t_s, const num *x, const num *c, num *y)"
     lines = [*_locals(model, inputs=False), *assignments(targets, constants)]
     return _function(head, lines)
 
@@ -112,7 +112,7 @@ def _jacobians(model: Model, constants: Constants) -> str:
         jacobian = smooth(functions.jacobian(sympy.Matrix(variables)))
         for (row, column), entry in jacobian.todok().items():
             targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
-    head = f"static inline void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H)"
+    head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H)"
     return _function(head, [*_locals(model), *assignments(targets, constants)])
 
 

@@ -4,17 +4,18 @@ import math
 from typing import Any
 
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable
+from records.table import AxisLaw, ControllerTable, Polynomial
 from sim.kernel import Kernel
 
 MAX_COEFFICIENTS = 12
+SPARE: Polynomial = ()  # fills each axis up to eight rows in C
 
 
 def law_struct(kernel: Kernel, table: ControllerTable) -> Any:
     """The C struct `law_table`; raises BadInput when a polynomial has more coefficients than it has room for."""
     result = kernel.ffi.new("law_table *")
     axes = (table.elevation, table.azimuth)
-    rows = [row for axis in axes for row in (*axis.q_V_rad, *axis.p)]
+    rows = [row for axis in axes for row in (*axis.q_V_rad, *axis.p, SPARE)]
     result.coefficients = _checked(max(len(row) for row in rows))
     result.feedforward_coefficients = _checked(max(len(axis.feedforward_V) for axis in axes))
     result.psi_min_rad, result.psi_max_rad = table.psi_min_rad, table.psi_max_rad

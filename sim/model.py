@@ -95,12 +95,14 @@ def named_symbols(specs: tuple[ParameterSpec, ...]) -> dict[str, Any]:
 
 
 def polynomial(coefficients: tuple[sympy.Symbol, ...], argument: sympy.Expr) -> sympy.Expr:
-    """sum_i c_i argument^i."""
-    return sympy.Add(*(c * argument**power for power, c in enumerate(coefficients)))
+    """sum_i c_i argument^i, nested as Horner does."""
+    result = sympy.Integer(0)
+    for coefficient in reversed(coefficients):
+        result = coefficient + argument * result
+    return result
 
 
 def odd_polynomial(coefficients: tuple[sympy.Symbol, ...], argument: sympy.Expr) -> sympy.Expr:
     """The odd extension sgn(w) sum_i c_i |w|^i, written so that it is smooth at 0 where c_0 is 0."""
     constant, *higher = coefficients
-    smooth = (c * argument * sympy.Abs(argument) ** power for power, c in enumerate(higher))
-    return sympy.Add(constant * sympy.sign(argument), *smooth)
+    return constant * sympy.sign(argument) + argument * polynomial(tuple(higher), sympy.Abs(argument))

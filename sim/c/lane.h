@@ -26,6 +26,7 @@ static inline mask is_less(num a, num b) { return a < b; }
 static inline mask is_less_equal(num a, num b) { return a <= b; }
 static inline mask is_equal(num a, num b) { return a == b; }
 static inline num lane_abs(num a) { return fabs(a); }
+static inline num lane_copysign(num a, num b) { return copysign(a, b); }
 
 #else
 
@@ -43,16 +44,19 @@ static inline mask is_less(num a, num b) { return a < b; }
 static inline mask is_less_equal(num a, num b) { return a <= b; }
 static inline mask is_equal(num a, num b) { return a == b; }
 static inline num lane_abs(num a) { return __builtin_elementwise_abs(a); }
+static inline num lane_copysign(num a, num b) { return __builtin_elementwise_copysign(a, b); }
 
 #endif
 
 #define NUM(value) splat(value)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 static inline num lane_min(num a, num b) { return select(is_less(b, a), b, a); }
 static inline num lane_max(num a, num b) { return select(is_less(a, b), b, a); }
 static inline num lane_clamp(num a, num lower, num upper) { return lane_min(lane_max(a, lower), upper); }
 static inline num lane_step(num a) { return select(is_less(NUM(0.0), a), NUM(1.0), NUM(0.0)); }
-static inline num lane_sign(num a) { return lane_step(a) - lane_step(-a); }
+static inline num lane_sign(num a) { return select(is_equal(a, NUM(0.0)), NUM(0.0), lane_copysign(NUM(1.0), a)); }
 
 /* Nearest integer, ties to even, exact for |a| < 2^51; the additions are not to be folded away, which no flag of the build allows. */
 static inline num lane_round(num a)

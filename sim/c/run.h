@@ -62,7 +62,7 @@ static inline void one_lane_events(lane_group *group, int lane, num t_s, num h_s
     }
 }
 
-static inline void advance(lane_group *group, num t_s, num h_s, const num *u)
+ALWAYS_INLINE void advance(lane_group *group, num t_s, num h_s, const num *u)
 {
     num x[N_STATES];
     step_stages seen;

@@ -10,7 +10,7 @@
 #include "sincos_coefficients.h"
 
 /* sin(a + tail) and cos(a + tail) for |a| <= SINCOS_DIRECT and |tail| below the last bit of a. */
-static inline void sincos_direct(num a, num tail, num *sine, num *cosine)
+ALWAYS_INLINE void sincos_direct(num a, num tail, num *sine, num *cosine)
 {
     const num z = a * a, z2 = z * z, z4 = z2 * z2;
     const num s = (NUM(SIN_0) + NUM(SIN_1) * z) + z2 * (NUM(SIN_2) + NUM(SIN_3) * z) + z4 * (NUM(SIN_4) + NUM(SIN_5) * z);
@@ -42,7 +42,7 @@ static inline void sincos_reduced(num a, num *sine, num *cosine)
     *cosine = flip * select(swap, -s, c);
 }
 
-static inline void lane_sincos(num a, num *sine, num *cosine)
+ALWAYS_INLINE void lane_sincos(num a, num *sine, num *cosine)
 {
     if (all(is_less_equal(lane_abs(a), NUM(SINCOS_DIRECT)))) {
         sincos_direct(a, NUM(0.0), sine, cosine);

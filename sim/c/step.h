@@ -19,14 +19,14 @@ typedef struct {
     num torque[4][AXES], up[4][AXES], down[4][AXES], start[AXES], end[AXES];
 } step_stages;
 
-static inline void rk4_stage(num t_s, const plant_body *body, const num *x, const num *u, const num *c, int stage, num *dx,
+ALWAYS_INLINE void rk4_stage(num t_s, const plant_body *body, const num *x, const num *u, const num *c, int stage, num *dx,
                              step_stages *seen)
 {
     model_rates(t_s, x, u, c, body->sign, body->move, dx, seen->torque[stage], seen->up[stage], seen->down[stage]);
 }
 
 /* x(t + h) from x(t); u is held. */
-static inline void rk4_step(num t_s, num h_s, const plant_body *body, const num *u, const num *c, num *x, step_stages *seen)
+ALWAYS_INLINE void rk4_step(num t_s, num h_s, const plant_body *body, const num *u, const num *c, num *x, step_stages *seen)
 {
     const num half = NUM(0.5) * h_s, sixth = h_s / NUM(6.0);
     num k1[N_STATES], k2[N_STATES], k3[N_STATES], k4[N_STATES], at[N_STATES];
@@ -53,10 +53,10 @@ static inline void rk4_step(num t_s, num h_s, const plant_body *body, const num 
  * A moving axis: velocity at or through zero, or possibly there and back (both end tangents reach zero), or a stop passed.
  * A held axis: torque beyond breakaway in any stage; towards a stop that it lies against, it is held by any torque.
  */
-static inline mask step_suspect(const plant_body *body, const num *x, num h_s, const num *c, const step_stages *seen)
+ALWAYS_INLINE mask step_suspect(const plant_body *body, const num *x, num h_s, const num *c, const step_stages *seen)
 {
     mask suspect = is_less(NUM(1.0), NUM(0.0));
-    for (int a = 0; a < N_AXES; a++) {
+    UNROLLED for (int a = 0; a < N_AXES; a++) {
         const num sign = body->sign[a], lower = c[AXIS_LOWER[a]], upper = c[AXIS_UPPER[a]];
         const num before = sign * body->x[AXIS_VELOCITY[a]], after = sign * x[AXIS_VELOCITY[a]];
         const num position = x[AXIS_POSITION[a]];
@@ -66,7 +66,7 @@ static inline mask step_suspect(const plant_body *body, const num *x, num h_s, c
         suspect |= rubbing & (is_less_equal(after, NUM(0.0)) | dip);
         suspect |= moving & (is_less(position, lower) | is_less(upper, position));
         const mask below = is_less_equal(position, lower), above = is_less_equal(upper, position);
-        for (int stage = 0; stage < 4; stage++) {
+        UNROLLED for (int stage = 0; stage < 4; stage++) {
             const mask broken = (is_less(seen->up[stage][a], seen->torque[stage][a]) & ~above) |
                                 (is_less(seen->torque[stage][a], -seen->down[stage][a]) & ~below);
             suspect |= broken & ~moving;
