@@ -209,12 +209,18 @@ static void locate(const moment *at, const view *end, int axis, int event, view 
     }
 }
 
-/* Where within h_s an axis may have been past an event although it is not at the end: the lowest point of the velocity's cubic through
- * both ends, or the middle for a held axis; 0 where there is none. */
-static double doubtful_instant(const moment *at, double h_s, int axis, const view *end)
+/* Where within the step to `end` an axis may have been past an event although it is not at its end; 0 where that cannot be. For a moving
+ * axis the lowest point of the velocity's cubic through both ends, for a held one the middle, if a middle stage saw it break away. */
+static double doubtful_instant(const moment *at, int axis, const view *end)
 {
-    if (at->body.move[axis] == 0.0)
-        return 0.5 * h_s;
+    const double h_s = end->h_s;
+    if (at->body.move[axis] == 0.0) {
+        for (int event = EVENT_BREAK_UP; event <= EVENT_BREAK_DOWN; event++)
+            for (int stage = 1; stage <= 2; stage++)
+                if (watched(at, axis, event) && break_margin(&end->seen, stage, axis, event) < 0.0)
+                    return 0.5 * h_s;
+        return 0.0;
+    }
     const double sign = at->body.sign[axis];
     const double v0 = sign * at->body.x[AXIS_VELOCITY[axis]], v1 = sign * end->x[AXIS_VELOCITY[axis]];
     const double a0 = sign * end->seen.start[axis] * h_s, a1 = sign * end->seen.end[axis] * h_s;
@@ -248,7 +254,7 @@ static bool passed_within(const moment *at, const view *end, view *then, next_ev
 {
     const next_event none = {0, EVENT_NONE};
     for (int a = 0; a < N_AXES; a++) {
-        const double instant = doubtful_instant(at, end->h_s, a, end);
+        const double instant = doubtful_instant(at, a, end);
         if (instant > 0.0 && instant < end->h_s) {
             look(at, instant, then);
             if (passed(at, then, none, found))
