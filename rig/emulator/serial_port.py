@@ -30,6 +30,8 @@ class EmulatedSerial(serial.SerialBase):  # type: ignore[misc]
     Raises serial.SerialException where a device would: no such image, port closed, board stopped by a fault.
     """
 
+    is_open: bool
+
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         self.board: EmulatedBoard | None = None
         super().__init__(*args, **kwargs)
@@ -77,10 +79,9 @@ class EmulatedSerial(serial.SerialBase):  # type: ignore[misc]
 
     @property
     def in_waiting(self) -> int:
-        """Bytes that can be read at once; looking in vain costs the time of one byte, so that polling loops end."""
+        """Bytes that can be read at once; looking costs the time of one byte, so that polling loops end."""
         board = self._powered()
-        if not board.uart_waiting():
-            self._run_until(1, board.time_s + FRAME_BITS / self._baudrate)
+        self._run_until(board.uart_waiting() + 1, board.time_s + FRAME_BITS / self._baudrate)
         return board.uart_waiting()
 
     def read(self, size: int = 1) -> bytes:

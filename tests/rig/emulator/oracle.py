@@ -10,7 +10,11 @@ from rig.emulator.board import EmulatedBoard
 from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SRAM_BASE, SRAM_BYTES
 from rig.emulator.stops import Stop
 
-GENERAL = [getattr(arm, f"UC_ARM_REG_R{i}") for i in range(13)] + [arm.UC_ARM_REG_SP, arm.UC_ARM_REG_LR, arm.UC_ARM_REG_PC]
+GENERAL = [getattr(arm, f"UC_ARM_REG_R{i}") for i in range(13)] + [
+    arm.UC_ARM_REG_SP,
+    arm.UC_ARM_REG_LR,
+    arm.UC_ARM_REG_PC,
+]
 SPECIAL = [arm.UC_ARM_REG_XPSR, arm.UC_ARM_REG_PRIMASK, arm.UC_ARM_REG_CONTROL, arm.UC_ARM_REG_MSP, arm.UC_ARM_REG_PSP]
 FLAGS = 0xF0000000
 SP = 13
@@ -64,7 +68,10 @@ def normal(after: Sequence[int]) -> tuple[int, ...]:
 
 def is_code(address: int) -> bool:
     """Whether instructions can be fetched there."""
-    return any(0 <= address - base < size for base, size in ((0, FLASH_BYTES), (FLASH_BASE, FLASH_BYTES), (SRAM_BASE, SRAM_BYTES)))
+    return any(
+        0 <= address - base < size
+        for base, size in ((0, FLASH_BYTES), (FLASH_BASE, FLASH_BYTES), (SRAM_BASE, SRAM_BYTES))
+    )
 
 
 def board_step(board: EmulatedBoard, registers: Sequence[int], xpsr: int) -> tuple[Outcome, Stop]:

@@ -8,7 +8,17 @@ from toolchain.host import CText
 from toolchain.target import build_image
 
 FOLDER = Path(__file__).resolve().parent
-FLAGS = ("-O2", "-g", "-std=gnu11", "-ffreestanding", "-fno-sanitize=undefined", "-fno-stack-protector", "-Wall", "-Wno-unused-function", "-Werror")
+FLAGS = (
+    "-O2",
+    "-g",
+    "-std=gnu11",
+    "-ffreestanding",
+    "-fno-sanitize=undefined",
+    "-fno-stack-protector",
+    "-Wall",
+    "-Wno-unused-function",
+    "-Werror",
+)
 
 PRELUDE = """
 #include <stdint.h>
@@ -17,7 +27,8 @@ PRELUDE = """
 extern uint32_t _stack_top;
 void Reset_Handler(void);
 typedef void (*vector)(void);
-#define VECTORS(...) __attribute__((section(".vectors"), used)) static const vector table[48] = {(vector)&_stack_top, Reset_Handler, __VA_ARGS__}
+#define VECTORS(...) \\
+    __attribute__((section(".vectors"), used)) static const vector table[48] = {(vector)&_stack_top, Reset_Handler, __VA_ARGS__}
 #define NAKED __attribute__((naked, noinline, used))
 #define STOP() __asm volatile("bkpt 0")
 static void clock_64_mhz(void) {

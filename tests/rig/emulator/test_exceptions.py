@@ -41,7 +41,8 @@ NAKED void svc(void) {
 }
 NAKED void Reset_Handler(void) {
     __asm volatile("sub sp, #PADDING\\n mov r0, sp\\n ldr r1, =sp_before\\n str r0, [r1]\\n"
-        "ldr r0, =0x12121212\\n mov r12, r0\\n ldr r0, =0x14141414\\n mov lr, r0\\n movs r0, #10\\n movs r1, #11\\n movs r2, #12\\n movs r3, #13\\n"
+        "ldr r0, =0x12121212\\n mov r12, r0\\n ldr r0, =0x14141414\\n mov lr, r0\\n"
+        "movs r0, #10\\n movs r1, #11\\n movs r2, #12\\n movs r3, #13\\n"
         "cmp r0, r0\\n .global the_call\\n the_call: svc 7\\n bkpt 0\\n .ltorg");
 }
 VECTORS(0, 0, 0, 0, 0, 0, 0, 0, 0, svc);
@@ -55,7 +56,16 @@ def test_an_exception_stacks_eight_words_aligned_to_eight_bytes_with_the_padding
     frame = [word(board, "frame", i) for i in range(8)]
     return_address = board.symbol("the_call")[0] + 2
     z_and_c = 0x60000000
-    assert frame == [10, 11, 12, 13, 0x12121212, 0x14141414, return_address, z_and_c | 1 << 24 | (1 << 9 if padded else 0)]
+    assert frame == [
+        10,
+        11,
+        12,
+        13,
+        0x12121212,
+        0x14141414,
+        return_address,
+        z_and_c | 1 << 24 | (1 << 9 if padded else 0),
+    ]
     assert word(board, "sp_before") == before
     assert word(board, "sp_in_handler") == before - 32 - (4 if padded else 0)
     assert word(board, "lr_in_handler") == 0xFFFFFFF9
@@ -66,14 +76,18 @@ def test_an_exception_stacks_eight_words_aligned_to_eight_bytes_with_the_padding
 
 RETURNS = """
 NAKED void pendsv(void) { __asm volatile("mov r0, lr\\n b keep_lr"); }
-NAKED void svc(void) { __asm volatile("push {lr}\\n mov r0, lr\\n bl keep_lr\\n ldr r0, =0xE000ED04\\n ldr r1, =0x10000000\\n str r1, [r0]\\n nop\\n pop {pc}\\n .ltorg"); }
+NAKED void svc(void) {
+    __asm volatile("push {lr}\\n mov r0, lr\\n bl keep_lr\\n"
+        "ldr r0, =0xE000ED04\\n ldr r1, =0x10000000\\n str r1, [r0]\\n nop\\n pop {pc}\\n .ltorg");
+}
 __attribute__((used)) void keep_lr(uint32_t lr) { note(lr); }
 uint64_t process_stack[32];
 void Reset_Handler(void) {
     logged = 0;
     SHPR2 = 0x40000000; /* SVC 1, PendSV 0: it pre-empts */
     __asm volatile("svc 0");
-    __asm volatile("msr psp, %0\\n movs r0, #2\\n msr control, r0\\n isb\\n svc 0" :: "r"(&process_stack[32]) : "r0", "r1", "r2", "r3", "lr", "memory");
+    __asm volatile("msr psp, %0\\n movs r0, #2\\n msr control, r0\\n isb\\n svc 0"
+        :: "r"(&process_stack[32]) : "r0", "r1", "r2", "r3", "lr", "memory");
     uint32_t control; __asm volatile("mrs %0, control" : "=r"(control));
     note(control);
     STOP();
@@ -273,7 +287,9 @@ SKIP_ONE = "ldr r0, [sp, #24]\\n adds r0, #2\\n str r0, [sp, #24]\\n bx lr"
         ("breakpoint", "nop", "bkpt 0"),
     ],
 )
-def test_hard_fault_is_entered_at_the_faulting_instruction_when_the_run_shall_not_stop(name: str, prologue: str, culprit: str) -> None:
+def test_hard_fault_is_entered_at_the_faulting_instruction_when_the_run_shall_not_stop(
+    name: str, prologue: str, culprit: str
+) -> None:
     source = HARD_FAULT.replace("PROLOGUE", prologue).replace("CULPRIT", culprit).replace("HANDLER_END", SKIP_ONE)
     board = powered(f"fault_{name}", COMMON + source, FREE_RUNNING)
     board.run_until_symbol("fault", 1.0)
@@ -283,7 +299,11 @@ def test_hard_fault_is_entered_at_the_faulting_instruction_when_the_run_shall_no
 
 
 def test_a_fault_inside_hard_fault_locks_up() -> None:
-    source = HARD_FAULT.replace("PROLOGUE", "nop").replace("CULPRIT", ".short 0xDE00").replace("HANDLER_END", ".short 0xDE00")
+    source = (
+        HARD_FAULT.replace("PROLOGUE", "nop")
+        .replace("CULPRIT", ".short 0xDE00")
+        .replace("HANDLER_END", ".short 0xDE00")
+    )
     stop = powered("lockup", COMMON + source, FREE_RUNNING).run_for(1000)
     assert stop.kind == StopKind.LOCKUP
     assert "lockup" in stop.message

@@ -9,7 +9,14 @@ from rig.emulator.image import FLASH_BASE, SRAM_BASE, SRAM_BYTES
 from rig.emulator.stops import StopKind
 from tests.rig.emulator.oracle import Oracle, board_step
 from tests.rig.emulator.programs import build
-from tests.rig.emulator.thumb import CLASSES, HIGH_CLASSES, LONG_CLASSES, Instruction, random_instruction, random_registers
+from tests.rig.emulator.thumb import (
+    CLASSES,
+    HIGH_CLASSES,
+    LONG_CLASSES,
+    Instruction,
+    random_instruction,
+    random_registers,
+)
 
 SHARDS, SLOTS, VISITS = 4, 6900, 8  # 220 800 instructions, of which some 7 % are unaligned accesses
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
@@ -32,8 +39,6 @@ def fresh_board(flash: bytes) -> EmulatedBoard:
     board = EmulatedBoard(build("idle", IDLE), BoardConfig(check_stack_limit=False))
     board.write_memory(FLASH_BASE, flash)
     return board
-
-
 
 
 def told(instruction: Instruction, registers: list[int], xpsr: int) -> str:

@@ -114,7 +114,9 @@ VECTORS(0);
     [("0", 1, 1, True), ("4", 1, 0, True), ("2", 0, 0, True), ("8", 1, 1, False)],
     ids=["plain", "URS: software update sets no flag", "UDIS: no update", "one pulse stops at the update"],
 )
-def test_update_flag_and_one_pulse_mode_follow_the_control_bits(options: str, flags: int, after_generation: int, running: bool) -> None:
+def test_update_flag_and_one_pulse_mode_follow_the_control_bits(
+    options: str, flags: int, after_generation: int, running: bool
+) -> None:
     board = stopped(f"buffered{options}", BUFFERED.replace("OPTIONS", options))
     seen = [word(board, "counts", i) for i in range(5)]
     assert seen[:3] == [flags, 0, after_generation]
@@ -137,7 +139,8 @@ VECTORS(0);
 
 
 @pytest.mark.parametrize(
-    ("counts", "tim2", "tim3"), [(5, 5, 5), (-1, 0xFFFFFFFF, 4095), (4096, 4096, 0), (-5000, 2**32 - 5000, 3192), (70_000, 70_000, 368)]
+    ("counts", "tim2", "tim3"),
+    [(5, 5, 5), (-1, 0xFFFFFFFF, 4095), (4096, 4096, 0), (-5000, 2**32 - 5000, 3192), (70_000, 70_000, 368)],
 )
 def test_encoder_counters_wrap_at_their_reload_plus_one(counts: int, tim2: int, tim3: int) -> None:
     board = powered("encoders", ENCODERS)
@@ -161,7 +164,13 @@ def test_pwm_reports_compare_values_period_and_the_main_output_enable() -> None:
     VECTORS(0);
     """
     off = stopped("pwm_off", source.replace("BDTR", "")).pwm()
-    assert (off.main_ticks, off.tail_ticks, off.period_ticks, off.enabled, off.channels_enabled) == (800, 1600, 3200, False, (True, True))
+    assert (off.main_ticks, off.tail_ticks, off.period_ticks, off.enabled, off.channels_enabled) == (
+        800,
+        1600,
+        3200,
+        False,
+        (True, True),
+    )
     assert stopped("pwm_on", source.replace("BDTR", "REG(0x40012C44) = 1u << 15;")).pwm().enabled
 
 
@@ -236,7 +245,10 @@ def test_the_pin_resets_without_touching_ram() -> None:
 
 
 def test_the_unique_id_is_the_configured_one() -> None:
-    source = "volatile uint32_t id[3]; void Reset_Handler(void) { for (int i = 0; i < 3; i++) id[i] = REG(0x1FFF7590 + 4 * i); STOP(); } VECTORS(0);"
+    source = "volatile uint32_t id[3];\n"
+    source += (
+        "void Reset_Handler(void) { for (int i = 0; i < 3; i++) id[i] = REG(0x1FFF7590 + 4 * i); STOP(); } VECTORS(0);"
+    )
     board = powered("identity", source, BoardConfig(unique_id=(1, 2, 3)))
     board.run_for(1000)
     assert [word(board, "id", i) for i in range(3)] == [1, 2, 3]

@@ -1,5 +1,7 @@
 """USART2 on a line with true bit times: pace, order, overrun, framing, noise, interrupts."""
 
+from itertools import pairwise
+
 import pytest
 
 from rig.emulator.answers import BoardConfig
@@ -89,7 +91,7 @@ def test_bytes_come_back_in_order_one_frame_of_ten_bits_apart() -> None:
     answer = board.uart_read_timed()
     assert [byte.value for byte in answer] == list(range(1, 21))
     assert answer[0].end_s == pytest.approx(begin + HOST_BYTE_S + BOARD_BYTE_S, abs=2e-6)
-    gaps = [after.end_s - before.end_s for before, after in zip(answer, answer[1:], strict=False)]
+    gaps = [after.end_s - before.end_s for before, after in pairwise(answer)]
     assert gaps == pytest.approx([HOST_BYTE_S] * 19, abs=1e-6)
 
 
@@ -150,7 +152,9 @@ def test_a_receiver_that_is_off_hears_nothing_and_starts_with_the_next_byte() ->
     assert board.uart_read()[-4:] == b"mbuf"
 
 
-@pytest.mark.parametrize("feature", ["0x40004400) = 1u << 29", "0x40004400) = 1u << 12", "0x40004408) = 1u << 6", "0x40004404) = 1u << 13"])
+@pytest.mark.parametrize(
+    "feature", ["0x40004400) = 1u << 29", "0x40004400) = 1u << 12", "0x40004408) = 1u << 6", "0x40004404) = 1u << 13"]
+)
 def test_features_that_are_not_modelled_stop_with_the_register_named(feature: str) -> None:
     source = f"void Reset_Handler(void) {{ usart_start(0); REG({feature}; STOP(); }} VECTORS(0);"
     stop = powered("feature", START + source).run_for(1000)

@@ -89,7 +89,11 @@ def random_registers(rng: np.random.Generator, kind: str, pc: int) -> list[int]:
 
     MSR takes multiples of four only: unicorn keeps the low bits of a stack pointer, the architecture does not.
     """
-    kinds, near, anything = rng.integers(0, 6, 15).tolist(), rng.integers(0, 0x6000, 15).tolist(), rng.integers(0, 2**32, 15).tolist()
+    kinds, near, anything = (
+        rng.integers(0, 6, 15).tolist(),
+        rng.integers(0, 0x6000, 15).tolist(),
+        rng.integers(0, 2**32, 15).tolist(),
+    )
     values = [_value(*row) for row in zip(kinds, near, anything, strict=True)]
     values[13] = 0x20001000 + (near[13] & ~3)
     if kind == "msr":
@@ -98,5 +102,12 @@ def random_registers(rng: np.random.Generator, kind: str, pc: int) -> list[int]:
 
 
 def _value(kind: int, near: int, anything: int) -> int:
-    pointers = (0x20001000 + (near & ~3), 0x20001000 + near, near & 0xFC, CORNERS[anything % len(CORNERS)], anything, 0x08000001 + (near & ~1))
+    pointers = (
+        0x20001000 + (near & ~3),
+        0x20001000 + near,
+        near & 0xFC,
+        CORNERS[anything % len(CORNERS)],
+        anything,
+        0x08000001 + (near & ~1),
+    )
     return pointers[kind]
