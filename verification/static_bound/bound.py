@@ -6,6 +6,7 @@ for memory accessed as C allows: a store through a pointer does not hit stack wo
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from records.errors import VerificationFailed
@@ -14,7 +15,7 @@ from verification.static_bound.elf_image import ElfFunction, ElfImage, load_elf
 from verification.static_bound.exploration import Exploration, NewTargets, Prepared, Summary
 from verification.static_bound.liveness import ARGUMENTS, Locations, live_before
 from verification.static_bound.loop_nest import LoopNest, loop_nest
-from verification.static_bound.routines import KNOWN_LOOPS, LoopBound, cases
+from verification.static_bound.routines import LoopBound, cases
 from verification.static_bound.words import TOP, Word, join
 
 EXCEPTION_FRAME_BYTES = 32  # eight words, DDI0419 B1.5.6
@@ -52,7 +53,7 @@ class StaticBound:
     loops: tuple[LoopPasses, ...]
 
 
-def static_bound(elf: bytes, function: str, loop_bounds: Sequence[LoopBound] = KNOWN_LOOPS) -> StaticBound:
+def static_bound(elf: bytes, function: str, loop_bounds: Sequence[LoopBound] = ()) -> StaticBound:
     """Bound the time of one call of `function`, from its first instruction to its return, and its stack.
 
     Cycles follow DDI0484C table 3-1; the wait states of two-cycle flash are bounded by `jump_stalls` and `data_stalls`.
@@ -83,34 +84,41 @@ class Analysis:
     summaries: dict[tuple[int, tuple[tuple[int, Word], ...]], Summary] = field(default_factory=dict)
     jumps: dict[int, set[int]] = field(default_factory=dict)
     passes: dict[tuple[str, int], int] = field(default_factory=dict)
-    active: list[str] = field(default_factory=list)
+    active: list[ElfFunction] = field(default_factory=list)
 
     def call(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
         """Cost of a call with what is known of r0..r3."""
         self._prepare(function)
-        used = self._reads(function)
-        key = (function.start, tuple((register, arguments[register]) for register in sorted(used)))
+        known = {register: arguments[register] for register in sorted(self._reads(function))}
+        return _joined([self._case(function, case) for case in cases(function.name, known)])
+
+    def _case(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
+        key = (function.start, tuple(arguments.items()))
         if key not in self.summaries:
-            found = [self._explored(function, case) for case in cases(function.name, dict(key[1]))]
-            self.summaries[key] = _joined(found)
+            self.summaries[key] = self._explored(function, arguments)
         return self.summaries[key]
 
     def loops(self, path: Iterable[PathShare]) -> tuple[LoopPasses, ...]:
         """The loops of the functions on a path, with the most passes that any of their calls needs."""
         names = {share.function for share in path}
         stated = {
-            (p.graph.function.name, head): bound.reason for p in self.prepared.values() for head, bound in self._stated(p.graph, p.nest)
+            (p.graph.function.name, head): bound.reason
+            for p in self.prepared.values()
+            for head, bound in self._stated(p.graph, p.nest)
         }
         found = sorted((name, head, passes) for (name, head), passes in self.passes.items() if name in names)
         return tuple(LoopPasses(name, head, passes, stated.get((name, head), "")) for name, head, passes in found)
 
     def _explored(self, function: ElfFunction, arguments: Mapping[int, Word]) -> Summary:
-        with_calls = Exploration(self.image, self._prepare(function), self.call)
-        try:
-            summary = with_calls.run(arguments)
-        except NewTargets as news:
-            self.jumps.setdefault(news.address, set()).update(news.targets)
-            del self.prepared[function.start]
+        with self._entered(function):
+            try:
+                summary = Exploration(self.image, self._prepare(function), self.call).run(arguments)
+            except NewTargets as news:
+                self.jumps.setdefault(news.address, set()).update(news.targets)
+                del self.prepared[function.start]
+                summary = None
+        if summary is None:
+            self._prepare(function)
             return self._explored(function, arguments)
         for head, count in summary.passes.items():
             place = (function.name, head)
@@ -119,13 +127,21 @@ class Analysis:
 
     def _prepare(self, function: ElfFunction) -> Prepared:
         if function.start not in self.prepared:
-            if function.name in self.active:
-                chain = " -> ".join([*self.active[self.active.index(function.name) :], function.name])
-                raise VerificationFailed(f"{function.name} at 0x{function.start:08x} calls itself ({chain}): recursion has no bound here")
-            self.active.append(function.name)
-            self.prepared[function.start] = self._made_ready(function)
-            self.active.pop()
+            with self._entered(function):
+                self.prepared[function.start] = self._made_ready(function)
         return self.prepared[function.start]
+
+    @contextmanager
+    def _entered(self, function: ElfFunction) -> Iterator[None]:
+        """Within it `function` must not be entered again."""
+        if function in self.active:
+            chain = " -> ".join(f.name for f in (*self.active[self.active.index(function) :], function))
+            raise VerificationFailed(
+                f"{function.name} at 0x{function.start:08x} calls itself ({chain}): its depth has no bound; write it as a loop"
+            )
+        self.active.append(function)
+        yield
+        self.active.pop()
 
     def _made_ready(self, function: ElfFunction) -> Prepared:
         graph = flow_graph(self.image, function, self.jumps)

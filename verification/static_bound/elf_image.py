@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from elftools.common.exceptions import ELFError
 from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import SymbolTableSection
 
 from records.errors import BadInput, VerificationFailed
 from verification.static_bound.thumb import Instruction, decode
@@ -76,7 +77,7 @@ def load_elf(elf: bytes) -> ElfImage:
     if file["e_machine"] != "EM_ARM" or not file.little_endian:
         raise _not_usable(f"a file for {file['e_machine']}")
     table = file.get_section_by_name(".symtab")
-    if table is None:
+    if not isinstance(table, SymbolTableSection):
         raise _not_usable("a file without symbols")
     blocks = tuple(
         (section["sh_addr"], section.data())
@@ -102,7 +103,7 @@ def _functions(entries: list[tuple[int, int, str]]) -> Iterator[ElfFunction]:
         here = [(size, name) for at, size, name in entries if at == start]
         size = max(size for size, _ in here)
         following = starts[bisect_right(starts, start)] if start != starts[-1] else start + 0x10000
-        name = min((plain_name(name) for _, name in here), key=lambda text: (len(text), text))
+        name = min((plain_name(name) for _, name in here), key=lambda text: (text[:8] != "__aeabi_", len(text), text))
         yield ElfFunction(name, start, start + size if size else following)
 
 

@@ -16,10 +16,10 @@ from verification.static_bound.thumb import LOADS, Instruction
 from verification.static_bound.thumb_cycles import NO_CYCLES, Cycles, data_stalls, instruction_cycles, jump_stalls
 from verification.static_bound.words import TOP, Word, join, within
 
-MOST_STATES = 24  # kept apart at one place; more are joined
+MOST_STATES = 8  # kept apart at one place; more are joined
 MOST_PASSES = 4096  # of a loop without a known bound
 MOST_TARGETS = 64  # of a computed jump
-FLASH = (0x08000000, 0x0801FFFF)
+BELOW_SRAM = (0, 0x1FFFFFFF)  # flash, and its alias at 0
 
 
 class Trail(NamedTuple):
@@ -93,7 +93,9 @@ class Exploration:
         """Explore all paths; raises VerificationFailed at a loop without a bound, NewTargets at a computed jump."""
         graph = self.prepared.graph
         known = {register: word for register, word in arguments.items() if word != TOP}
-        self._arrive(Visit(graph.function.start, (), State(known, UNKNOWN_FLAGS), NO_CYCLES, None), graph.function.start)
+        self._arrive(
+            Visit(graph.function.start, (), State(known, UNKNOWN_FLAGS), NO_CYCLES, None), graph.function.start
+        )
         while self.waiting:
             place = heapq.heappop(self.waiting)
             for visit in _met(self.at_place.pop(place)):
@@ -172,7 +174,9 @@ class Exploration:
         elif i.address in graph.indirect:
             yield self._computed_jump(visit, i)
         else:
-            may_read_flash = i.op == "ldm" or (i.op in LOADS and within(data_address(visit.state, i), *FLASH) is not None)
+            may_read_flash = i.op == "ldm" or (
+                i.op in LOADS and within(data_address(visit.state, i), *BELOW_SRAM) is not None
+            )
             stalls = data_stalls(i, may_read_flash)
             for state in step(visit.state, i, graph.sp[i.address], self.image, graph.frame_escapes):
                 yield self._on(visit, i, state, stalls)
@@ -180,18 +184,19 @@ class Exploration:
     def _on(self, visit: Visit, i: Instruction, state: State, stalls: int) -> tuple[Visit, int | None]:
         targets = self.prepared.graph.successors[i.address]
         target = targets[0] if targets else None
-        if target != i.next_address:  # a return costs what a jump to the worst place of a flash line does
+        if target != i.next_address:  # a return leads to a place unknown here: not to the beginning of a flash line
             stalls += jump_stalls(-2 if target is None else target)
-        return visit._replace(state=state, cycles=visit.cycles + _both(instruction_cycles(i), stalls)), target
+        cycles = visit.cycles.plus(_both(instruction_cycles(i), stalls))
+        return Visit(visit.address, visit.passes, state, cycles, visit.trail), target
 
     def _branch(self, visit: Visit, i: Instruction) -> Iterator[tuple[Visit, int | None]]:
         stays, goes = assume(visit.state, OPPOSITE[i.condition]), assume(visit.state, i.condition)
         if stays:
-            yield visit._replace(state=stays, cycles=visit.cycles + _both(1, 0)), i.next_address
+            yield visit._replace(state=stays, cycles=visit.cycles.plus(_both(1, 0))), i.next_address
         if goes and i.address in self.prepared.graph.calls:
             yield self._called(visit._replace(state=goes), i, self.prepared.graph.calls[i.address])
         elif goes:
-            yield visit._replace(state=goes, cycles=visit.cycles + _both(2, jump_stalls(i.target))), i.target
+            yield visit._replace(state=goes, cycles=visit.cycles.plus(_both(2, jump_stalls(i.target)))), i.target
 
     def _called(self, visit: Visit, i: Instruction, callee: ElfFunction) -> tuple[Visit, int | None]:
         graph = self.prepared.graph
@@ -199,7 +204,7 @@ class Exploration:
         self.stack_bytes = max(self.stack_bytes, done.stack_bytes - graph.sp[i.address])
         state = (without_frame(visit.state) if graph.frame_escapes else visit.state).without(CLOBBERED)
         state = State(state.values, UNKNOWN_FLAGS).with_value(0, done.results[0]).with_value(1, done.results[1])
-        cycles = visit.cycles + _both(instruction_cycles(i), jump_stalls(callee.start)) + done.cycles
+        cycles = visit.cycles.plus(_both(instruction_cycles(i), jump_stalls(callee.start))).plus(done.cycles)
         on = i.next_address if i.op in ("bl", "blx") else None
         return visit._replace(state=state, cycles=cycles, trail=Trail(done, visit.trail)), on
 
@@ -207,7 +212,9 @@ class Exploration:
         target = operand(visit.state, i.m, i).constant
         if target is None:
             name = self.prepared.graph.function.name
-            raise VerificationFailed(f"{name}: the call at 0x{i.address:08x} goes through a pointer that is not constant")
+            raise VerificationFailed(
+                f"{name}: the call at 0x{i.address:08x} goes through a pointer that is not constant"
+            )
         return self.image.function_at(target & ~1, i.address)
 
     def _computed_jump(self, visit: Visit, i: Instruction) -> tuple[Visit, int | None]:
@@ -218,7 +225,7 @@ class Exploration:
         target = (base + source) & 0xFFFFFFFE
         if target not in self.prepared.graph.successors[i.address]:
             raise NewTargets(i.address, frozenset({target}))
-        return visit._replace(cycles=visit.cycles + _both(instruction_cycles(i), jump_stalls(target))), target
+        return visit._replace(cycles=visit.cycles.plus(_both(instruction_cycles(i), jump_stalls(target)))), target
 
 
 def _both(cycles: int, stalls: int) -> Cycles:

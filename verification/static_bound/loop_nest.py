@@ -1,4 +1,4 @@
-"""Loops of a flow graph: a weak topological order (Bourdoncle, FMPA 1993), in which the nodes of each loop stand together, its head first."""
+"""Loops of a flow graph: a weak topological order (Bourdoncle, FMPA 1993), each loop's nodes standing together, its head first."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ Successors = Mapping[int, Iterable[int]]
 
 @dataclass
 class LoopNest:
-    """`position` orders the nodes; `heads` gives each node the heads of the loops around it, outermost first, a head included in its own."""
+    """`position` orders the nodes; `heads` gives each node the heads of the loops around it, outermost first, its own included."""
 
     position: dict[int, int] = field(default_factory=dict)
     heads: dict[int, tuple[int, ...]] = field(default_factory=dict)

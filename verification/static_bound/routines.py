@@ -1,15 +1,15 @@
-"""What is known of the compiler's run-time routines: which take floats, and how often their loops may run."""
+"""What is known of the compiler's run-time routines: how to split the values of their arguments, so that paths show themselves."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from verification.static_bound import words
-from verification.static_bound.words import TOP, Word
+from verification.static_bound.words import Word
 
 
 @dataclass(frozen=True)
 class LoopBound:
-    """The loop whose head comes `ordinal`-th in `function` passes its head at most `passes` times each time it is entered."""
+    """Stated by hand: the loop whose head comes `ordinal`-th in `function` passes it at most `passes` times whenever it is entered."""
 
     function: str
     ordinal: int
@@ -17,28 +17,29 @@ class LoopBound:
     reason: str
 
 
-# Loops whose count the analysis cannot find by itself; keyed by the symbol and the order of the heads' addresses.
-KNOWN_LOOPS = (
-    LoopBound("__aeabi_uidiv", 0, 17, "long division, two of at most 32 quotient bits in a pass"),
-    LoopBound("__udivsi3", 0, 17, "long division, two of at most 32 quotient bits in a pass"),
-)
-
-# Number of leading arguments that are float32: these routines are analysed for each class of float by itself, because their paths for
-# subnormals, infinities and NaN exclude one another. The classes cover all 2^32 words, so a wrong entry costs time, not truth.
-FLOAT_ARGUMENTS: Mapping[str, int] = {
-    "__aeabi_fadd": 2, "__aeabi_fsub": 2, "__aeabi_fmul": 2, "__aeabi_fdiv": 2,
-    "__aeabi_fcmpeq": 2, "__aeabi_fcmplt": 2, "__aeabi_fcmple": 2, "__aeabi_fcmpge": 2, "__aeabi_fcmpgt": 2, "__aeabi_fcmpun": 2,
-    "__aeabi_f2iz": 1, "__aeabi_f2uiz": 1,
-}  # fmt: skip
-
 _MAGNITUDES = ((0, 0), (1, 0x7FFFFF), (0x800000, 0x7F7FFFFF), (0x7F800000, 0x7F800000), (0x7F800001, 0x7FFFFFFF))
-FLOAT_CLASSES = tuple(words.interval(sign | low, sign | high) for sign in (0, 0x80000000) for low, high in _MAGNITUDES)
+
+# Zero, subnormal, normal, infinite, NaN, each with both signs: their paths through soft-float routines exclude one another.
+FLOAT_CLASSES = tuple(words.interval(sign | low, sign | high) for sign in (0, 1 << 31) for low, high in _MAGNITUDES)
+
+# By the number of leading zeros, on which the passes of a long division depend.
+BIT_LENGTHS = (words.constant(0), *(words.interval(1 << k, (2 << k) - 1) for k in range(32)))
+
+# Each set of classes covers all 2^32 words, so that a wrong entry here costs time or sharpness, never truth.
+_FLOATS, _NUMBERS = (FLOAT_CLASSES, FLOAT_CLASSES), (BIT_LENGTHS, BIT_LENGTHS)
+ARGUMENT_CLASSES: Mapping[str, Sequence[tuple[Word, ...]]] = {
+    **dict.fromkeys(("__aeabi_fadd", "__aeabi_fsub", "__aeabi_fmul", "__aeabi_fdiv"), _FLOATS),
+    **{f"__aeabi_fcmp{relation}": _FLOATS for relation in ("eq", "lt", "le", "ge", "gt", "un")},
+    **dict.fromkeys(("__aeabi_f2iz", "__aeabi_f2uiz"), (FLOAT_CLASSES,)),
+    **dict.fromkeys(("__aeabi_uidiv", "__aeabi_uidivmod"), _NUMBERS),
+}
 
 
 def cases(function: str, arguments: Mapping[int, Word]) -> list[dict[int, Word]]:
-    """Split unknown float arguments of a run-time routine by class; together the cases hold all values of `arguments`."""
+    """Split arguments of a run-time routine by class; together the cases hold all values of `arguments`."""
     found: list[dict[int, Word]] = [dict(arguments)]
-    for register in range(FLOAT_ARGUMENTS.get(function, 0)):
-        if arguments.get(register) == TOP:
-            found = [{**case, register: word} for case in found for word in FLOAT_CLASSES]
+    for register, classes in enumerate(ARGUMENT_CLASSES.get(function, ())):
+        if register in arguments:
+            parts = [words.common(word, arguments[register]) for word in classes]
+            found = [{**case, register: part} for case in found for part in parts if part]
     return found

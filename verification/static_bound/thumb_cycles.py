@@ -14,8 +14,9 @@ class Cycles(NamedTuple):
     zero_wait: int
     two_wait: int
 
-    def __add__(self, other: tuple[int, ...]) -> "Cycles":
-        return Cycles(self.zero_wait + other[0], self.two_wait + other[1])
+    def plus(self, other: "Cycles") -> "Cycles":
+        """Both one after the other."""
+        return Cycles(self.zero_wait + other.zero_wait, self.two_wait + other.two_wait)
 
     def most(self, other: "Cycles") -> "Cycles":
         """The larger of each figure; they may belong to different paths."""
@@ -45,16 +46,18 @@ def instruction_cycles(instruction: Instruction, taken: bool = True) -> int:
 def jump_stalls(target: int) -> int:
     """Most wait states that a jump to `target` costs.
 
-    A prefetch in flight must end (2), the target's 64-bit line is read (2); where the target lies in the upper half of that
-    line, its successor is wanted before the prefetch has it (2). Straight code costs none: a line holds four instructions,
-    four cycles or more, and the prefetch buffer has the next one after three.
+    A prefetch in flight must end (2), the target's 64-bit line is read (2); unless the target begins that line, its successor may be
+    wanted before the prefetch has it (2). Straight code costs none: a line holds four halfwords, four cycles of work or more, and the
+    prefetch buffer has the next line after three.
     """
-    late_successor = target % FLASH_LINE_BYTES >= FLASH_LINE_BYTES // 2
-    return WAIT_STATES * (3 if late_successor else 2)
+    return WAIT_STATES * (2 if target % FLASH_LINE_BYTES == 0 else 3)
 
 
 def data_stalls(instruction: Instruction, may_read_flash: bool) -> int:
-    """Most wait states of a data access: for each word read from flash the prefetch ends (2), the read (2), the prefetch begins anew (2)."""
+    """Most wait states of a data access.
+
+    For each word read from flash a prefetch must end (2), the word is read (2), the prefetch begins anew (2).
+    """
     if instruction.op == "ldr_literal":
         return 3 * WAIT_STATES
     if instruction.op in LOADS and instruction.n != SP and may_read_flash:

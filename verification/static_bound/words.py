@@ -124,6 +124,8 @@ def join(a: Word, b: Word) -> Word:
 
 def add(a: Word, b: Word) -> Word:
     """a + b modulo 2^32."""
+    if a.span == b.span == 0:
+        return constant(a.start + b.start)
     known, bits = _added_bits(a, b)
     span = a.span + b.span
     if span >= MASK:
@@ -151,11 +153,13 @@ def invert(a: Word) -> Word:
 
 def subtract(a: Word, b: Word) -> Word:
     """a - b modulo 2^32."""
-    return add(add(a, invert(b)), constant(1))
+    return constant(a.start - b.start) if a.span == b.span == 0 else add(add(a, invert(b)), constant(1))
 
 
 def bit_and(a: Word, b: Word) -> Word:
     """Bitwise conjunction."""
+    if a.span == b.span == 0:
+        return constant(a.start & b.start)
     zeros = (a.known & ~a.bits) | (b.known & ~b.bits)
     ones = a.bits & b.bits
     result = bit_pattern(zeros | ones, ones)
