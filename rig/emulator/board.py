@@ -145,16 +145,23 @@ class EmulatedBoard:
 
     def uart_read_timed(self, most: int | None = None) -> list[ReceivedByte]:
         """Bytes that have completely left the board, each with the end of its stop bit."""
-        count = self.uart_waiting() if most is None else min(most, self.uart_waiting())
-        values, ends, errors = (self._ffi.new(f"{kind}[]", count) for kind in ("uint8_t", "uint64_t", "uint8_t"))
-        got = self._lib.emulator_receive(self._machine, values, ends, errors, count)
-        return [
-            ReceivedByte(values[i], ends[i] / PS_PER_S, bool(errors[i] & 1), bool(errors[i] & 2)) for i in range(got)
-        ]
+        values, ends_ps, errors = self._received(most)
+        rows = zip(values, ends_ps, errors, strict=True)
+        return [ReceivedByte(value, end / PS_PER_S, bool(error & 1), bool(error & 2)) for value, end, error in rows]
 
     def uart_read(self, most: int | None = None) -> bytes:
         """Bytes that have completely left the board."""
-        return bytes(byte.value for byte in self.uart_read_timed(most))
+        return self._received(most)[0]
+
+    def _received(self, most: int | None) -> tuple[bytes, list[int], bytes]:
+        count = self.uart_waiting() if most is None else min(most, self.uart_waiting())
+        values, ends_ps, errors = (
+            self._ffi.new("uint8_t[]", count),
+            self._ffi.new("uint64_t[]", count),
+            self._ffi.new("uint8_t[]", count),
+        )
+        self._lib.emulator_receive(self._machine, values, ends_ps, errors, count)
+        return bytes(self._ffi.buffer(values, count)), list(ends_ps), bytes(self._ffi.buffer(errors, count))
 
     # --- pins ---
 

@@ -1,22 +1,22 @@
 """An ELF image as the emulated board and its messages need it: flash content, symbols, source lines."""
 
 import bisect
-import io
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from elftools.common.exceptions import ELFError
-from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
 from records.errors import BadInput
+from toolchain.elf import open_elf
 
 FLASH_BASE = 0x08000000
 FLASH_BYTES = 0x20000
 SRAM_BASE = 0x20000000
 SRAM_BYTES = 0x8000
+SMALLEST_BYTES = 8  # initial stack pointer and reset vector
 
 
 @dataclass(frozen=True)
@@ -41,18 +41,17 @@ class SourceLine:
 class Image:
     """A linked ARM ELF file; `elf` is its bytes, `where` names it in messages.
 
-    Raises BadInput when it is not a 32-bit ARM ELF with content in flash.
+    Raises BadInput when it is not an ARM ELF, is truncated, or has no content in flash.
     """
 
     def __init__(self, elf: bytes, where: str) -> None:
         self.where = where
+        self._elf = open_elf(elf, where)
         try:
-            self._elf = ELFFile(io.BytesIO(elf))
+            self.flash = self._flash_content()
+            self._table = self._elf.get_section_by_name(".symtab")
         except ELFError as error:
-            raise _not_an_image(where, str(error)) from error
-        if self._elf["e_machine"] != "EM_ARM" or self._elf["e_ident"]["EI_CLASS"] != "ELFCLASS32":
-            raise _not_an_image(where, f"{self._elf['e_machine']}, {self._elf['e_ident']['EI_CLASS']}")
-        self.flash = self._flash_content()
+            raise _not_an_image(where, f"a damaged file ({error})") from error
 
     @classmethod
     def from_file(cls, path: Path) -> "Image":
@@ -67,21 +66,22 @@ class Image:
         loaded = 0
         for segment in self._elf.iter_segments("PT_LOAD"):
             start, data = segment["p_paddr"] - FLASH_BASE, segment.data()
+            if len(data) != segment["p_filesz"]:
+                raise _not_an_image(self.where, "a truncated file")
             if not data or not 0 <= start <= FLASH_BYTES - len(data):
                 continue
             content[start : start + len(data)] = data
             loaded += len(data)
-        if loaded < 8:
+        if loaded < SMALLEST_BYTES:
             raise _not_an_image(self.where, "no content in flash")
         return bytes(content)
 
     @cached_property
     def symbols(self) -> dict[str, Symbol]:
         """Named functions, objects and linker symbols."""
-        table = self._elf.get_section_by_name(".symtab")
-        if not isinstance(table, SymbolTableSection):
+        if not isinstance(self._table, SymbolTableSection):
             return {}
-        return {symbol.name: symbol for symbol in _named(table)}
+        return {symbol.name: symbol for symbol in _named(self._table)}
 
     @cached_property
     def functions(self) -> list[Symbol]:
