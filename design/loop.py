@@ -35,15 +35,23 @@ class OpenLoop:
     sample_period_s: float
 
 
-def open_loop(plant: SampledPlant, controller: DeltaForm) -> OpenLoop:
+@dataclass(frozen=True)
+class PlantPolynomials:
+    """z^n B = b and z^n A = a of a sampled plant of order n, ascending powers of gamma, shapes (n + 1,)."""
+
+    b: Array
+    a: Array
+    sample_period_s: float
+
+
+def open_loop(plant: PlantPolynomials, controller: DeltaForm) -> OpenLoop:
     """The loop of a single-input plant of order 3 and a controller in delta form."""
-    b, a = plant_polynomials(plant)
     q, p = controller_polynomials(controller)
-    return OpenLoop(b, a, q, p, plant.sample_period_s)
+    return OpenLoop(plant.b, plant.a, q, p, plant.sample_period_s)
 
 
-def plant_polynomials(plant: SampledPlant) -> tuple[Array, Array]:
-    """C adj(gamma I - N) B and det(gamma I - N), ascending powers of gamma, shapes (n + 1,), by Faddeev and LeVerrier."""
+def plant_polynomials(plant: SampledPlant) -> PlantPolynomials:
+    """b = C adj(gamma I - N) B and a = det(gamma I - N) by Faddeev and LeVerrier."""
     n = len(plant.N)
     a, b = np.zeros(n + 1), np.zeros(n + 1)
     a[n] = 1.0
@@ -53,7 +61,7 @@ def plant_polynomials(plant: SampledPlant) -> tuple[Array, Array]:
         product = plant.N @ adjugate
         a[power] = -np.trace(product) / (n - power)
         adjugate = product + a[power] * np.eye(n)
-    return b, a
+    return PlantPolynomials(b, a, plant.sample_period_s)
 
 
 def controller_polynomials(controller: DeltaForm) -> tuple[Array, Array]:
@@ -64,9 +72,14 @@ def controller_polynomials(controller: DeltaForm) -> tuple[Array, Array]:
     return controller.q @ _DELTA_POWERS, p
 
 
+def closed_loop_polynomial(loop: OpenLoop) -> Array:
+    """z^6 (A P + B Q) of eq (24), ascending powers of gamma, shape (7,)."""
+    return np.asarray(np.convolve(loop.a, loop.p) + np.convolve(loop.b, loop.q))
+
+
 def closed_loop_poles(loop: OpenLoop) -> Poles:
-    """The six poles s_i [rad/s] of z^6 (A P + B Q) = 0, eq (24)."""
-    return to_rad_s(polynomial_roots(np.convolve(loop.a, loop.p) + np.convolve(loop.b, loop.q)), loop.sample_period_s)
+    """The six poles s_i [rad/s] of the closed loop."""
+    return to_rad_s(polynomial_roots(closed_loop_polynomial(loop)), loop.sample_period_s)
 
 
 def controller_poles(controller: DeltaForm) -> Poles:
@@ -78,27 +91,26 @@ def to_rad_s(gamma: Poles, sample_period_s: float) -> Poles:
     """s = ln(1 + gamma)/Ts; a pole at z = 0 becomes -inf, which is as fast as can be."""
     with np.errstate(divide="ignore"):
         logarithm = np.log1p(gamma.astype(complex))
-    result = np.empty_like(logarithm)
+    result: Poles = np.empty(logarithm.shape, dtype=complex)
     # Parts are divided on their own: a complex division would make NaN of -inf + 0j.
     result.real, result.imag = logarithm.real / sample_period_s, logarithm.imag / sample_period_s
     return result
 
 
 def polynomial_roots(ascending: Array) -> Poles:
-    """Roots of a polynomial in gamma, scaled to order 1 first so that the companion matrix is balanced."""
-    degree = len(ascending) - 1
-    size = _typical_root(ascending)
+    """Roots, shape (..., n), of polynomials in gamma, shape (..., n + 1), as eigenvalues of companion matrices.
+
+    gamma is first scaled by the geometric mean of the roots that are not exactly 0, so that the matrix is balanced.
+    """
+    degree = ascending.shape[-1] - 1
+    first = np.argmax(ascending != 0.0, axis=-1)[..., np.newaxis]
+    lowest = np.take_along_axis(ascending, first, axis=-1)
+    size = np.abs(lowest / ascending[..., -1:]) ** (1.0 / np.maximum(degree - first, 1))
     scaled = ascending * size ** np.arange(degree + 1)
-    return np.asarray(np.roots(scaled[::-1]) * size, dtype=complex)
-
-
-def _typical_root(ascending: Array) -> float:
-    """Geometric mean of the roots that are not exactly 0."""
-    first = int(np.flatnonzero(ascending)[0])
-    degree = len(ascending) - 1 - first
-    if degree == 0:
-        return 1.0
-    return float(abs(ascending[first] / ascending[-1]) ** (1.0 / degree))
+    companion = np.zeros((*ascending.shape[:-1], degree, degree))
+    companion[..., 0, :] = -scaled[..., -2::-1] / scaled[..., -1:]
+    companion[..., np.arange(1, degree), np.arange(degree - 1)] = 1.0
+    return np.asarray(np.linalg.eigvals(companion) * size, dtype=complex)
 
 
 def slowest(poles: Poles) -> float:

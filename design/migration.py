@@ -14,8 +14,8 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, DirectForm, to_delta, to_direct
-from design.discretise import SampledPlant, transfer_from_polynomials
-from design.loop import Poles, closed_loop_poles, open_loop, plant_polynomials
+from design.discretise import transfer_from_polynomials
+from design.loop import PlantPolynomials, Poles, closed_loop_polynomial, open_loop, polynomial_roots, to_rad_s
 from design.operating_points import exact_delta
 from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z
 from design.schedule import Schedule, evaluate, fit
@@ -67,7 +67,7 @@ class ScheduledAxis:
     schedule: Schedule
 
 
-def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[SampledPlant]) -> tuple[Migration, ...]:
+def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[PlantPolynomials]) -> tuple[Migration, ...]:
     """Every form, source and storage of one axis over the angles psi_rad (angles,)."""
     exact = [exact_design(axis, plant, float(psi)) for plant, psi in zip(plants, psi_rad, strict=True)]
     rows = []
@@ -83,18 +83,19 @@ def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[SampledPlan
     return tuple(rows)
 
 
-def exact_design(axis: ScheduledAxis, plant: SampledPlant, psi_rad: float) -> DeltaForm:
+def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -> DeltaForm:
     """The controller that eq (26) gives for `plant` itself, without fit."""
-    transfer = transfer_from_polynomials(*plant_polynomials(plant))
+    transfer = transfer_from_polynomials(plant.b, plant.a)
     wanted = characteristic(poles_z(axis.wishes.poles_rad_s, plant.sample_period_s))
     free = axis.wishes.free_degree
     where = f"{axis.name} at psi = {math.degrees(psi_rad):.1f} deg"
     return exact_delta(place(transfer.b, transfer.a, wanted, FREE_DEGREES[free], where), free)
 
 
-def pole_map(plants: Sequence[SampledPlant], controllers: Sequence[DeltaForm]) -> Poles:
+def pole_map(plants: Sequence[PlantPolynomials], controllers: Sequence[DeltaForm]) -> Poles:
     """Closed-loop poles [rad/s] at every angle, shape (angles, 6)."""
-    return np.array([closed_loop_poles(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)])
+    closed = [closed_loop_polynomial(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)]
+    return to_rad_s(polynomial_roots(np.array(closed)), plants[0].sample_period_s)
 
 
 def slowest_of(psi_rad: Array, poles: Poles) -> SlowestPole:

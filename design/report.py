@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from design.coupled import coupled_poles
 from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, subsystem
-from design.loop import Poles, controller_poles, open_loop
+from design.loop import Poles, controller_poles, open_loop, plant_polynomials
 from design.margins import Margins, margins
 from design.migration import STORAGES, Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of, stored
 from design.operating_points import DesignPoints, equilibria
@@ -125,7 +125,7 @@ def _axis_report(
     voltages_V: Array,
 ) -> AxisReport:
     law: AxisLaw = getattr(table, axis)
-    plants = [sample(subsystem(bound, plant, axis), settings.sample_period_s) for plant in linear]
+    plants = [plant_polynomials(sample(subsystem(bound, plant, axis), settings.sample_period_s)) for plant in linear]
     scheduled = _scheduled(settings, law, points, axis)
     flown = stored(scheduled.schedule, STORAGES["float32"])
     fitted = pole_map(plants, [evaluate(scheduled.schedule, float(psi)) for psi in psi_rad])

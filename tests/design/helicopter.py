@@ -9,6 +9,7 @@ import numpy as np
 
 from design.discretise import SampledPlant, sample
 from design.linearise import linearise, subsystem
+from design.loop import PlantPolynomials, plant_polynomials
 from design.operating_points import design_points
 from design.settings import AxisSettings, DesignSettings, read_settings
 from design.table import make_table
@@ -64,6 +65,12 @@ def settings_for(
 @cache
 def table_for(settings: DesignSettings) -> ControllerTable:
     return make_table(helicopter(), settings, design_points(helicopter(), settings))
+
+
+@cache
+def polynomials(axis: str, psi_rad: float) -> PlantPolynomials:
+    """The same in powers of gamma."""
+    return plant_polynomials(sampled(axis, psi_rad))
 
 
 @cache

@@ -42,7 +42,8 @@ def test_exponential_agrees_with_forty_digits(size):
 def test_polynomials_in_gamma_give_the_transfer_function_of_python_control(psi_deg):
     linear = elevation(np.radians(psi_deg))
     published = transfer_function(linear, SAMPLE_PERIOD_S, "elevation")
-    own = transfer_from_polynomials(*plant_polynomials(sample(linear, SAMPLE_PERIOD_S)))
+    polynomials = plant_polynomials(sample(linear, SAMPLE_PERIOD_S))
+    own = transfer_from_polynomials(polynomials.b, polynomials.a)
     np.testing.assert_allclose(own.a, published.a, atol=1e-12)
     np.testing.assert_allclose(own.b, published.b, rtol=1e-8, atol=1e-16)
 

@@ -11,7 +11,7 @@ from design.margins import margins
 from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
 from records.errors import BadInput
 from sim.equilibrium import equilibrium
-from tests.design.helicopter import AZ_DOM, DOM, DOM2, SAMPLE_PERIOD_S, equal, helicopter, sampled
+from tests.design.helicopter import AZ_DOM, DOM, DOM2, SAMPLE_PERIOD_S, equal, helicopter, polynomials
 
 EQ8 = equal(-8.0)
 
@@ -43,7 +43,7 @@ def test_free_degree_gives_the_published_gain_and_margins(
     name, largest_q, controller_pole, sensitivity, phase_margin_deg
 ):
     controller = placed(FREE_DEGREES[name]).controller
-    found = margins(open_loop(sampled("elevation", 0.0), to_delta(controller)))
+    found = margins(open_loop(polynomials("elevation", 0.0), to_delta(controller)))
     assert np.max(np.abs(controller.q)) == pytest.approx(largest_q, rel=5e-3)
     assert np.max(np.abs(controller_poles_z(controller))) == pytest.approx(controller_pole, abs=6e-4)
     assert found.sensitivity == pytest.approx(sensitivity, abs=6e-3)
@@ -66,7 +66,7 @@ def test_closed_loop_has_the_wanted_polynomial_and_the_condition_holds(axis, psi
 
 def test_distinct_poles_come_out_to_six_digits():
     controller = to_delta(placed(FREE_DEGREES["integral"], DOM2).controller)
-    poles = closed_loop_poles(open_loop(sampled("elevation", 0.0), controller))
+    poles = closed_loop_poles(open_loop(polynomials("elevation", 0.0), controller))
     np.testing.assert_allclose(sorted(poles.real), sorted(DOM2), rtol=1e-6)
 
 

@@ -1,0 +1,163 @@
+"""The nonlinear helicopter in flight: which laws work, which traps fail and how, and what the default plant file reaches.
+
+True dry friction, encoder steps of 0.088 deg, inputs limited; published manoeuvre of 95 s unless a test needs less.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from design.law import FloatLaw
+from design.settings import read_settings
+from records.table import ControllerTable
+from tests.design.flying import Flight, fly, manoeuvre
+from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for, table_for
+from tests.design.trap_laws import CLAMPED, FEEDBACK, TOTAL, DirectLaw
+
+E4, E6, E8, E12 = (equal(pole) for pole in (-4.0, -6.0, -8.0, -12.0))
+AZIMUTH = (E4, "q3_zero")
+
+
+def table(elevation, azimuth=AZIMUTH, prefilter_s: float = 0.0) -> ControllerTable:
+    made = table_for(settings_for(elevation, azimuth))
+    return replace(
+        made,
+        elevation=replace(made.elevation, prefilter_time_constant_s=prefilter_s),
+        azimuth=replace(made.azimuth, prefilter_time_constant_s=prefilter_s),
+    )
+
+
+def flown(law, duration_s: float = 95.0, rate_deg_s: float | None = None) -> Flight:
+    return fly(helicopter(), law, *manoeuvre(duration_s, rate_deg_s))
+
+
+WORKING = [
+    (E8, "q3_zero"),
+    (E12, "q3_zero"),
+    (DOM2, "q3_zero"),
+    (E8, "integral"),
+    (DOM, "integral"),
+    (DOM2, "integral"),
+]
+
+
+@pytest.mark.parametrize("elevation", WORKING)
+def test_published_sets_follow_steps(elevation):
+    flight = flown(table(elevation))
+    assert flight.mean_error_deg(0) < 1.7
+    assert np.max(flight.steady_error_deg(0)) < (0.1 if elevation[1] == "integral" else 0.7)
+    assert flight.saturated < 0.05
+    assert np.max(np.abs(flight.angle_deg[:, 0])) < 44.0
+
+
+@pytest.mark.parametrize("elevation", WORKING)
+def test_published_sets_follow_ramps_of_twenty_degrees_a_second(elevation):
+    flight = flown(table(elevation), rate_deg_s=20.0)
+    assert flight.mean_error_deg(0) < (0.4 if elevation[1] == "integral" else 1.0)
+    assert flight.saturated < 0.01
+
+
+@pytest.mark.parametrize(("azimuth", "largest_deg"), [((E4, "q3_zero"), 3.0), ((AZ_DOM, "q3_zero"), 4.0)])
+def test_published_azimuth_sets_follow_steps(azimuth, largest_deg):
+    assert flown(table((E8, "q3_zero"), azimuth)).mean_error_deg(1) < largest_deg
+
+
+def test_six_poles_at_minus_two_are_too_slow_for_the_azimuth():
+    assert flown(table((E8, "q3_zero"), (equal(-2.0), "q3_zero"))).mean_error_deg(1) > 6.5
+
+
+def test_eq4_without_integrator_is_thrown_towards_the_stop_by_the_large_azimuth_step():
+    flight = flown(table((E4, "q3_zero")))
+    thrown = (flight.t_s > 60.0) & (flight.t_s < 65.0)
+    assert np.max(flight.angle_deg[thrown, 0]) > 44.0
+    assert flight.mean_error_deg(0) > 2.5
+
+
+@pytest.mark.parametrize("elevation", [(E8, "q3_zero"), (DOM2, "integral")])
+def test_recursion_on_the_total_voltage_as_eq_27_is_printed_lies_on_the_stop(elevation):
+    flight = flown(DirectLaw(table(elevation), TOTAL), 30.0)
+    assert flight.saturated > 0.99
+    assert flight.angle_deg[-1, 0] == pytest.approx(45.0)
+
+
+def test_recursion_on_the_feedback_alone_flies_like_the_delta_form():
+    # Before anything saturates both are the same law: 10 s at rest and the answer to a filtered reference.
+    made = table((E8, "q3_zero"), prefilter_s=0.35)
+    direct, delta = flown(DirectLaw(made, FEEDBACK), 25.0), flown(made, 25.0)
+    assert delta.saturated == 0.0
+    np.testing.assert_allclose(direct.u_V, delta.u_V, atol=1e-6)
+
+
+def test_limited_voltage_fed_back_locks_the_elevation_into_bang_bang():
+    made = table((E6, "integral"), (AZ_DOM, "q3_zero"))
+    trap, observer = flown(DirectLaw(made, CLAMPED)), flown(made)
+    assert trap.saturated > 0.5
+    assert trap.mean_error_deg(0) > 30.0
+    assert observer.saturated < 0.01
+    assert observer.mean_error_deg(0) < 1.5
+
+
+@pytest.mark.parametrize(("azimuth", "locked_from_s"), [((E4, "q3_zero"), 62.0), ((E6, "q3_zero"), 20.0)])
+def test_limited_voltage_fed_back_locks_the_azimuth_at_the_stop(azimuth, locked_from_s):
+    made = table((E8, "q3_zero"), azimuth)
+    trap, observer = flown(DirectLaw(made, CLAMPED)), flown(made)
+    assert trap.angle_deg[-1, 1] == pytest.approx(-130.0)
+    assert np.all(trap.saturated > 0.2)
+    assert observer.mean_error_deg(1) < 3.0
+    assert np.max(np.abs(trap.angle_deg[trap.t_s > locked_from_s, 1])) == pytest.approx(130.0)
+
+
+def test_feedforward_from_the_measured_elevation_makes_an_unstable_loop_of_a_stable_one():
+    made = table((E4, "q3_zero"), prefilter_s=0.35)
+    t_s, reference_deg = manoeuvre(40.0)
+    reference_deg = np.zeros_like(reference_deg) + np.array([-25.0, 0.0])
+    hidden = fly(helicopter(), DirectLaw(made, measured_feedforward=True), t_s, reference_deg, start_deg=-15.0)
+    right = fly(helicopter(), made, t_s, reference_deg, start_deg=-15.0)
+    last = t_s > 35.0
+    assert np.mean(np.abs(hidden.angle_deg[last, 0] + 25.0)) > 10.0
+    assert np.mean(np.abs(right.angle_deg[last, 0] + 25.0)) < 3.0
+
+
+def test_coefficients_of_past_samples_make_no_difference_that_matters():
+    made = table((DOM2, "integral"), prefilter_s=0.35)
+    present, past = (flown(DirectLaw(made, delayed_coefficients=late), 45.0) for late in (False, True))
+    assert np.max(np.abs(present.angle_deg - past.angle_deg)) < 2.8
+    assert past.saturated == present.saturated == 0.0
+
+
+def test_without_prefilter_a_step_saturates_an_integrating_law_and_with_it_not():
+    raw, filtered = flown(table((DOM2, "integral"))), flown(table((DOM2, "integral"), prefilter_s=0.35))
+    assert raw.saturated > 0.005
+    assert filtered.saturated == 0.0
+
+
+def test_law_in_python_and_law_in_the_kernel_fly_the_same_flight():
+    made = table((DOM2, "integral"), prefilter_s=0.35)
+    np.testing.assert_allclose(flown(FloatLaw(made), 20.0).u_V, flown(made, 20.0).u_V, atol=1e-9)
+
+
+def default_table() -> ControllerTable:
+    return table_for(read_settings(helicopter()))
+
+
+@pytest.mark.parametrize("start_deg", [None, -30.0])
+def test_default_plant_file_overshoots_at_most_two_percent_and_rests_within_a_twentieth_of_a_degree(start_deg):
+    """Steps that leave the other axis at rest meanwhile; steady error is the mean over the last second of a hold."""
+    t_s, both = manoeuvre()
+    for axis in (0, 1):
+        alone = both.copy()
+        alone[:, 1 - axis] = 0.0 if axis == 0 else 20.0
+        flight = fly(helicopter(), default_table(), t_s, alone, start_deg=start_deg)
+        assert np.max(flight.overshoot(axis)) <= 0.02
+        assert np.max(flight.steady_error_deg(axis)) <= 0.05
+        assert flight.saturated < 0.005
+
+
+def test_default_plant_file_holds_both_axes_when_both_move():
+    """Azimuth steps of up to 90 deg at 30 deg elevation push the elevation by a third of a degree; it comes back."""
+    flight = fly(helicopter(), default_table(), *manoeuvre(), start_deg=None)
+    assert np.max(flight.overshoot(0)) <= 0.05
+    assert np.max(flight.overshoot(1)) <= 0.02
+    assert np.max(flight.steady_error_deg(0)) <= 0.1
+    assert np.max(flight.steady_error_deg(1)) <= 0.05

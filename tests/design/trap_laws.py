@@ -1,0 +1,78 @@
+"""Laws that the seed's text, or habit, suggests and that fail: each is the true law with one thing changed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from design.direct_form import DirectForm, to_direct
+from design.law import polynomial, prefilter_gain, saturate
+from design.schedule import evaluate, schedule_of
+from records.table import AxisLaw, ControllerTable
+
+History = tuple[float, float, float]
+
+
+@dataclass
+class _Axis:
+    x: list[float]
+    errors: History = (0.0, 0.0, 0.0)
+    outputs: History = (0.0, 0.0, 0.0)
+    forms: list[DirectForm] = field(default_factory=list)
+
+
+# What the recursion keeps of (v, feed-forward, limited u): v itself works, the others are the traps.
+FEEDBACK: Callable[[float, float, float], float] = lambda v, feedforward, u: v  # noqa: E731
+TOTAL: Callable[[float, float, float], float] = lambda v, feedforward, u: u  # noqa: E731
+CLAMPED: Callable[[float, float, float], float] = lambda v, feedforward, u: u - feedforward  # noqa: E731
+
+
+class DirectLaw:
+    """Eq (27) as it is written, in direct form, over one of three histories.
+
+    `kept` FEEDBACK is the unsaturated recursion on u_fb; TOTAL is the literal eq (27), on the total voltage; CLAMPED feeds the
+    limited voltage back ("fb" anti-windup). `measured_feedforward` takes u_ff at the measured elevation instead of the reference's.
+    `delayed_coefficients` multiplies a past sample with its own coefficients q_i(k-i), as printed, not with the present ones.
+    """
+
+    def __init__(
+        self,
+        table: ControllerTable,
+        kept: Callable[[float, float, float], float] = FEEDBACK,
+        *,
+        measured_feedforward: bool = False,
+        delayed_coefficients: bool = False,
+    ) -> None:
+        self.table, self.kept = table, kept
+        self.measured_feedforward, self.delayed_coefficients = measured_feedforward, delayed_coefficients
+        self.axes = [_Axis([0.0, 0.0]), _Axis([0.0, 0.0])]
+
+    def reset(self, psi_rad: float, phi_rad: float) -> None:
+        self.axes = [_Axis([angle, angle]) for angle in (psi_rad, phi_rad)]
+
+    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
+        references, angles = (psi_ref_rad, phi_ref_rad), (psi_rad, phi_rad)
+        laws = (self.table.elevation, self.table.azimuth)
+        for law, axis, reference in zip(laws, self.axes, references, strict=True):
+            gain = prefilter_gain(law.prefilter_time_constant_s, self.table.sample_period_s)
+            axis.x[0] += gain * (reference - axis.x[0])
+            axis.x[1] += gain * (axis.x[0] - axis.x[1])
+        feedforward_at = psi_rad if self.measured_feedforward else self.axes[0].x[1]
+        u_M, u_T = (
+            self._axis(law, axis, angle, psi_rad, feedforward_at)
+            for law, axis, angle in zip(laws, self.axes, angles, strict=True)
+        )
+        return u_M, u_T
+
+    def _axis(self, law: AxisLaw, axis: _Axis, angle: float, psi_rad: float, feedforward_at: float) -> float:
+        within = float(np.clip(psi_rad, self.table.psi_min_rad, self.table.psi_max_rad))
+        axis.forms = [to_direct(evaluate(schedule_of(law), within)), *axis.forms][:4]
+        forms = [axis.forms[min(i, len(axis.forms) - 1) if self.delayed_coefficients else 0] for i in range(4)]
+        errors = (axis.x[1] - angle, *axis.errors)
+        v = sum(forms[i].q[i] * errors[i] for i in range(4))
+        v -= sum(forms[i].p[i] * axis.outputs[i - 1] for i in range(1, 4))
+        feedforward = polynomial(law.feedforward_V, feedforward_at)
+        u = saturate(law, float(v + feedforward))
+        axis.errors = errors[:3]
+        axis.outputs = (self.kept(float(v), feedforward, u), *axis.outputs[:2])
+        return u
