@@ -27,6 +27,11 @@ class Kernel:
     ffi: Any
     lib: Any
 
+    @property
+    def constants(self) -> int:
+        """Length of the array of constants."""
+        return int(self.lib.constants_count())
+
     def pointer(self, array: NDArray[Any] | None) -> Any:
         """The C address of a contiguous array; NULL for None."""
         return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)

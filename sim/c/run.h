@@ -100,6 +100,12 @@ static inline void start(lane_group *group, const run_request *request, int64_t 
         group->body.sign[a] = group->body.move[a] = NUM(0.0);
 }
 
+/* An encoder's reading: the nearest multiple of its step; 0 stands for none. */
+static inline num quantised(num value, double step)
+{
+    return step > 0.0 ? lane_round(value / NUM(step)) * NUM(step) : value;
+}
+
 static inline void measure(const lane_group *group, int64_t sample, num t_s, num *y)
 {
     const run_request *const request = group->request;
@@ -110,8 +116,7 @@ static inline void measure(const lane_group *group, int64_t sample, num t_s, num
                 const double normal = noise_normal(request->seed, (uint64_t)group->run[lane], (uint64_t)sample, (uint64_t)i);
                 lane_set(&y[i], lane, lane_get(y[i], lane) + request->measurement_sd[i] * normal);
             }
-        if (request->resolution[i] > 0.0)
-            y[i] = lane_round(y[i] / NUM(request->resolution[i])) * NUM(request->resolution[i]);
+        y[i] = quantised(y[i], request->resolution[i]);
     }
 }
 

@@ -50,3 +50,23 @@ void constants_single(const double *p, double *c)
 {
     model_constants(p, c);
 }
+
+/* How many constants there are room for. */
+int32_t constants_count(void)
+{
+    return N_CONSTANTS;
+}
+
+void limit_single(const double *c, double *u)
+{
+    for (int j = 0; j < N_INPUTS; j++)
+        u[j] = lane_clamp(u[j], c[INPUT_LOWER[j]], c[INPUT_UPPER[j]]);
+}
+
+/* Outputs rounded to the encoders' steps. */
+void measure_single(const double *c, const double *resolution, double t_s, const double *x, double *y)
+{
+    model_outputs(t_s, x, c, y);
+    for (int i = 0; i < N_OUTPUTS; i++)
+        y[i] = quantised(y[i], resolution[i]);
+}
