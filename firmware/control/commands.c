@@ -34,6 +34,7 @@ static path_demand arm(path_state *self, const uint8_t *payload)
         &self->supervisor, wish.mode, same_digest(wish.digest_head), self->self_test_mismatches == 0u);
     if (reason == PROTOCOL_REASON_DONE && !was_armed) {
         self->law_reset_due = true;
+        self->output = (law_output){0}; /* nothing of an earlier flight until the law has run */
         /* Hold the present place until the host names another. */
         self->input.psi_ref_rad = law_angle_from_counts_psi(self->measured.psi_counts);
         self->input.phi_ref_rad = law_angle_from_counts_phi(self->measured.phi_counts);
@@ -44,7 +45,6 @@ static path_demand arm(path_state *self, const uint8_t *payload)
 static path_demand disarm(path_state *self)
 {
     supervisor_disarm(&self->supervisor);
-    self->output = (law_output){0};
     return reply_result(self, PROTOCOL_TYPE_DISARM, PROTOCOL_REASON_DONE);
 }
 

@@ -12,7 +12,7 @@ void law_reset(law_state *self, law_number psi_rad, law_number phi_rad)
 
 static law_number limited(law_number u_V)
 {
-    return u_V > 10.0f ? 10.0f : (u_V < -10.0f ? -10.0f : u_V);
+    return u_V > 20.0f ? 20.0f : (u_V < -20.0f ? -20.0f : u_V);
 }
 
 void law_step(law_state *self, const law_input *input, law_output *output)

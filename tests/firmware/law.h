@@ -1,4 +1,5 @@
-/* Stand-in of the generated law, for tests of the firmware alone: u = 10 V/rad (reference - angle), plus a step count. */
+/* Stand-in of the generated law, for tests of the firmware alone: u = 10 V/rad (reference - angle), plus a step
+ * count; its voltages and duties go to twice the full scale, so that the limits behind it have work. */
 #ifndef LAW_H
 #define LAW_H
 

@@ -58,6 +58,22 @@ def test_each_kind_of_bad_frame_has_its_own_counter_and_no_answer(counter):
     assert counted["frames_accepted"] == 1
 
 
+@pytest.mark.parametrize("length", range(4))
+def test_a_sound_crc_does_not_make_a_frame_of_less_than_a_header(length):
+    box = Box()
+    assert box.feed(raw_frame(bytes([PROTOCOL.version, 1, 0])[:length])) == []
+    assert box.counters["too_short"] == 1
+
+
+def test_the_number_of_the_last_frame_on_another_message_is_stale():
+    box = Box()
+    box.arm("LOOP")
+    box.sequence -= 1
+    assert box.send("SAMPLE", **sample_words(0.1, 0.0)) == []
+    assert box.view.steps == 0
+    assert box.counters["stale"] == 1
+
+
 def test_empty_frames_are_no_errors():
     box = Box()
     box.feed(b"\0\0\0")

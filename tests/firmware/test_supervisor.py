@@ -124,17 +124,45 @@ def test_the_ramp_is_linear_monotone_and_ends_at_zero_with_the_power_off(psi_ref
         box.tick()
     start = (box.view.main_ticks, box.view.tail_ticks)
     assert abs(start[0]) == 1600
-    duties = []
+    duties, powers = [], []
     for _ in range(RAMP):
-        box.tick()
+        (frame,) = box.tick()
+        assert frame.number("u_M_V") == word(0.0)  # the law rests; what is applied are the duties
         duties.append((box.view.main_ticks, box.view.tail_ticks))
+        powers.append(box.view.power)
+    assert powers == [1] * (RAMP - 1) + [0]
     for axis in (0, 1):
         expected = [int(start[axis] * left / RAMP) for left in range(RAMP - 1, -1, -1)]
         assert [pair[axis] for pair in duties] == expected
     assert duties[-1] == (0, 0)
     assert box.state == "LOST"
-    assert box.view.power == 0
     assert RAMP <= 10
+
+
+def test_a_ramp_in_the_loop_is_told_and_never_powered():
+    box = Box()
+    box.arm("LOOP")
+    box.sample(psi_ref_rad=0.5)
+    states, powers = [], []
+    for _ in range(LOSS + RAMP):
+        states += [frame.number("state") for frame in box.tick()]
+        powers.append(box.view.power)
+    enumeration = PROTOCOL.enumeration("state")
+    assert states == [enumeration.code("RAMPING")] * (RAMP - 1) + [enumeration.code("LOST")]
+    assert powers == [0] * (LOSS + RAMP)
+
+
+def test_arming_anew_starts_from_zero_and_not_from_the_last_flight():
+    box = flying(0.5)
+    assert box.view.main_ticks == 1600
+    box.ask("DISARM")
+    box.arm("FLYING")
+    assert (box.view.main_ticks, box.view.tail_ticks) == (0, 0)
+
+
+@pytest.mark.parametrize(("psi_ref_rad", "duty"), [(1.5, 3200), (-1.5, -3200), (9.0, 3200)])
+def test_duties_beyond_full_scale_are_clamped(psi_ref_rad, duty):
+    assert flying(psi_ref_rad).view.main_ticks == duty
 
 
 def test_the_law_rests_while_the_ramp_runs():

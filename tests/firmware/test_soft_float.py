@@ -1,0 +1,157 @@
+"""Sums and products of floats in integers: plain C on the host and the target's routines, each bit for bit as the host's FPU."""
+
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from elftools.elf.elffile import ELFFile
+from numpy.typing import NDArray
+from unicorn import UC_ARCH_ARM, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
+from unicorn.arm_const import UC_ARM_REG_LR, UC_ARM_REG_R0, UC_ARM_REG_SP
+
+from toolchain.host import CText, build_shared, load_shared
+from toolchain.target import build_image
+
+BOARD = Path(__file__).resolve().parents[2] / "firmware" / "board"
+COUNT = 1024
+Bits = NDArray[np.uint32]
+
+HOST_DRIVER = CText(
+    "driver.c",
+    """
+    #include "soft_float.h"
+    void many(uint32_t count, const uint32_t *a, const uint32_t *b, uint32_t *results);
+    void many(uint32_t count, const uint32_t *a, const uint32_t *b, uint32_t *results)
+    {
+        for (uint32_t i = 0u; i < count; i++) {
+            *results++ = soft_float_sum(a[i], b[i]);
+            *results++ = soft_float_sum(a[i], b[i] ^ 0x80000000u);
+            *results++ = soft_float_product(a[i], b[i]);
+        }
+    }
+    """,
+)
+TARGET_DRIVER = CText(
+    "driver.c",
+    f"""
+    #include <stdint.h>
+    float a[{COUNT}], b[{COUNT}];
+    float results[{3 * COUNT}];
+    void Reset_Handler(uint32_t count);
+    void Reset_Handler(uint32_t count)
+    {{
+        for (uint32_t i = 0u; i < count; i++) {{
+            results[3u * i] = a[i] + b[i];
+            results[3u * i + 1u] = a[i] - b[i];
+            results[3u * i + 2u] = a[i] * b[i];
+        }}
+    }}
+    """,
+)
+LINKER_SCRIPT = """
+ENTRY(Reset_Handler)
+SECTIONS {
+    . = 0x08000000; .text : { KEEP(*(.text*)) *(.rodata*) }
+    . = 0x20000000; .bss : { *(.bss*) *(COMMON) }
+    /DISCARD/ : { *(.ARM.exidx*) *(.ARM.extab*) }
+}
+"""
+NASTY = np.array(
+    [
+        *(0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF, 0x00800000, 0x80800000, 0x00800001, 0x01000000),
+        *(0x7F7FFFFF, 0xFF7FFFFF, 0x7F000000, 0x7F800000, 0xFF800000, 0x7FC00000, 0x7F800001, 0xFFC12345, 0x3F800000),
+        *(0xBF800000, 0x3F7FFFFF, 0x3F800001, 0x34000000, 0x33800000, 0x33800001, 0x33000000, 0x4B800000, 0x00FFFFFF),
+    ],
+    dtype=np.uint32,
+)
+
+
+def test_plain_c_gives_the_bits_of_the_fpu_on_millions_of_operands() -> None:
+    library = build_shared("soft-float", [BOARD / "soft_float.c", HOST_DRIVER], include_dirs=[BOARD])
+    ffi, lib = load_shared("void many(uint32_t count, void *a, void *b, void *results);", library)
+    for a, b in _operands(200_000, seed=1):
+        results = np.empty((len(a), 3), dtype=np.uint32)
+        lib.many(len(a), *(ffi.cast("void *", array.ctypes.data) for array in (a, b, results)))
+        _assert_as_fpu(a, b, results)
+
+
+def test_the_target_routines_give_the_bits_of_the_fpu(tmp_path: Path) -> None:
+    target = _Target(tmp_path)
+    for a, b in _operands(20 * COUNT, seed=2):
+        for start in range(0, len(a), COUNT):
+            part = slice(start, start + COUNT)
+            _assert_as_fpu(a[part], b[part], target.computed(a[part], b[part]))
+
+
+def test_a_wrong_bit_is_noticed() -> None:
+    a = np.array([0x3F800000], dtype=np.uint32)
+    right = np.array([[0x40000000, 0x00000000, 0x3F800000]], dtype=np.uint32)
+    _assert_as_fpu(a, a, right)
+    with pytest.raises(AssertionError, match="3F800000"):
+        _assert_as_fpu(a, a, right ^ np.array([[0, 0, 1]], dtype=np.uint32))
+
+
+class _Target:
+    """The routines in an image of their own, run by an independent simulator."""
+
+    def __init__(self, folder: Path) -> None:
+        script = folder / "test.ld"
+        script.write_text(LINKER_SCRIPT, encoding="utf-8")
+        sources = [BOARD / "float_routines.c", BOARD / "soft_float.c", TARGET_DRIVER]
+        image = ELFFile(BytesIO(build_image("soft-float", sources, script, include_dirs=[BOARD]).read_bytes()))
+        self._addresses = {s.name: s["st_value"] for s in image.get_section_by_name(".symtab").iter_symbols()}
+        self._machine = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
+        self._machine.mem_map(0x08000000, 0x10000)
+        self._machine.mem_map(0x20000000, 0x10000)
+        for segment in image.iter_segments():
+            if segment["p_type"] == "PT_LOAD" and segment["p_filesz"]:
+                self._machine.mem_write(segment["p_vaddr"], segment.data())
+
+    def computed(self, a: Bits, b: Bits) -> Bits:
+        self._machine.mem_write(self._addresses["a"], a.tobytes())
+        self._machine.mem_write(self._addresses["b"], b.tobytes())
+        for register, value in ((UC_ARM_REG_R0, len(a)), (UC_ARM_REG_SP, 0x20010000), (UC_ARM_REG_LR, 0x0800FFF1)):
+            self._machine.reg_write(register, value)
+        self._machine.emu_start(self._addresses["Reset_Handler"] | 1, 0x0800FFF0)
+        results = bytes(self._machine.mem_read(self._addresses["results"], 12 * len(a)))
+        return np.frombuffer(results, dtype=np.uint32).reshape(-1, 3)
+
+
+def _operands(count: int, seed: int) -> Iterator[tuple[Bits, Bits]]:
+    """All pairs of nasty numbers; any bits; equal or near magnitudes; products near either end; few ones; near zero."""
+    rng = np.random.default_rng(seed)
+
+    def bits(low: int, high: int) -> NDArray[np.int64]:
+        return rng.integers(low, high, count)
+
+    def fields(exponents: NDArray[np.int64], fractions: NDArray[np.int64]) -> Bits:
+        return ((bits(0, 2) << 31) | (exponents << 23) | fractions).astype(np.uint32)
+
+    yield tuple(grid.ravel() for grid in np.meshgrid(NASTY, NASTY))  # type: ignore[misc]
+    yield bits(0, 2**32).astype(np.uint32), bits(0, 2**32).astype(np.uint32)
+    exponents = bits(0, 256)
+    near = np.clip(exponents + bits(-28, 29), 0, 255)
+    yield fields(exponents, bits(0, 2**23)), fields(near, bits(0, 2**23))
+    a = bits(0, 2**32 - 64)
+    yield a.astype(np.uint32), ((a + bits(-64, 64)) ^ (bits(0, 2) << 31)).astype(np.uint32)
+    for total in (127, 381):
+        other = np.clip(total - exponents + bits(-28, 5), 0, 255)
+        yield fields(exponents, bits(0, 2**23)), fields(other, bits(0, 2**23))
+    sparse = [fields(np.clip(128 + bits(-20, 20), 0, 255), 1 << bits(0, 23)) for _ in range(2)]
+    yield sparse[0], sparse[1]
+    small = [fields(bits(0, 4), bits(0, 2**23) >> bits(0, 23)) for _ in range(2)]
+    yield small[0], small[1]
+
+
+def _assert_as_fpu(a: Bits, b: Bits, results: Bits) -> None:
+    one, other = a.view(np.float32), b.view(np.float32)
+    with np.errstate(all="ignore"):
+        wanted = np.stack([one + other, one - other, one * other], axis=-1).view(np.uint32)
+    both_nan = ((results & 0x7FFFFFFF) > 0x7F800000) & ((wanted & 0x7FFFFFFF) > 0x7F800000)
+    wrong = np.argwhere((results != wanted) & ~both_nan)
+    if len(wrong):
+        row, column = wrong[0]
+        words = (a[row], b[row], results[row, column], wanted[row, column])
+        raise AssertionError(f"{'+-*'[column]}: " + " ".join(f"{int(word):08X}" for word in words))
