@@ -69,7 +69,7 @@ def manoeuvre(
         raise BadInput(
             "manoeuvre", name, f"{duration_s:g} s at {sample_period_s:g} s", "at least one sample", "give a longer time"
         )
-    t_s: Array = np.arange(round(duration_s / sample_period_s) + 1) * float(sample_period_s)
+    t_s = np.asarray(np.arange(round(duration_s / sample_period_s) + 1) * sample_period_s, dtype=float)
     return Manoeuvre(name, t_s, np.column_stack([profile_rad(axis, t_s) for axis in legs]), x0)
 
 

@@ -343,6 +343,14 @@ void events_settle(double *x, double *sign, double *move, double t_s, const doub
     store(&at, x, sign, move);
 }
 
+void events_apply(double *x, double *sign, double *move, double t_s, const double *u, const double *c, event_piece piece)
+{
+    moment at = {.t_s = t_s, .u = u, .c = c};
+    load(&at, x, sign, move);
+    apply(&at, (next_event){piece.axis, piece.event});
+    store(&at, x, sign, move);
+}
+
 int events_advance(double *x, double *sign, double *move, double t_s, double h_s, const double *u, const double *c,
                    event_piece *pieces)
 {

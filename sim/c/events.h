@@ -19,6 +19,9 @@ typedef struct {
 int events_advance(double *x, double *sign, double *move, double t_s, double h_s, const double *u, const double *c,
                    event_piece *pieces);
 
+/* What the event of `piece` does to the state and modes at its instant. */
+void events_apply(double *x, double *sign, double *move, double t_s, const double *u, const double *c, event_piece piece);
+
 /* Decide for every axis at its present state whether it moves or is held, and put it back between its stops. */
 void events_settle(double *x, double *sign, double *move, double t_s, const double *u, const double *c);
 

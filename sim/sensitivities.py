@@ -1,0 +1,114 @@
+"""Outputs of a run with given inputs, and their exact derivatives, for identification and diagnosis."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import sympy
+from numpy.typing import ArrayLike, NDArray
+
+from records.errors import BadInput
+from sim.bind import BoundPlant
+from sim.kernel import kernel
+from sim.model import Model
+
+MAX_COLUMNS = 64
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """y (n, outputs) without quantisation, dy (n, outputs, columns) = dy/d(column), x (n, states); `columns` names the last axis."""
+
+    columns: tuple[str, ...]
+    y: Array
+    dy: Array
+    x: Array
+
+
+@lru_cache(maxsize=64)
+def column_names(model: Model) -> tuple[str, ...]:
+    """All that one can differentiate by: coefficients ("K_M", "p_bM_1"), "gain.U" and "offset.U" of an input, "x0.STATE"."""
+    coefficients = tuple(str(symbol) for symbol in model.parameter_symbols)
+    gains = tuple(f"{kind}.{variable}" for kind in ("gain", "offset") for variable in model.inputs)
+    return (*coefficients, *gains, *(f"x0.{state}" for state in model.states))
+
+
+def sensitivities(
+    bound: BoundPlant,
+    t_s: ArrayLike,
+    u: ArrayLike,
+    x0: ArrayLike,
+    columns: tuple[str, ...],
+    *,
+    p: ArrayLike | None = None,
+    substeps: int = 1,
+) -> Sensitivities:
+    """Integrate dS/dt = A S + D, S = dx/d(columns), with the run itself: t_s (n,), u (n, inputs) held, x0 (states,), p (k,).
+
+    A gain multiplies and an offset adds to an input before its limits; at a limit their derivative is 0. Sticking, breaking away and
+    stops are carried to first order (the instants of events move with the columns). Raises BadInput for an unknown column, or
+    more than 64.
+    """
+    model, compiled = bound.model, kernel(bound.model)
+    known = column_names(model)
+    for name in columns:
+        if name not in known:
+            raise BadInput(
+                "column", "sensitivities", repr(name), f"one of {', '.join(known)}", "name a coefficient or state"
+            )
+    if len(columns) > MAX_COLUMNS:
+        raise BadInput("columns", "sensitivities", f"{len(columns)}", f"at most {MAX_COLUMNS}", "ask in two calls")
+    times = np.ascontiguousarray(t_s, dtype=float)
+    arrays: dict[str, NDArray[np.float64] | NDArray[np.int32]] = {
+        "t_s": times,
+        "p": np.ascontiguousarray(bound.p if p is None else p, dtype=float),
+        "x0": np.ascontiguousarray(x0, dtype=float),
+        "input": np.ascontiguousarray(u, dtype=float),
+        "column": np.array([known.index(name) for name in columns], dtype=np.int32),
+        "lower_slope": _stop_slopes(bound, 0),
+        "upper_slope": _stop_slopes(bound, 1),
+        "y": np.empty((times.size, len(model.outputs))),
+        "dy": np.empty((times.size, len(model.outputs), len(columns))),
+        "x": np.empty((times.size, len(model.states))),
+    }
+    shapes = {
+        "p": (len(known) - 2 * len(model.inputs) - len(model.states),),
+        "x0": (len(model.states),),
+        "input": (times.size, len(model.inputs)),
+    }
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            raise BadInput(
+                name, "sensitivities", f"shape {arrays[name].shape}", f"shape {shape}", "check the arguments' order"
+            )
+    request = compiled.ffi.new("sensitivity_request *")
+    for name, array in arrays.items():
+        setattr(request, name, compiled.pointer(array))
+    request.samples, request.substeps, request.columns = times.size, substeps, len(columns)
+    compiled.lib.sensitivity_run(request)
+    return Sensitivities(
+        columns, np.asarray(arrays["y"], float), np.asarray(arrays["dy"], float), np.asarray(arrays["x"], float)
+    )
+
+
+def _stop_slopes(bound: BoundPlant, side: int) -> Array:
+    """d(stop)/dp, shape (axes, parameters); 0 where there is no stop."""
+    model = bound.model
+    slopes = np.zeros((max(1, len(model.axes)), len(model.parameter_symbols)))
+    for row, column, slope in _stop_derivatives(model, side):
+        known = slope if slope.is_Number else slope.subs(dict(zip(model.parameter_symbols, bound.p, strict=True)))
+        slopes[row, column] = float(known)
+    return slopes
+
+
+@lru_cache(maxsize=128)
+def _stop_derivatives(model: Model, side: int) -> tuple[tuple[int, int, sympy.Expr], ...]:
+    limits = [(axis.lower, axis.upper)[side] for axis in model.axes]
+    stops = [sympy.Integer(0) if limit is None else sympy.sympify(limit) for limit in limits]
+    return tuple(
+        (row, column, sympy.diff(stop, symbol))
+        for row, stop in enumerate(stops)
+        for column, symbol in enumerate(model.parameter_symbols)
+        if stop.has(symbol)
+    )
