@@ -10,6 +10,7 @@ so the change of basis has integer entries. The direct form is kept as reference
 of large coefficients, which a rounded table does not keep.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +48,14 @@ def to_direct(delta: DeltaForm) -> DirectForm:
     """The inverse of `to_delta`."""
     feedback = np.array([1.0 - delta.p[0], delta.p[1], delta.p[2]])
     return DirectForm(q=_BINOMIAL @ delta.q, p=np.append(1.0, -_BINOMIAL[:3, :3] @ feedback))
+
+
+def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequence[float]) -> float:
+    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (4,) of k .. k-3 and outputs (3,) of k-1 .. k-3.
+
+    The outputs are those of the feedback alone. The paper writes the total voltage, which multiplies the feed-forward by 1/P(1).
+    """
+    return float(np.dot(form.q, errors_rad) - np.dot(form.p[1:], outputs_V))
 
 
 def controller_poles_z(direct: DirectForm) -> NDArray[np.complex128]:

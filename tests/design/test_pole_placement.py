@@ -3,15 +3,27 @@
 import numpy as np
 import pytest
 
-from design.direct_form import controller_poles_z, to_delta
+from design.direct_form import DirectForm, controller_poles_z, to_delta, to_direct
 from design.discretise import transfer_function
 from design.linearise import linearise, subsystem
-from design.loop import closed_loop_poles, open_loop
+from design.loop import closed_loop_poles, open_loop, slowest
 from design.margins import margins
 from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
+from design.schedule import evaluate, schedule_of
 from records.errors import BadInput
 from sim.equilibrium import equilibrium
-from tests.design.helicopter import AZ_DOM, DOM, DOM2, SAMPLE_PERIOD_S, equal, helicopter, polynomials
+from tests.design.helicopter import (
+    AZ_DOM,
+    DOM,
+    DOM2,
+    SAMPLE_PERIOD_S,
+    equal,
+    helicopter,
+    polynomials,
+    settings_for,
+    table_for,
+    wide_angles,
+)
 
 EQ8 = equal(-8.0)
 
@@ -96,3 +108,34 @@ def test_a_plant_whose_polynomials_share_a_root_is_refused_as_ill_conditioned():
     a, b = np.convolve(shared, [1.0, -1.8, 0.81]), np.append(0.0, np.convolve(shared, [1.0, 0.2]))
     with pytest.raises(BadInput, match=r"azimuth at 5 deg.*condition number"):
         place(b, a, wanted(EQ8), FREE_DEGREES["q3_zero"], "azimuth at 5 deg")
+
+
+def closed_loop_slowest(q, p, psi_deg=0.0):
+    return slowest(
+        closed_loop_poles(open_loop(polynomials("elevation", np.radians(psi_deg)), to_delta(DirectForm(q, p))))
+    )
+
+
+@pytest.mark.parametrize(("free_degree", "poles"), [("q3_zero", EQ8), ("integral", DOM2)])
+def test_eq_26_solved_in_float32_as_on_a_microcontroller_is_unstable_at_many_angles(free_degree, poles):
+    unstable = 0
+    for psi_deg in np.linspace(-40.0, 40.0, 9):
+        found, free = transfer("elevation", psi_deg), FREE_DEGREES[free_degree]
+        scale = np.max(np.abs(found.b))
+        unscale = np.array([1.0] * 3 + [1.0 / scale] * 4)
+        row = np.asarray(free.row) * unscale
+        system = np.vstack([sylvester(found.b / scale, found.a), row / np.max(np.abs(row))]).astype(np.float32)
+        target = np.append(wanted(poles)[1:] - np.append(found.a[1:], np.zeros(3)), free.value / np.max(np.abs(row)))
+        solution = np.linalg.solve(system, target.astype(np.float32)).astype(float) * unscale
+        unstable += closed_loop_slowest(solution[3:], np.append(1.0, solution[:3]), psi_deg) > 0.0
+    assert unstable >= 3
+
+
+@pytest.mark.parametrize(("decimals", "slowest_rad_s"), [(3, -2.5), (2, 0.08)])
+def test_direct_form_rounded_to_decimals_has_the_published_slowest_pole(decimals, slowest_rad_s):
+    schedule = schedule_of(table_for(settings_for((EQ8, "q3_zero"))).elevation)
+    found = []
+    for psi_rad in wide_angles():
+        form = to_direct(evaluate(schedule, psi_rad))
+        found.append(closed_loop_slowest(np.round(form.q, decimals), form.p, np.degrees(psi_rad)))
+    assert max(found) == pytest.approx(slowest_rad_s, abs=0.02)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from design.direct_form import DirectForm, to_direct
+from design.direct_form import DirectForm, feedback_V, to_direct
 from design.law import polynomial, prefilter_gain, saturate
 from design.schedule import evaluate, schedule_of
 from records.table import AxisLaw, ControllerTable
@@ -67,12 +67,17 @@ class DirectLaw:
     def _axis(self, law: AxisLaw, axis: _Axis, angle: float, psi_rad: float, feedforward_at: float) -> float:
         within = float(np.clip(psi_rad, self.table.psi_min_rad, self.table.psi_max_rad))
         axis.forms = [to_direct(evaluate(schedule_of(law), within)), *axis.forms][:4]
-        forms = [axis.forms[min(i, len(axis.forms) - 1) if self.delayed_coefficients else 0] for i in range(4)]
         errors = (axis.x[1] - angle, *axis.errors)
-        v = sum(forms[i].q[i] * errors[i] for i in range(4))
-        v -= sum(forms[i].p[i] * axis.outputs[i - 1] for i in range(1, 4))
+        v = feedback_V(self._form(axis), errors, axis.outputs)
         feedforward = polynomial(law.feedforward_V, feedforward_at)
-        u = saturate(law, float(v + feedforward))
+        u = saturate(law, v + feedforward)
         axis.errors = errors[:3]
-        axis.outputs = (self.kept(float(v), feedforward, u), *axis.outputs[:2])
+        axis.outputs = (self.kept(v, feedforward, u), *axis.outputs[:2])
         return u
+
+    def _form(self, axis: _Axis) -> DirectForm:
+        """The present coefficients, or each coefficient i as it was i samples ago."""
+        if not self.delayed_coefficients:
+            return axis.forms[0]
+        past = [axis.forms[min(i, len(axis.forms) - 1)] for i in range(4)]
+        return DirectForm(np.array([past[i].q[i] for i in range(4)]), np.array([past[i].p[i] for i in range(4)]))
