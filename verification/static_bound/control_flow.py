@@ -16,7 +16,8 @@ WAITING = frozenset({"bkpt", "svc", "wfi", "wfe"})
 class FlowGraph:
     """One function. Addresses are keys; `sp` is the stack pointer before the instruction, relative to its value at entry.
 
-    `calls` maps a BL or a tail call (a branch out of the function) to its callee. `returns` holds the instructions that leave.
+    `calls` maps a BL or a tail call (a branch to another function's entry) to its callee. `returns` holds the instructions that leave,
+    `indirect` the computed calls and jumps. Code shared with a neighbour, or run into from above, counts as the function's own.
     """
 
     function: ElfFunction
@@ -28,16 +29,12 @@ class FlowGraph:
     sp: dict[int, int]
     frame_escapes: bool
 
-    def is_tail_call(self, address: int) -> bool:
-        """Whether the instruction is a branch to another function."""
-        return address in self.calls and self.instructions[address].op != "bl"
-
 
 def flow_graph(image: ElfImage, function: ElfFunction, jumps: Mapping[int, Iterable[int]]) -> FlowGraph:
     """Follow `function` from its entry; `jumps` are the targets found so far of its computed jumps.
 
     Raises VerificationFailed, with the address, at an instruction whose time has no bound (SVC, BKPT, WFI, WFE), at a stack frame
-    whose size is not constant, and where execution would run into data or out of the function.
+    whose size is not constant, and where execution would run into data.
     """
     builder = _Builder(image, function, jumps)
     builder.follow()
@@ -86,23 +83,17 @@ class _Builder:
         if i.op in ("bx", "mov_pc", "add_pc", "blx"):
             self.indirect.add(i.address)
             return tuple(self.jumps.get(i.address, ())) if i.op != "blx" else (i.next_address,)
-        inside = self.function.start <= i.target < self.function.end
         if i.op == "bl":
-            if inside and i.target != self.function.start:
-                return (i.target,)  # a far branch of a large function, lr being free
             self.calls[i.address] = self.image.function_at(i.target, i.address)
             return (i.next_address,)
-        if i.op in ("b", "b_if") and not inside:
-            self.calls[i.address] = self.image.function_at(i.target, i.address)
+        if i.op in ("b", "b_if") and i.target in self.image.functions and i.target != self.function.start:
+            self.calls[i.address] = self.image.functions[i.target]
             return (i.next_address,) if i.op == "b_if" else ()
         if i.op == "b":
             return (i.target,)
         return (i.next_address, i.target) if i.op == "b_if" else (i.next_address,)
 
     def finished(self) -> FlowGraph:
-        outside = [a for a in self.instructions if not self.function.start <= a < self.function.end]
-        if outside:
-            raise VerificationFailed(f"{self.function.name}: execution leaves the function at 0x{min(outside):08x}")
         return FlowGraph(
             self.function,
             self.instructions,

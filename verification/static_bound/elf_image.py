@@ -2,7 +2,6 @@
 
 import io
 from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from elftools.common.exceptions import ELFError
@@ -17,11 +16,10 @@ ALLOCATED_READ_ONLY = (0x2, 0x3)  # sh_flags: SHF_ALLOC set, SHF_WRITE (1) clear
 
 @dataclass(frozen=True)
 class ElfFunction:
-    """A function symbol: `name` for people, its first address and the address behind its last byte."""
+    """A function symbol: its name for people and its first address."""
 
     name: str
     start: int
-    end: int
 
 
 @dataclass(frozen=True)
@@ -84,27 +82,23 @@ def load_elf(elf: bytes) -> ElfImage:
         for section in file.iter_sections("SHT_PROGBITS")
         if section["sh_flags"] & ALLOCATED_READ_ONLY[1] == ALLOCATED_READ_ONLY[0]
     )
-    symbols = [(s.name, s["st_value"], s["st_size"], s["st_info"]["type"]) for s in table.iter_symbols()]
+    symbols = [(s.name, s["st_value"], s["st_info"]["type"]) for s in table.iter_symbols()]
     marks = (
-        (name[:2] == "$t", value)
-        for name, value, _, kind in symbols
-        if kind == "STT_NOTYPE" and name[:2] in ("$t", "$d")
+        (name[:2] == "$t", value) for name, value, kind in symbols if kind == "STT_NOTYPE" and name[:2] in ("$t", "$d")
     )
-    entries = [(value & ~1, size, name) for name, value, size, kind in symbols if kind == "STT_FUNC"]
-    functions = {f.start: f for f in _functions(sorted(entries))}
+    entries = [(value & ~1, plain_name(name), name) for name, value, kind in symbols if kind == "STT_FUNC"]
+    starts: dict[int, list[str]] = {}
+    for start, plain, _ in entries:
+        starts.setdefault(start, []).append(plain)
+    functions = {start: ElfFunction(min(names, key=_preference), start) for start, names in starts.items()}
     return ElfImage(
         blocks, functions, {name: start for start, _, name in entries}, tuple(sorted((a, code) for code, a in marks))
     )
 
 
-def _functions(entries: list[tuple[int, int, str]]) -> Iterator[ElfFunction]:
-    starts = sorted({start for start, _, _ in entries})
-    for start in starts:
-        here = [(size, name) for at, size, name in entries if at == start]
-        size = max(size for size, _ in here)
-        following = starts[bisect_right(starts, start)] if start != starts[-1] else start + 0x10000
-        name = min((plain_name(name) for _, name in here), key=lambda text: (text[:8] != "__aeabi_", len(text), text))
-        yield ElfFunction(name, start, start + size if size else following)
+def _preference(name: str) -> tuple[bool, int, str]:
+    """Of several names at one address the run-time ABI's is taken, then the shortest."""
+    return not name.startswith("__aeabi_"), len(name), name
 
 
 def plain_name(symbol: str) -> str:

@@ -223,6 +223,8 @@ class Exploration:
         if source is None:
             raise VerificationFailed(f"{name}: the jump at 0x{i.address:08x} leads to no known set of places")
         target = (base + source) & 0xFFFFFFFE
+        if target in self.image.functions:
+            return self._called(visit, i, self.image.functions[target])
         if target not in self.prepared.graph.successors[i.address]:
             raise NewTargets(i.address, frozenset({target}))
         return visit._replace(cycles=visit.cycles.plus(_both(instruction_cycles(i), jump_stalls(target)))), target

@@ -11,11 +11,12 @@ NOWHERE = -1
 class Flags(NamedTuple):
     """Flags of the last instruction that set them.
 
-    Of a subtraction `a - b` (`compares`) all conditions are decided by `a` and `b`; otherwise Z and N by `result`, C by `carry`.
+    After a subtraction `a - b` (kind "subtract") all conditions are decided by `a` and `b`; otherwise Z and N by `result`, C by `carry`.
+    After a shift by a constant (kind "lsls", "lsrs") Z also tells of `a`, which was shifted by `b`.
     The `_at` members name registers that still hold the operands and the result.
     """
 
-    compares: bool = False
+    kind: str = ""
     a: Word = TOP
     b: Word = TOP
     result: Word = TOP
@@ -71,10 +72,10 @@ def join_states(a: State, b: State) -> State:
 
 def _joined_flags(a: Flags, b: Flags) -> Flags:
     same_places = (a.a_at, a.b_at, a.result_at) == (b.a_at, b.b_at, b.result_at)
-    if a.compares != b.compares or not same_places:
+    if a.kind != b.kind or not same_places:
         return UNKNOWN_FLAGS
     return Flags(
-        a.compares, words.join(a.a, b.a), words.join(a.b, b.b), words.join(a.result, b.result),
+        a.kind, words.join(a.a, b.a), words.join(a.b, b.b), words.join(a.result, b.result),
         a.a_at, a.b_at, a.result_at, a.carry if a.carry == b.carry else None,
     )  # fmt: skip
 
@@ -89,16 +90,31 @@ def assume(state: State, condition: str) -> State | None:
     result = _result_where(flags.result, condition)
     if result is None:
         return None
-    if not flags.compares:
-        possible = flags.carry is None or {"hs": flags.carry == 1, "lo": flags.carry == 0, "hi": flags.carry == 1}.get(
-            condition, True
-        )
-        return _refined(state, flags._replace(result=result)) if possible else None
+    if flags.kind != "subtract":
+        carries = {"hs": 1, "hi": 1, "lo": 0}
+        possible = flags.carry is None or carries.get(condition, flags.carry) == flags.carry
+        source = _shifted_where(flags, condition)
+        return _refined(state, flags._replace(a=source, result=result)) if possible and source else None
     pair = _operands_where(flags.a, flags.b, condition)
     if pair is None:
         return None
     narrower = words.common(result, words.subtract(*pair))
     return narrower and _refined(state, flags._replace(a=pair[0], b=pair[1], result=narrower))
+
+
+def _shifted_where(flags: Flags, condition: str) -> Word | None:
+    """What was shifted, where the shift's result is zero or not."""
+    amount = flags.b.constant or 0
+    match flags.kind, condition:
+        case "lsrs", "eq":
+            return words.within(flags.a, 0, (1 << amount) - 1)
+        case "lsrs", "ne":
+            return words.within(flags.a, 1 << amount, MASK)
+        case "lsls", "eq":
+            return words.common(flags.a, words.bit_pattern(MASK >> amount, 0))
+        case "lsls", "ne":
+            return words.within(flags.a, 1, MASK)
+    return flags.a
 
 
 def _refined(state: State, flags: Flags) -> State:

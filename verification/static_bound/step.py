@@ -134,6 +134,9 @@ def _computed(state: State, i: Instruction) -> State:
         result, carry = _added(i, a, b, state.flags.carry)
     d = written_register(i)
     after = state.with_value(d, result) if d >= 0 else state
+    if i.op in ("lsls", "lsrs") and i.m < 0:
+        source_at = i.n if i.n != d else NOWHERE
+        return State(after.values, Flags(i.op, a, b, result, source_at, NOWHERE, d, carry))
     return State(after.values, Flags(result=result, result_at=d, carry=carry))
 
 
@@ -145,7 +148,7 @@ def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
     after = state.with_value(d, result) if d >= 0 else state
     carry = 1 if a.lowest >= b.highest else 0 if a.highest < b.lowest else None
     a_at, b_at = (place if place != d and place < SP else NOWHERE for place in (a_at, b_at))
-    return State(after.values, Flags(True, a, b, result, a_at, b_at, d, carry))
+    return State(after.values, Flags("subtract", a, b, result, a_at, b_at, d, carry))
 
 
 def _added(i: Instruction, a: Word, b: Word, carry_in: int | None) -> tuple[Word, int | None]:
