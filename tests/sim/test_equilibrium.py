@@ -1,0 +1,60 @@
+"""Rest points of the CE150 against facts/ce150.md B1, in the digits stated there."""
+
+import numpy as np
+import pytest
+
+from records.errors import BadInput
+from sim.equilibrium import equilibrium
+from sim.reference import reference
+
+U_M0_V = {-45: 4.653, -40: 4.859, -30: 5.191, -20: 5.424, -10: 5.562, 0: 5.607, 10: 5.562, 20: 5.424, 30: 5.191, 40: 4.859}
+RATES = 1e-11  # of what is left of dx/dt, where single terms reach 2000 rad/s^2
+
+
+@pytest.mark.parametrize("psi_deg", U_M0_V)
+def test_the_main_rotor_input_follows_the_published_curve(bound, psi_deg):
+    assert equilibrium(bound, np.radians(psi_deg)).u0[0] == pytest.approx(U_M0_V[psi_deg], abs=6e-4)
+
+
+def test_the_tail_input_hardly_depends_on_elevation(bound):
+    u_T0 = [equilibrium(bound, np.radians(psi_deg)).u0[1] for psi_deg in range(-40, 41, 5)]
+    assert min(u_T0) == pytest.approx(1.81, abs=5e-3)
+    assert max(u_T0) == pytest.approx(1.97, abs=5e-3)
+
+
+@pytest.mark.parametrize("psi_deg", range(-45, 46, 5))
+def test_nothing_moves_at_a_rest_point(bound, literal, psi_deg):
+    for plant in (bound, literal):
+        point = equilibrium(plant, np.radians(psi_deg))
+        rates = reference(plant.model).rates(0.0, point.x0, point.u0, plant.p, [0, 0])
+        assert np.max(np.abs(rates)) < RATES
+
+
+def test_the_azimuth_may_be_given_too(bound):
+    at = equilibrium(bound, 0.1, 0.7)
+    assert at.x0[4] == 0.7
+    assert np.array_equal(at.u0, equilibrium(bound, 0.1).u0)
+
+
+@pytest.mark.parametrize(
+    ("psi_deg", "eigenvalues"),
+    [(-40, [-0.211 + 2.364j, -0.211 - 2.364j]), (0, [0.0, -0.421]), (20, [1.534]), (40, [2.172])],
+)
+def test_the_arm_has_the_published_eigenvalues(bound, psi_deg, eigenvalues):
+    point = equilibrium(bound, np.radians(psi_deg))
+    A = reference(bound.model).A(0.0, point.x0, point.u0, bound.p, [0, 0])
+    found = np.linalg.eigvals(A)
+    for value in eigenvalues:
+        assert np.min(np.abs(found - value)) < 6e-4
+
+
+def test_an_angle_beyond_the_stops_is_refused_by_name(bound):
+    with pytest.raises(BadInput, match=r"elevation angle: got 46 deg, expected -45 to 45 deg, the stops"):
+        equilibrium(bound, np.radians(46.0))
+
+
+def test_an_input_beyond_its_range_is_named(bound):
+    weak = bound.p.copy()
+    weak[[str(s) for s in bound.model.parameter_symbols].index("u_max")] = 5.0
+    with pytest.raises(BadInput, match=r"at 0 deg: input u_M_V: got 5.607 V needed to rest there, expected 0 to 5 V"):
+        equilibrium(type(bound)(bound.plant, bound.model, weak, bound.sd), 0.0)
