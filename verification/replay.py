@@ -61,4 +61,6 @@ def _angles(log: RunLog, path: Path) -> tuple[Array, Array]:
         if psi in log.columns.outputs and phi in log.columns.outputs:
             return log.column(psi), log.column(phi)
     expected = " or ".join(" and ".join(pair) for pair in ANGLES)
-    raise BadInput("run log", str(path), f"columns {', '.join(log.columns.outputs)}", expected, "replay a log of two angles")
+    raise BadInput(
+        "run log", str(path), f"columns {', '.join(log.columns.outputs)}", expected, "replay a log of two angles"
+    )

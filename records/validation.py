@@ -1,0 +1,45 @@
+"""What was checked of a board on its serial line, as validation.json states it."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+from records.verification import Equality
+
+SCHEMA = "validation/1"
+
+
+@dataclass(frozen=True)
+class Validation:
+    """A board that answered with the right table: its identity, its self-test, replayed steps, cost and line counters."""
+
+    port: str
+    identity: Mapping[str, object]
+    table_digest: str
+    self_test_mismatches: int
+    equality: Equality
+    law_cycles_max: int
+    counters: Mapping[str, int]
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """One sentence for each check that did not hold."""
+        sentences = []
+        if self.self_test_mismatches:
+            sentences.append(f"the board's self-test found {self.self_test_mismatches} mismatches")
+        if self.equality.mismatches:
+            sentences.append(
+                f"the board differs from the host in {self.equality.mismatches} of {self.equality.steps} steps"
+            )
+        return tuple(sentences)
+
+    @property
+    def passed(self) -> bool:
+        """True when every check held."""
+        return not self.failures
+
+
+def validation_text(validation: Validation) -> str:
+    """The record as JSON text."""
+    verdict = {"schema": SCHEMA, "passed": validation.passed, "failures": list(validation.failures)}
+    return json.dumps({**verdict, **asdict(validation)}, indent=1) + "\n"

@@ -1,0 +1,42 @@
+"""The law of a board, stepped through its serial line in host-in-the-loop mode: an execution to compare with the host's."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rig.client import BoardClient
+
+Bits = NDArray[np.uint32]
+
+
+class LineLaw:
+    """As verification.stateless.Stateless: angles [lanes, 2] stand for the state. `cycles_max` are by the board's own counter."""
+
+    name = "board"
+    arithmetic = "float32"
+
+    def __init__(self, client: BoardClient) -> None:
+        self.cycles_max = 0
+        self._client = client
+
+    def start(self, angles: Bits) -> Bits:
+        """The angles themselves; the board is started when a lane runs."""
+        return angles
+
+    def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
+        """Lane after lane from rest: inputs [steps, lanes, 4] give outputs [steps, lanes, 2], one frame a step each way."""
+        lanes = [self._lane(angles, inputs[:, lane]) for lane, angles in enumerate(states)]
+        return states, np.stack(lanes, axis=1)
+
+    def _lane(self, angles: Bits, inputs: Bits) -> Bits:
+        self._client.arm("LOOP")
+        self._client.reset_law(*_floats(angles))
+        return np.array([self._step(row) for row in inputs])
+
+    def _step(self, row: Bits) -> Bits:
+        answer = self._client.sample(*_floats(row))
+        self.cycles_max = max(self.cycles_max, answer.law_cycles)
+        return np.array([answer.u_M_V, answer.u_T_V], np.float32).view(np.uint32)
+
+
+def _floats(bits: Bits) -> list[float]:
+    return [float(value) for value in np.ascontiguousarray(bits).view(np.float32)]

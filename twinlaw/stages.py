@@ -1,0 +1,224 @@
+"""The stages of the chain as the verbs call them: each takes records, leaves its files, and hands on records."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from codegen.law import generate_law
+from codegen.protocol_source import protocol_source
+from codegen.twin import Float32Twin
+from design.operating_points import design_points
+from design.report import DesignReport, make_report
+from design.settings import read_settings
+from design.table import design
+from records.errors import BadInput, VerificationFailed
+from records.files import write_atomic
+from records.log import RunLog, load_log, plant_of_log
+from records.plant import load_plant
+from records.protocol import PROTOCOL
+from records.table import ControllerTable
+from records.validation import Validation
+from records.verification import Equality, PoleMigration, SelfTest, TargetCost, Verification
+from rig.client import BoardClient
+from rig.controller import BoardController
+from rig.emulator.board import EmulatedBoard
+from rig.image import FirmwareImage, build_firmware
+from rig.line_law import LineLaw
+from rig.target_law import TargetLaw
+from sim.bind import BoundPlant, bind
+from sim.columns import log_columns
+from sim.loop import fly, fly_law
+from sim.manoeuvres import flight
+from sim.plants import MODELS
+from sim.tracking import Tracking, tracking
+from twinlaw.console import stage
+from verification.equality import BatchStepper, compare
+from verification.host_law import HostLaw
+from verification.replay import Replay, replay_of, replayed_equality
+from verification.rounding import rounding_bound
+from verification.stateless import Stateless
+from verification.static_bound import static_bound
+from verification.stimuli import Stimulus, sequences, standard_stimuli
+
+STEPS = 100_000
+
+
+@dataclass(frozen=True)
+class Designed:
+    """A plant with the controller that was designed for it and the report on it."""
+
+    bound: BoundPlant
+    table: ControllerTable
+    report: DesignReport
+
+
+def load_bound(path: Path) -> BoundPlant:
+    """Read a plant file and bind it to its equations; raises BadInput."""
+    return bind(load_plant(path))
+
+
+def design_controller(plant: Path) -> Designed:
+    """Design at all operating points, fit, and judge; raises BadInput for a plant or a table that cannot be used."""
+    with stage("designing at the operating points, fitting, judging"):
+        bound = load_bound(plant)
+        table, report = design(bound, read_settings(bound))
+    return Designed(bound, table, report)
+
+
+def generate_sources(table: ControllerTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
+    """Generate law and protocol and write them to `folder`; returns the law's texts by file name."""
+    with stage("generating C"):
+        law = generate_law(table, arithmetic)
+        for name, text in {**law, **protocol_source(PROTOCOL)}.items():
+            write_atomic(folder / name, text)
+    return law
+
+
+def build_image(law: Mapping[str, str], folder: Path) -> FirmwareImage:
+    """Compile and link the firmware around the law; leaves firmware.elf and firmware.bin in `folder`."""
+    with stage("building the firmware for the STM32G071"):
+        return build_firmware(law, folder)
+
+
+def verify_table(
+    table: ControllerTable,
+    poles: Sequence[PoleMigration],
+    law: Mapping[str, str],
+    image: FirmwareImage,
+    recorded: Sequence[Replay] = (),
+    steps: int = STEPS,
+) -> Verification:
+    """All checks of one table: twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
+    twin, host, target = Float32Twin(table), HostLaw(law), TargetLaw(EmulatedBoard(image.elf))
+    stimuli = (*standard_stimuli(table, steps), *(replay.stimulus for replay in recorded))
+    equality = [_equal(one, other, stimuli) for one, other in ((twin, host), (host, target))]
+    replayed = (replayed_equality(replay, host) for replay in recorded)
+    equality += [row for row in replayed if row is not None]
+    with stage("proving a bound on rounding"):
+        rounding = rounding_bound(table)
+    with stage("bounding cycles and stack from the image"):
+        bound = static_bound(image.elf, "law_step")
+    return Verification(
+        table_digest=table.digest,
+        equality=tuple(equality),
+        self_tests=(SelfTest("host", "float32", host.self_test()), SelfTest("target", "float32", target.self_test())),
+        rounding=rounding,
+        poles=tuple(poles),
+        target=(
+            TargetCost(
+                arithmetic="float32",
+                cycles_max=target.cycles_max,
+                cycles_bound=bound.cycles_bound,
+                stack_bytes=bound.stack_bytes,
+                flash_bytes=image.sizes.flash_bytes,
+                ram_bytes=image.sizes.ram_bytes,
+            ),
+        ),
+    )
+
+
+def demand(verification: Verification) -> None:
+    """Raise VerificationFailed naming every check that did not hold."""
+    if not verification.passed:
+        raise VerificationFailed("; ".join(verification.failures))
+
+
+def _equal(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus]) -> Equality:
+    with stage(f"stepping {one.name} and {other.name} side by side"):
+        return compare(one, other, stimuli).equality
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight's log, how well it followed its references, and the counters of the board's line (none without a board)."""
+
+    log: RunLog
+    tracking: tuple[Tracking, ...]
+    counters: Mapping[str, int]
+
+
+def board_url(port: str, elf: Path) -> str:
+    """The pyserial URL of a board; `emulated` is the emulated board with the image `elf`, which must exist."""
+    if port != "emulated":
+        return port
+    if not elf.is_file():
+        raise BadInput(
+            "firmware image", str(elf), "no such file", "an image", "build it with `twinlaw build` or `twinlaw run`"
+        )
+    return f"emulated://{elf.resolve()}"
+
+
+def validate_board(table: ControllerTable, url: str, steps: int) -> Validation:
+    """Identity, self-test and `steps` replayed steps of the board at `url` against the host's C; raises BadInput for another table."""
+    with BoardClient.connect(url, table_digest=table.digest) as client:
+        law = LineLaw(client)
+        mismatches = client.self_test()
+        equality = _equal(Stateless(HostLaw(generate_law(table))), law, sequences(table, steps))
+        client.disarm()
+        return Validation(
+            port=url.split(":")[0] if url.startswith("emulated") else url,
+            identity=asdict(client.identity),
+            table_digest=table.digest,
+            self_test_mismatches=mismatches,
+            equality=equality,
+            law_cycles_max=law.cycles_max,
+            counters=client.counters(),
+        )
+
+
+def fly_board(bound: BoundPlant, table: ControllerTable, url: str) -> Flight:
+    """Fly the plant with the board at `url` in the loop, angles to the board and voltages back, one frame each per sample."""
+    with (
+        BoardClient.connect(url, table_digest=table.digest) as client,
+        stage("flying the firmware through its serial line"),
+    ):
+        log = fly(bound, BoardController(client), flight(bound, table.sample_period_s), table_digest=table.digest)
+        client.disarm()
+        counters = client.counters()
+    return Flight(log, _tracking(log), counters)
+
+
+def fly_double(bound: BoundPlant, table: ControllerTable) -> Flight:
+    """Fly the plant under the table's law in double precision."""
+    with stage("flying the law in double precision"):
+        log = fly_law(bound, table, flight(bound, table.sample_period_s))
+    return Flight(log, _tracking(log), {})
+
+
+def _tracking(log: RunLog) -> tuple[Tracking, ...]:
+    return tuple(tracking(log, output) for output in log.columns.outputs)
+
+
+def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
+    """The report's poles as verification.json states them."""
+    return tuple(PoleMigration(**entry) for entry in report.pole_entries())
+
+
+def table_poles(plant: Path, table: ControllerTable) -> tuple[PoleMigration, ...]:
+    """Poles of a table that exists already, on the plant of that file; raises BadInput when the table is for another plant."""
+    bound = load_bound(plant)
+    if table.plant != bound.plant.name:
+        raise BadInput(
+            "controller table",
+            str(plant),
+            f"a table for {table.plant!r}",
+            f"one for {bound.plant.name!r}",
+            "give its plant with --plant",
+        )
+    with stage("closing the loop at all angles"):
+        settings = read_settings(bound)
+        return poles_of(make_report(bound, settings, table, design_points(bound, settings)))
+
+
+def recorded_replay(path: Path, table: ControllerTable) -> Replay:
+    """A run log of any known plant, to be replayed; raises BadInput."""
+    plant = plant_of_log(path)
+    if plant not in MODELS:
+        raise BadInput(
+            "plant",
+            f"{path.with_suffix('.toml')}: plant",
+            repr(plant),
+            f"one of {', '.join(MODELS)}",
+            "name a known plant",
+        )
+    return replay_of(load_log(path, log_columns(MODELS[plant]())), table, path)

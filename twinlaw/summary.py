@@ -1,0 +1,153 @@
+"""Records as rows of text: what the verbs print and the report repeats."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from design.report import AxisReport, DesignReport
+from records.validation import Validation
+from records.verification import Verification
+from sim.tracking import Tracking
+from toolchain.elf import ImageSizes
+
+Row = tuple[str, ...]
+
+DESIGN_HEADING: Row = (
+    "axis",
+    "designed",
+    "worst flown",
+    "at Psi",
+    "Ms",
+    "phase",
+    "gain up / down",
+    "delay",
+    "fit error q",
+)
+
+
+def design_rows(report: DesignReport) -> list[Row]:
+    """One row per axis: slowest pole designed and worst flown, and the worst of each margin over Psi."""
+    return [_design_row(axis) for axis in (report.elevation, report.azimuth)]
+
+
+def _design_row(axis: AxisReport) -> Row:
+    worst = axis.worst_margins
+    return (
+        axis.axis,
+        f"{axis.designed_slowest_rad_s:.2f} rad/s",
+        f"{axis.after_float32.worst_rad_s:.2f} rad/s",
+        degrees(axis.after_float32.at_psi_rad),
+        f"{worst.sensitivity:.2f}",
+        degrees(worst.phase_rad),
+        f"{worst.gain_up:.2f} / {worst.gain_down:.2f}",
+        f"{1e3 * worst.delay_s:.0f} ms",
+        f"{100 * axis.fit_error.q:.2g} %",
+    )
+
+
+def design_facts(report: DesignReport) -> dict[str, Any]:
+    """The same for a program, with the poles of both loops closed together."""
+    axes = {axis.axis: _finite(asdict(axis.worst_margins)) for axis in (report.elevation, report.azimuth)}
+    coupled = {"worst_slowest_rad_s": report.coupled.worst_rad_s, "at_psi_rad": report.coupled.at_psi_rad}
+    return {"poles": report.pole_entries(), "worst_margins": axes, "coupled": coupled}
+
+
+def size_rows(sizes: ImageSizes, flash_limit_bytes: int = 128 * 1024, ram_limit_bytes: int = 32 * 1024) -> list[Row]:
+    """Flash and RAM of an image against the chip's."""
+    return [
+        ("flash", str(sizes.flash_bytes), f"{flash_limit_bytes} ({100 * sizes.flash_bytes / flash_limit_bytes:.1f} %)"),
+        (
+            "RAM",
+            str(sizes.ram_bytes),
+            f"{ram_limit_bytes} ({100 * sizes.ram_bytes / ram_limit_bytes:.1f} %), stack apart",
+        ),
+    ]
+
+
+def verification_rows(verification: Verification) -> list[Row]:
+    """One row per check: what, its figures, and whether it holds."""
+    rows: list[Row] = [
+        (f"{a} = {b}, {row.arithmetic}", f"{row.mismatches} of {row.steps} steps differ", _held(row.mismatches == 0))
+        for row in verification.equality
+        for a, b in (row.between,)
+    ]
+    rows += [
+        (f"self-test on the {row.place}, {row.arithmetic}", f"{row.mismatches} mismatches", _held(row.mismatches == 0))
+        for row in verification.self_tests
+    ]
+    bound = verification.rounding
+    rows.append(
+        ("rounding of one step, proved", f"u_M {1e6 * bound.u_M:.3g} uV, u_T {1e6 * bound.u_T:.3g} uV", "proved")
+    )
+    rows += [
+        (
+            f"{row.axis} poles after fit and rounding",
+            f"{row.designed_slowest_rad_s:.2f} -> {row.worst_slowest_rad_s:.2f} rad/s at {degrees(row.at_psi_rad)}",
+            _held(row.stable),
+        )
+        for row in verification.poles
+    ]
+    rows += [
+        (
+            f"control step on target, {row.arithmetic}",
+            f"{row.cycles_max} cycles measured, {row.cycles_bound} at most, stack {row.stack_bytes} B",
+            _held(row.cycles_max <= row.cycles_bound),
+        )
+        for row in verification.target
+    ]
+    return rows
+
+
+TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|")
+
+
+def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
+    """One row per output: the worst overshoot, the worst mean error at rest, the mean error of the whole flight."""
+    return [
+        (
+            entry.output,
+            str(entry.holds),
+            f"{100 * entry.overshoot:.1f} %",
+            f"{math.degrees(entry.steady_error_rad):.3f} deg",
+            f"{math.degrees(entry.mean_error_rad):.2f} deg",
+        )
+        for entry in tracking
+    ]
+
+
+def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
+    """The same for a program, by output."""
+    return {"tracking": {entry.output: asdict(entry) for entry in tracking}}
+
+
+def validation_rows(validation: Validation) -> list[Row]:
+    """One row per check of a board."""
+    equality = validation.equality
+    faults = {name: count for name, count in validation.counters.items() if count and name != "frames_accepted"}
+    told = ", ".join(f"{name} {count}" for name, count in faults.items()) or "no fault"
+    return [
+        ("table digest", validation.table_digest[:16], "holds"),
+        (
+            "self-test on the board",
+            f"{validation.self_test_mismatches} mismatches",
+            _held(not validation.self_test_mismatches),
+        ),
+        ("host = board", f"{equality.mismatches} of {equality.steps} steps differ", _held(not equality.mismatches)),
+        ("control step", f"{validation.law_cycles_max} cycles at most, by the board's counter", ""),
+        ("serial line", f"{validation.counters['frames_accepted']} frames accepted, {told}", ""),
+    ]
+
+
+def degrees(angle_rad: float) -> str:
+    """An angle as a person reads it."""
+    return f"{math.degrees(angle_rad):.1f} deg" if math.isfinite(angle_rad) else "any"
+
+
+def _held(condition: bool) -> str:
+    return "holds" if condition else "FAILS"
+
+
+def _finite(values: dict[str, float]) -> dict[str, float | None]:
+    """JSON knows no infinity: a margin without end is null."""
+    return {key: value if math.isfinite(value) else None for key, value in values.items()}

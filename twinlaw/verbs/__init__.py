@@ -1,0 +1,17 @@
+"""The verbs of the command line in the order of the work: one file each, with `add_arguments(parser)` and `run(options)`."""
+
+from collections.abc import Mapping
+from types import ModuleType
+
+from twinlaw.verbs import build, design, flash, generate, run, simulate, validate, verify
+
+VERBS: Mapping[str, ModuleType] = {
+    "run": run,
+    "design": design,
+    "generate": generate,
+    "build": build,
+    "verify": verify,
+    "simulate": simulate,
+    "flash": flash,
+    "validate": validate,
+}

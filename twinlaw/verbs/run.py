@@ -1,0 +1,63 @@
+"""The whole chain: design, generate, build, verify, and fly the firmware image on the emulated board.
+
+Leaves in DIR: controller.json, generated/, firmware.elf, firmware.bin, run.csv + run.toml, verification.json, report.html.
+"""
+
+import argparse
+import json
+
+from records.files import write_atomic
+from records.log import save_log
+from records.table import table_text
+from records.verification import verification_text
+from twinlaw import console, options, summary
+from twinlaw.page import page_text
+from twinlaw.run_report import run_page
+from twinlaw.stages import (
+    board_url,
+    build_image,
+    demand,
+    design_controller,
+    fly_board,
+    generate_sources,
+    poles_of,
+    verify_table,
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --out, --json."""
+    options.plant(parser)
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Every stage in turn; each leaves its files as soon as it is done."""
+    out = chosen.out
+    designed = design_controller(chosen.plant)
+    write_atomic(out / "controller.json", table_text(designed.table))
+    law = generate_sources(designed.table, "float32", out / "generated")
+    image = build_image(law, out)
+    verification = verify_table(designed.table, poles_of(designed.report), law, image)
+    write_atomic(out / "verification.json", verification_text(verification))
+    demand(verification)
+    flight = fly_board(designed.bound, designed.table, board_url("emulated", out / "firmware.elf"))
+    save_log(out / "run.csv", flight.log)
+    counters = [(name, str(value)) for name, value in flight.counters.items()]
+    page = run_page(
+        chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, counters
+    )
+    write_atomic(out / "report.html", page_text(page))
+    if chosen.json:
+        print(json.dumps({"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}))
+        return 0
+    print(console.table(summary.design_rows(designed.report), summary.DESIGN_HEADING))
+    print()
+    print(console.table(summary.verification_rows(verification), ("verification", "figures", "")))
+    print()
+    print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+    print()
+    print(console.table(summary.size_rows(image.sizes), ("memory", "bytes", "of")))
+    print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
+    return 0

@@ -1,0 +1,39 @@
+"""Simulate a flight of the nonlinear plant under a controller table's law in double precision, without any board.
+
+Writes DIR/simulation.csv and .toml. Without --table the controller is designed from the plant file.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+from records.log import save_log
+from records.table import load_table
+from twinlaw import console, options, summary
+from twinlaw.stages import design_controller, fly_double, load_bound
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --table, --out, --json."""
+    options.plant(parser)
+    parser.add_argument("--table", type=Path, metavar="TABLE.json", help="fly this table instead of designing one")
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Fly, write the log, and tell how well the references were followed."""
+    if chosen.table is None:
+        designed = design_controller(chosen.plant)
+        bound, table = designed.bound, designed.table
+    else:
+        bound, table = load_bound(chosen.plant), load_table(chosen.table)
+    flight = fly_double(bound, table)
+    path = chosen.out / "simulation.csv"
+    save_log(path, flight.log)
+    if chosen.json:
+        print(json.dumps({"log": str(path), "table_digest": table.digest, **summary.tracking_facts(flight.tracking)}))
+    else:
+        print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+        print(f"\n{path}")
+    return 0

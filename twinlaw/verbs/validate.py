@@ -1,0 +1,46 @@
+"""Validate a board behind a serial port: its table, its self-test, replayed steps bit by bit, and a flight in its loop.
+
+--port emulated (the default) runs DIR/firmware.elf on the emulated board; a device such as /dev/ttyACM0 is a real one, whose rotors
+stay off in host-in-the-loop mode as long as their power is off. Writes DIR/validation.json and DIR/validation.csv + .toml.
+Exit status 1 when a check does not hold.
+"""
+
+import argparse
+
+from records.errors import VerificationFailed
+from records.files import write_atomic
+from records.log import save_log
+from records.table import load_table
+from records.validation import validation_text
+from twinlaw import console, options, summary
+from twinlaw.stages import board_url, fly_board, load_bound, validate_board
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--port, --plant, --table, --steps, --out, --json."""
+    parser.add_argument("--port", default="emulated", help="serial port of the board; default: %(default)s")
+    options.plant(parser)
+    options.table(parser)
+    parser.add_argument("--steps", type=int, default=10_000, help="replayed at least; default: %(default)s")
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Ask, replay, fly, write, and fail where a check does not hold."""
+    bound, table = load_bound(chosen.plant), load_table(chosen.table)
+    url = board_url(chosen.port, chosen.out / "firmware.elf")
+    validation = validate_board(table, url, chosen.steps)
+    text = validation_text(validation)
+    write_atomic(chosen.out / "validation.json", text)
+    if not validation.passed:
+        raise VerificationFailed("; ".join(validation.failures))
+    flight = fly_board(bound, table, url)
+    save_log(chosen.out / "validation.csv", flight.log)
+    if chosen.json:
+        print(text)
+        return 0
+    print(console.table(summary.validation_rows(validation)))
+    print()
+    print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+    return 0
