@@ -77,3 +77,10 @@ def test_crc_is_that_of_zlib(data):
 
 def test_crc_of_the_check_string_is_the_catalogued_value():
     assert compiled()[1].crc32_of(b"123456789", 9) == 0xCBF43926
+
+
+@pytest.mark.parametrize("data", [b"\x41\x42", b"\x41\x00\x42", b"\x01" * 254, b"\x01" * 300])
+def test_a_block_that_lacks_its_last_byte_is_refused(data):
+    short = cobs.encode(data)[:-1]
+    assert c_decode(short) is None
+    assert cobs_decode(short) is None
