@@ -1,7 +1,6 @@
 """What is known of a table: fit, pole migration, margins over the elevation, and both loops closed together."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,13 +8,14 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from design.coupled import coupled_poles
-from design.discretise import SampledPlant, sample
+from design.direct_form import DeltaForm
+from design.discretise import sample
 from design.linearise import LinearPlant, linearise, subsystem
-from design.loop import Poles, controller_poles, open_loop, plant_polynomials
+from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
 from design.margins import Margins, margins
 from design.migration import STORAGES, Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of, stored
 from design.operating_points import DesignPoints, equilibria
-from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
+from design.schedule import FitError, evaluate, fit_error, schedule_of
 from design.settings import AXES, DesignSettings
 from records.table import AxisLaw, ControllerTable
 from sim.bind import BoundPlant
@@ -98,13 +98,11 @@ def make_report(
 ) -> DesignReport:
     """Examine `table` at the operating points and between them; raises BadInput where an angle cannot be held at rest."""
     psi_rad = angles(points.psi_rad)
-    linear = [linearise(bound, point) for point in equilibria(bound, psi_rad)]
-    voltages_V = np.array([point.u0 for point in points.equilibria])
-    one = partial(_axis_report, bound, settings, table, points, psi_rad, linear)
-    elevation, azimuth = (one(axis, voltages_V[:, index]) for index, axis in enumerate(AXES))
-    poles = _coupled(table, settings, psi_rad, linear)
-    coupled_slowest = np.max(poles.real, axis=1)
-    return DesignReport(psi_rad, elevation, azimuth, coupled_slowest, slowest_of(psi_rad, poles))
+    linear = tuple(linearise(bound, point) for point in equilibria(bound, psi_rad))
+    survey = _Survey(bound, settings, table, points, psi_rad, linear)
+    elevation, azimuth = (_axis_report(survey, axis) for axis in AXES)
+    poles = _coupled(survey)
+    return DesignReport(psi_rad, elevation, azimuth, np.max(poles.real, axis=1), slowest_of(psi_rad, poles))
 
 
 def angles(grid_rad: Array) -> Array:
@@ -114,32 +112,53 @@ def angles(grid_rad: Array) -> Array:
     return np.interp(np.arange(intervals * parts + 1) / parts, np.arange(len(grid_rad)), grid_rad)
 
 
-def _axis_report(
-    bound: BoundPlant,
-    settings: DesignSettings,
-    table: ControllerTable,
-    points: DesignPoints,
-    psi_rad: Array,
-    linear: list[LinearPlant],
-    axis: str,
-    voltages_V: Array,
-) -> AxisReport:
-    law: AxisLaw = getattr(table, axis)
-    plants = [plant_polynomials(sample(subsystem(bound, plant, axis), settings.sample_period_s)) for plant in linear]
-    scheduled = _scheduled(settings, law, points, axis)
-    flown = stored(scheduled.schedule, STORAGES["float32"])
+@dataclass(frozen=True, eq=False)
+class _Survey:
+    """What is examined, and the linear plants (angles,) at psi_rad (angles,)."""
+
+    bound: BoundPlant
+    settings: DesignSettings
+    table: ControllerTable
+    points: DesignPoints
+    psi_rad: Array
+    linear: tuple[LinearPlant, ...]
+
+    def scheduled(self, axis: str) -> ScheduledAxis:
+        return ScheduledAxis(
+            name=axis,
+            wishes=self.settings.axis(axis),
+            grid_rad=self.points.psi_rad,
+            designs=tuple(design.delta for design in self.points.axis(axis)),
+            degree=self.settings.coefficient_degree,
+            schedule=schedule_of(self.law(axis)),
+        )
+
+    def law(self, axis: str) -> AxisLaw:
+        return {"elevation": self.table.elevation, "azimuth": self.table.azimuth}[axis]
+
+    def plants(self, axis: str) -> tuple[PlantPolynomials, ...]:
+        parts = (subsystem(self.bound, plant, axis) for plant in self.linear)
+        return tuple(plant_polynomials(sample(part, self.settings.sample_period_s)) for part in parts)
+
+    def flown(self, axis: str) -> tuple[DeltaForm, ...]:
+        """The controllers (angles,) of the table rounded to float32."""
+        rounded = stored(schedule_of(self.law(axis)), STORAGES["float32"])
+        return tuple(evaluate(rounded, float(psi)) for psi in self.psi_rad)
+
+
+def _axis_report(survey: _Survey, axis: str) -> AxisReport:
+    psi_rad, plants, controllers = survey.psi_rad, survey.plants(axis), survey.flown(axis)
+    scheduled, designs = survey.scheduled(axis), survey.points.axis(axis)
     fitted = pole_map(plants, [evaluate(scheduled.schedule, float(psi)) for psi in psi_rad])
-    controllers = [evaluate(flown, float(psi)) for psi in psi_rad]
     rounded = pole_map(plants, controllers)
-    designs = points.axis(axis)
     return AxisReport(
         axis=axis,
         poles_rad_s=scheduled.wishes.poles_rad_s,
         free_degree=scheduled.wishes.free_degree,
         largest_q_V_rad=max(float(np.max(np.abs(design.placement.controller.q))) for design in designs),
         condition=max(design.placement.condition for design in designs),
-        fit_error=fit_error(points.psi_rad, scheduled.designs, scheduled.schedule),
-        feedforward_error_V=float(np.max(np.abs(polyval(points.psi_rad, law.feedforward_V) - voltages_V))),
+        fit_error=fit_error(scheduled.grid_rad, scheduled.designs, scheduled.schedule),
+        feedforward_error_V=_feedforward_error_V(survey, axis),
         poles_fitted_rad_s=fitted,
         poles_float32_rad_s=rounded,
         designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.poles_rad_s),
@@ -151,24 +170,13 @@ def _axis_report(
     )
 
 
-def _scheduled(settings: DesignSettings, law: AxisLaw, points: DesignPoints, axis: str) -> ScheduledAxis:
-    return ScheduledAxis(
-        name=axis,
-        wishes=settings.axis(axis),
-        grid_rad=points.psi_rad,
-        designs=tuple(design.delta for design in points.axis(axis)),
-        degree=settings.coefficient_degree,
-        schedule=schedule_of(law),
-    )
+def _feedforward_error_V(survey: _Survey, axis: str) -> float:
+    wanted_V = np.array([point.u0[AXES.index(axis)] for point in survey.points.equilibria])
+    return float(np.max(np.abs(polyval(survey.points.psi_rad, survey.law(axis).feedforward_V) - wanted_V)))
 
 
-def _coupled(table: ControllerTable, settings: DesignSettings, psi_rad: Array, linear: list[LinearPlant]) -> Poles:
+def _coupled(survey: _Survey) -> Poles:
     """Poles of both loops closed on the whole plant, shape (angles, states), for the table rounded to float32."""
-    schedules: list[Schedule] = [
-        stored(schedule_of(law), STORAGES["float32"]) for law in (table.elevation, table.azimuth)
-    ]
-    rows = []
-    for psi, plant in zip(psi_rad, linear, strict=True):
-        sampled: SampledPlant = sample(plant, settings.sample_period_s)
-        rows.append(coupled_poles(sampled, tuple(evaluate(schedule, float(psi)) for schedule in schedules)))
-    return np.array(rows)
+    plants = [sample(plant, survey.settings.sample_period_s) for plant in survey.linear]
+    pairs = zip(*(survey.flown(axis) for axis in AXES), strict=True)
+    return np.array([coupled_poles(plant, pair) for plant, pair in zip(plants, pairs, strict=True)])

@@ -22,6 +22,7 @@ min_phase_margin_rad = 0.175
 min_delay_margin_s = 0.02
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -116,6 +117,8 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
         margins=_margins(section, f"{where}.margins"),
     )
     _check_degrees(settings, where)
+    for axis in AXES:
+        _check_nyquist(settings, axis, where)
     return settings
 
 
@@ -242,3 +245,16 @@ def _check_degrees(settings: DesignSettings, where: str) -> None:
             f"at least {max(needed, 2)} for fits of degree {needed - 1}",
             "add points or lower the degree",
         )
+
+
+def _check_nyquist(settings: DesignSettings, axis: str, where: str) -> None:
+    nyquist_rad_s = math.pi / settings.sample_period_s
+    for pole in settings.axis(axis).poles_rad_s:
+        if abs(pole.imag) >= nyquist_rad_s:
+            raise BadInput(
+                "pole",
+                f"{where}.{axis}.poles_rad_s",
+                f"[{pole.real:g}, {pole.imag:g}] rad/s",
+                f"an imaginary part below the Nyquist frequency, {nyquist_rad_s:.4g} rad/s",
+                "choose a slower pair or a shorter sample period",
+            )

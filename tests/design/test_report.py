@@ -15,6 +15,7 @@ from design.settings import MarginLimits, read_settings
 from design.table import design, make_table
 from records.errors import BadInput
 from records.table import load_table, table_text
+from sim.bind import bind
 from tests.design.helicopter import AZ_DOM, DOM2, equal, helicopter, settings_for
 
 
@@ -172,3 +173,10 @@ def test_default_plant_file_passes_with_room():
         assert worst.gain_up > 3.5
         assert worst.gain_down < 0.27
     assert report.coupled.worst_rad_s < -3.0
+
+
+def test_the_literal_text_of_the_seed_can_be_designed_for_as_well():
+    literal = bind(replace(helicopter().plant, model="ce150_seed_literal"))
+    table, report = design(literal, read_settings(literal))
+    assert table.origin["model"] == "ce150_seed_literal"
+    assert report.coupled.stable

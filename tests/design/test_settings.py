@@ -58,6 +58,7 @@ BAD = [
     ({"elevation": {"poles_rad_s": [-3, -4, -5, PAIR[0], PAIR[0], PAIR[1]]}}, r"alone.*conjugate.*as often"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, [1, 2, 3]]}}, r"poles_rad_s\[5\].*3 entries.*2 entries"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, "x"]}}, r"poles_rad_s\[5\].*finite number"),
+    ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, [-7, 400], [-7, -400]]}}, r"elevation\.poles_rad_s.*Nyquist.*314"),
     ({"elevation": {"free_degree": "least_norm"}}, r"free_degree.*'least_norm'.*'integral', 'q3_zero'"),
     ({"elevation": {"prefilter_time_constant_s": -1}}, r"prefilter_time_constant_s.*0 or more"),
     ({"elevation": {"observer_pole": 1.0}}, r"observer_pole.*0 <= pole < 1"),
