@@ -5,11 +5,9 @@ import pytest
 from scipy.optimize import least_squares
 
 from recordings.matlab import array, stream, variables
-from records.plant import load_plant
-from sim.bind import bind
 from sim.simulate import simulate
+from tests.plants import bound
 from tests.recorded import dataset_folder, recorded
-from tests.test_project import ROOT
 
 PITCH_COUNT_RAD, YAW_COUNT_RAD = 2 * np.pi / 2048, 2 * np.pi / 4096
 
@@ -74,14 +72,14 @@ def test_aeroshield_angles_step_by_their_sensor() -> None:
 def test_aeroshield_older_runs_swing_as_the_later_ones_at_their_own_rate() -> None:
     # A pendulum fitted by free-running simulation: the same arm, so the same gravity over length within 20 %, near 70 s^-2.
     # Read at 10 ms like the others, the older run would give (15/10)^2 = 2.25 times as much.
-    bound = bind(load_plant(ROOT / "plants" / "aeroshield_two_clocks.toml"))
+    plant = bound("aeroshield_two_clocks")
 
     def gravity_over_length(record: str) -> float:
         log = recorded("aeroshield", record)
         x0 = [log.y[0, 0], 0.0]
 
         def error(guess: np.ndarray) -> np.ndarray:
-            run = simulate(bound, log.t_s, x0, log.u, p=[*guess, 3.7], resolution=0.0, keep="y")
+            run = simulate(plant, log.t_s, x0, log.u, p=[*guess, 3.7], resolution=0.0, keep="y")
             assert run.y is not None
             return (run.y - log.y).ravel()
 
@@ -120,7 +118,7 @@ def test_antx_rows_stand_at_the_command_stamps_and_hold_unchanged_samples() -> N
 def test_antx_plant_holds_the_published_parameters() -> None:
     file = "identified_model_data.mat"
     published = variables((dataset_folder("antx_2dof_drone") / file).read_bytes(), file)
-    plant = load_plant(ROOT / "plants" / "antx_2dof_drone.toml")
+    plant = bound("antx_2dof_drone").plant
     for name in ("omega_n", "xi", "mu", "tau"):
         assert plant.parameters[name].value == pytest.approx(float(array(published, name, file)), rel=1e-9)
 
