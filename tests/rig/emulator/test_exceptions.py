@@ -156,7 +156,8 @@ def test_a_tail_chained_interrupt_saves_the_sixteen_bus_cycles_of_unstacking_and
 
 LATE = """
 void low(void) { note(6); REG(0x40001010) = 0; }
-void high(void) { note(7); REG(0x40001410) = 0; }
+NAKED void high(void) { __asm volatile("mov r0, lr\\n b served"); }
+__attribute__((used)) void served(uint32_t lr) { note(lr); REG(0x40001410) = 0; }
 void Reset_Handler(void) {
     logged = 0;
     IPR4 = 0x00008000; /* TIM6 less urgent than TIM7 */
@@ -165,7 +166,7 @@ void Reset_Handler(void) {
     REG(0x4000100C) = REG(0x4000140C) = 1;
     REG(0x4000102C) = 199;
     REG(0x4000142C) = 199;
-    REG(0x40001424) = HEAD_START; /* both are started 2 cycles apart */
+    REG(0x40001424) = HEAD_START; /* TIM7 is started a few cycles after TIM6 */
     REG(0x40001000) = 1 | 8;
     REG(0x40001400) = 1 | 8;
     for (uint32_t i = 0; i < 200; i++) __asm volatile("nop");
@@ -173,11 +174,19 @@ void Reset_Handler(void) {
 }
 VECTORS([16 + 17] = low, [16 + 18] = high);
 """
+THREAD, NESTED = 0xFFFFFFF9, 0xFFFFFFF1
 
 
-@pytest.mark.parametrize(("head_start", "order"), [(0, [7, 6]), (180, [7, 6])], ids=["during stacking", "long before"])
-def test_a_late_arrival_that_is_more_urgent_is_served_first(head_start: int, order: list[int]) -> None:
-    board = run(f"late{head_start}", LATE.replace("HEAD_START", str(head_start)))
+@pytest.mark.parametrize(
+    ("head_start", "order"),
+    [(100, [THREAD, 6]), (0, [THREAD, 6]), (-16, [NESTED, 6])],
+    ids=["long before", "while the other's frame is pushed", "after the other has begun"],
+)
+def test_a_late_arrival_that_is_more_urgent_takes_over_the_frame(head_start: int, order: list[int]) -> None:
+    source = LATE.replace("HEAD_START", str(max(head_start, 0)))
+    if head_start < 0:
+        source = source.replace("0x4000142C) = 199", f"0x4000142C) = {199 - head_start}")
+    board = run(f"late{head_start}", source)
     assert log(board) == order
     assert board.exception_counts() == {16 + TIM6: 1, 16 + TIM7: 1}
 

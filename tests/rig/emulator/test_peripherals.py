@@ -88,6 +88,67 @@ def test_tim6_interrupts_every_ten_milliseconds_without_drift() -> None:
     assert board.exception_counts() == {16 + 17: 6000}
 
 
+@pytest.mark.parametrize(("name", "prescaler", "reload"), [("one", 0, 199), ("three", 2, 99), ("many", 999, 1)])
+def test_a_period_is_the_product_of_prescaler_and_reload_each_plus_one(name: str, prescaler: int, reload: int) -> None:
+    source = TICK.replace("1028) = 63", f"1028) = {prescaler}").replace("102C) = 9999", f"102C) = {reload}")
+    board = powered(f"period_{name}", source)
+    board.run_until_s(0.5)
+    assert word(board, "ticks") == pytest.approx(32e6 / ((prescaler + 1) * (reload + 1)), abs=2)
+
+
+SYSTEM_TICK = """
+volatile uint32_t ticks;
+void tick(void) { ticks++; }
+void Reset_Handler(void) {
+    ticks = 0;
+    REG(0xE000E014) = RELOAD; REG(0xE000E018) = 0; REG(0xE000E010) = CONTROL;
+    for (;;) __asm volatile("wfi");
+}
+VECTORS(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, tick);
+"""
+
+
+@pytest.mark.parametrize(("reload", "control", "ticks"), [(15_999, 7, 1000), (159, 7, 100_000), (1_999, 3, 1000)])
+def test_the_system_timer_interrupts_every_reload_plus_one_counts_of_the_core_or_an_eighth_of_it(
+    reload: int, control: int, ticks: int
+) -> None:
+    board = powered(f"system_tick{reload}", SYSTEM_TICK.replace("RELOAD", str(reload)).replace("CONTROL", str(control)))
+    board.run_until_s(1.0)
+    assert word(board, "ticks") == pytest.approx(ticks, abs=1)
+
+
+NVIC = """
+volatile uint32_t ticks, seen[8];
+void tick(void) { ticks++; }
+void Reset_Handler(void) {
+    REG(0xE000E200) = 5u << 16; /* interrupts 16 and 18 pending, neither enabled */
+    seen[0] = REG(0xE000E200);
+    REG(0xE000E280) = 1u << 16;
+    seen[1] = REG(0xE000E280);
+    REG(0xE000E100) = 3u << 20;
+    REG(0xE000E180) = 1u << 20;
+    seen[2] = REG(0xE000E100);
+    REG(0xE000E410) = 0xFFFFFFFF;
+    seen[3] = REG(0xE000E410);
+    seen[4] = REG(0xE000ED04) >> 12 & 0x1FF;
+    REG(0xE000ED1C) = REG(0xE000ED20) = 0xFFFFFFFF;
+    seen[5] = REG(0xE000ED1C);
+    seen[6] = REG(0xE000ED20);
+    seen[7] = REG(0xE000ED00);
+    STOP();
+}
+VECTORS([16 + 18] = tick);
+"""
+
+
+def test_the_interrupt_controllers_registers_set_clear_and_hold_two_priority_bits() -> None:
+    board = stopped("nvic", NVIC)
+    seen = [word(board, "seen", i) for i in range(8)]
+    cpu_id = 0x410CC601
+    assert seen == [5 << 16, 4 << 16, 2 << 20, 0xC0C0C0C0, 16 + 18, 0xC0000000, 0xC0C00000, cpu_id]
+    assert word(board, "ticks") == 0
+
+
 BUFFERED = """
 volatile uint32_t counts[6];
 void Reset_Handler(void) {
