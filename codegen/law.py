@@ -6,7 +6,7 @@ from typing import Any
 import jinja2
 import numpy as np
 
-from codegen.law_constants import PLAUSIBLE_V, prefilter_gain, without_vanishing_powers
+from codegen.law_constants import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, prefilter_gain, without_vanishing_powers
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
@@ -107,6 +107,7 @@ def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
         "full_scale_V": FULL_SCALE_V,
         "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "plausible_V": PLAUSIBLE_V,
+        "least_schedule_rad": LEAST_SCHEDULE_RAD,
         "psi_min_rad": table.psi_min_rad,
         "psi_max_rad": table.psi_max_rad,
         "elevation": table.elevation,

@@ -16,6 +16,8 @@ M = TypeVar("M")
 # A feedback voltage beyond this is no answer to any reference or angle within reach (checked by `law_constants`): it
 # comes from a broken state, and the axis starts afresh.
 PLAUSIBLE_V = 2.0**20
+# A scheduling angle below this counts as zero: it moves no coefficient, but its products would be subnormal and slow.
+LEAST_SCHEDULE_RAD = 2.0**-30
 # No shaft turns further than this against its reference: the widest error that the check of PLAUSIBLE_V assumes.
 WIDEST_ERROR_RAD = 2.0 * math.pi
 
@@ -38,12 +40,13 @@ class AxisConstants(Generic[N]):
 
 @dataclass(frozen=True)
 class LawConstants(Generic[N]):
-    """Numbers of both axes, the scheduling range [rad], zero and the plausible feedback voltage [V]."""
+    """Numbers of both axes, the scheduling range and its least angle [rad], zero and the plausible feedback voltage [V]."""
 
     elevation: AxisConstants[N]
     azimuth: AxisConstants[N]
     psi_min_rad: N
     psi_max_rad: N
+    least_schedule_rad: N
     zero: N
     plausible_V: N
 
@@ -60,6 +63,7 @@ def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawCo
         azimuth=_axis_constants(table.azimuth, table.sample_period_s, number),
         psi_min_rad=number(table.psi_min_rad),
         psi_max_rad=number(table.psi_max_rad),
+        least_schedule_rad=number(LEAST_SCHEDULE_RAD),
         zero=number(0.0),
         plausible_V=number(PLAUSIBLE_V),
     )

@@ -31,6 +31,9 @@ class Arithmetic(Protocol[N]):
     def saturate(self, value: N, low: N, high: N, safe: N) -> N:
         """`value` held within low..high, `safe` where it is NaN."""
 
+    def settle(self, value: N, least: N) -> N:
+        """`value`, or zero where |value| < least."""
+
     def is_plausible(self, value: N, bound: N) -> Any:
         """Condition |value| <= bound; false for NaN."""
 
@@ -125,7 +128,9 @@ def law_step(
     phi_rad = arithmetic.finite_or(given.phi_rad, state.phi_rad)
     psi_ref_rad = arithmetic.finite_or(given.psi_ref_rad, state.psi_ref_rad)
     phi_ref_rad = arithmetic.finite_or(given.phi_ref_rad, state.phi_ref_rad)
-    schedule_rad = arithmetic.clamp(psi_rad, law.psi_min_rad, law.psi_max_rad)
+    schedule_rad = arithmetic.settle(
+        arithmetic.clamp(psi_rad, law.psi_min_rad, law.psi_max_rad), law.least_schedule_rad
+    )
 
     elevation = prefilter(law.elevation, arithmetic, state.elevation, psi_ref_rad)
     azimuth = prefilter(law.azimuth, arithmetic, state.azimuth, phi_ref_rad)

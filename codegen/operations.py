@@ -42,6 +42,9 @@ class _NoDecisions:
     def saturate(self, value: _Counted, low: _Counted, high: _Counted, safe: _Counted) -> _Counted:
         return value
 
+    def settle(self, value: _Counted, least: _Counted) -> _Counted:
+        return value
+
     def is_plausible(self, value: _Counted, bound: _Counted) -> bool:
         return True
 

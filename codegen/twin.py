@@ -41,6 +41,9 @@ class Float32Scalars:
     def saturate(self, value: np.float32, low: np.float32, high: np.float32, safe: np.float32) -> np.float32:
         return safe if math.isnan(value) else self.clamp(value, low, high)
 
+    def settle(self, value: np.float32, least: np.float32) -> np.float32:
+        return type(value)(0) if abs(value) < least else value
+
     def is_plausible(self, value: np.float32, bound: np.float32) -> bool:
         return bool(abs(value) <= bound)
 
@@ -59,6 +62,9 @@ class Float32Lanes:
 
     def saturate(self, value: Any, low: Any, high: Any, safe: Any) -> Any:
         return np.where(np.isnan(value), safe, self.clamp(value, low, high))
+
+    def settle(self, value: Any, least: Any) -> Any:
+        return np.where(np.abs(value) < least, np.float32(0.0), value)
 
     def is_plausible(self, value: Any, bound: Any) -> Any:
         return np.abs(value) <= bound

@@ -97,6 +97,12 @@ class AffineArithmetic:
     def saturate(self, value: Tracked, low: Tracked, high: Tracked, safe: Tracked) -> Tracked:
         return self.clamp(value, low, high)
 
+    def settle(self, value: Tracked, least: Tracked) -> Tracked:
+        """Unchanged where surely larger; elsewhere off by `least` at most."""
+        if abs(value.value) > least.value + value.error:
+            return value
+        return value.with_error(value.value, value.error + upper_bound(least.value))
+
     def is_plausible(self, value: Tracked, bound: Tracked) -> bool:
         if not value.magnitude < float(bound.value):
             raise ValueError(

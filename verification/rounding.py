@@ -64,6 +64,7 @@ def restricted_voltages(
     State and input each within its range may still be a jump that no axis makes; a proof leaves those pairs out.
     """
     schedule_rad = arithmetic.clamp(given.psi_rad, law.psi_min_rad, law.psi_max_rad)
+    schedule_rad = arithmetic.settle(schedule_rad, law.least_schedule_rad)
     elevation = prefilter(law.elevation, arithmetic, state.elevation, given.psi_ref_rad)
     azimuth = prefilter(law.azimuth, arithmetic, state.azimuth, given.phi_ref_rad)
     voltages = []

@@ -1,7 +1,7 @@
 /*
  * float_routines.c - the routines that the compiler calls for + - * of floats on a core without FPU, written for its cycles.
  *
- * Run-time ABI for the Arm Architecture, 4.1.2. Normal numbers are dealt with here; zeros, subnormals, infinities, NaN and
+ * Run-time ABI for the Arm Architecture, 4.1.2. Normal numbers and zeros are dealt with here; subnormals, infinities, NaN and
  * products out of range go on to soft_float.c, which is plain C and says what all of this computes. Both are exact IEEE 754, so
  * that target and host agree in every bit. Only r0..r3, r12 and the flags may change.
  */
@@ -76,7 +76,21 @@ __asm__(".syntax unified\n"
         "    pop   {r4, r5, r6}\n"
         "    bx    lr\n"
         "3:  pop   {r4, r5, r6}\n"
-        "    ldr   r2, 5f\n"
+        "    lsls  r2, r0, #1\n"
+        "    lsls  r3, r1, #1\n"
+        "    cmp   r2, #0\n"
+        "    beq   6f\n"
+        "    cmp   r3, #0\n"
+        "    bne   7f\n"
+        "6:  orrs  r2, r3\n" /* one is zero, this is the other */
+        "    lsrs  r2, r2, #24\n"
+        "    cmp   r2, #255\n"
+        "    beq   7f\n"
+        "    eors  r0, r1\n"
+        "    lsrs  r0, r0, #31\n"
+        "    lsls  r0, r0, #31\n"
+        "    bx    lr\n"
+        "7:  ldr   r2, 5f\n"
         "    bx    r2\n"
         "    .p2align 2\n"
         "5:  .word soft_float_product\n"
