@@ -1,0 +1,70 @@
+"""The tutorial for a new plant does what it says: its files are written, its row is added, its programs print what it shows."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.test_project import ROOT
+from toolchain.host import CACHE_DIR
+
+PAGE = ROOT / "docs" / "new-plant.md"
+BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, the file that it is to become if it names one, its text."""
+
+    language: str
+    file: str | None
+    text: str
+
+
+def blocks() -> list[Block]:
+    return [Block(language, file or None, text) for language, file, text in BLOCK.findall(PAGE.read_text("utf-8"))]
+
+
+def test_the_page_is_made_of_files_a_diff_programs_and_their_output() -> None:
+    found = blocks()
+    assert PAGE.read_text("utf-8").count("```") == 2 * len(found)
+    assert [block.file for block in found if block.file] == ["sim/plants/dc_motor.py", "plants/dc_motor.toml"]
+    assert {block.language for block in found} == {"python", "diff", "toml", "text"}
+
+
+def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
+    for package in ("records", "toolchain", "sim"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "plants").mkdir()
+    programs, shown = [], []
+    for block in blocks():
+        if block.file:
+            (tmp_path / block.file).write_text(block.text, encoding="utf-8")
+        elif block.language == "diff":
+            run(["git", "apply", "--unidiff-zero", "-"], tmp_path, block.text)
+        elif block.language == "python":
+            programs.append(block.text)
+        else:
+            shown.append(block.text)
+    printed = run([sys.executable, "-W", "error", "-"], tmp_path, "".join(programs))
+    assert printed == "".join(shown)
+
+
+def test_the_equations_of_the_page_keep_the_project_s_style(tmp_path: Path) -> None:
+    source = next(block.text for block in blocks() if block.file and block.file.endswith(".py"))
+    ruff = [str(Path(sys.executable).parent / "ruff"), "--config", str(ROOT / "pyproject.toml")]
+    path = tmp_path / "sim" / "plants" / "dc_motor.py"
+    path.parent.mkdir(parents=True)
+    path.write_text(source, encoding="utf-8")
+    run([ruff[0], "format", "--check", *ruff[1:], str(path)], ROOT)
+    run([ruff[0], "check", *ruff[1:], str(path)], ROOT)
+
+
+def run(command: list[str], folder: Path, standard_input: str = "") -> str:
+    environment = {**os.environ, "TWINLAW_CACHE": str(CACHE_DIR)}
+    done = subprocess.run(command, cwd=folder, input=standard_input, capture_output=True, text=True, env=environment)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
