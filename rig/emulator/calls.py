@@ -14,7 +14,10 @@ from rig.emulator.stops import StopKind
 if TYPE_CHECKING:
     from rig.emulator.board import EmulatedBoard
 
-WAIT_STATES = 2  # RM0444 3.3.4: 64 MHz in range 1
+# RM0444 3.3.4: 2 wait states for 64 MHz in range 1. The estimate charges them for each taken branch, each exception's vector and
+# first instruction, and each datum or literal read from flash. Straight code costs none: a flash line of 64 bits takes at least
+# four cycles to execute, the prefetch of the next one three. Hits of the small instruction cache are not deducted.
+WAIT_STATES = 2
 
 
 def _words(arguments: Sequence[int]) -> list[int]:

@@ -51,6 +51,8 @@ static uint32_t most_urgent(const machine *m, int32_t below) {
 
 uint32_t exception_next(const machine *m) { return m->core.pending ? most_urgent(m, execution_priority(m)) : 0; }
 
+uint32_t exception_waiting(const machine *m) { return most_urgent(m, THREAD_PRIORITY); }
+
 bool exception_wakes(const machine *m) { return m->core.pending && most_urgent(m, active_priority(m)) != 0; }
 
 void exception_pend(machine *m, uint32_t number) {

@@ -12,6 +12,9 @@ int32_t execution_priority(const machine *m);
 /* The pending and enabled exception that would be taken now, 0 for none. */
 uint32_t exception_next(const machine *m);
 
+/* The most urgent of those pending and enabled, whether it may be taken now or not (VECTPENDING). */
+uint32_t exception_waiting(const machine *m);
+
 /* The same as if PRIMASK were clear: what wakes WFI. */
 bool exception_wakes(const machine *m);
 

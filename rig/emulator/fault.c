@@ -9,7 +9,8 @@ void stop_run(machine *m, enum stop_kind kind, uint32_t address, uint32_t detail
 }
 
 void fault(machine *m, enum stop_kind kind, uint32_t address, uint32_t detail) {
-    if (m->stop_on_fault || m->in_call)
+    bool beyond_the_model = kind == STOP_UNMODELLED || kind == STOP_FLASH_LATENCY;
+    if (m->stop_on_fault || m->in_call || beyond_the_model)
         stop_run(m, kind, address, detail);
     else if (execution_priority(m) <= HARD_FAULT_PRIORITY)
         stop_run(m, STOP_LOCKUP, address, kind); /* DDI0419 B1.5.15: a fault that HardFault cannot pre-empt */

@@ -3,7 +3,7 @@
 #include "peripherals.h"
 #include "schedule.h"
 
-enum { CR = 0, CFGR = 2, PLLCFGR = 3, IOPENR = 13, AHBENR = 14, CSR = 24 }; /* word offsets */
+enum { CR = 0, CFGR = 2, PLLCFGR = 3, IOPRSTR = 9, APBRSTR2 = 12, IOPENR = 13, AHBENR = 14, CSR = 24 }; /* word offsets */
 enum { HSION = 1 << 8, HSIRDY = 1 << 10, HSEON = 1 << 16, HSERDY = 1 << 17, PLLON = 1 << 24, PLLRDY = 1 << 25 };
 enum { LSION = 1, LSIRDY = 2, RMVF = 1 << 23 };
 enum { FROM_HSI = 0, FROM_PLL = 2, FROM_LSI = 3 };
@@ -83,6 +83,8 @@ bool rcc_write(machine *m, uint32_t index, uint32_t offset, uint32_t value) {
     (void)index;
     rcc_state *rcc = &m->device.rcc;
     uint32_t *reg = &rcc->reg[offset / 4];
+    bool peripheral_reset = offset / 4 >= IOPRSTR && offset / 4 <= APBRSTR2 && value != 0;
+    if (peripheral_reset) return false; /* not modelled */
     switch (offset / 4) {
     case CR: *reg = with_ready_flags(value); return set_clock(m);
     case CFGR: *reg = (value & ~0x38u) | (value & 7u) << 3; return set_clock(m); /* SWS follows SW */

@@ -62,10 +62,18 @@ static void sleep_on(machine *m, uint64_t limit) {
     if (next > m->core.now) m->core.now = next;
 }
 
+/* A function that the host calls cannot go through a reset: the call ends there. */
+static void answer_reset_request(machine *m) {
+    if (m->in_call)
+        stop_run(m, STOP_RESET, 0, m->device.reset_request);
+    else
+        machine_reset(m, m->device.reset_request);
+}
+
 bool machine_service(machine *m) {
     for (;;) {
         if (!m->in_call) run_due_devices(m);
-        if (m->device.reset_request) machine_reset(m, m->device.reset_request);
+        if (m->device.reset_request) answer_reset_request(m);
         uint64_t limit = run_limit(m);
         if (m->core.now >= limit) stop_run(m, STOP_LIMIT, 0, 0);
         if (m->stop.kind != STOP_NONE) return false;

@@ -26,10 +26,9 @@ static void set_priorities(machine *m, uint32_t first, uint32_t value, uint32_t 
 
 static uint32_t icsr(const machine *m) {
     uint64_t pending = m->core.pending;
-    uint32_t number = pending ? (uint32_t)__builtin_ctzll(pending) : 0;
     bool interrupt = pending >> FIRST_IRQ != 0;
     return (uint32_t)(pending >> NMI & 1u) << 31 | (uint32_t)(pending >> PEND_SV & 1u) << 28 | (uint32_t)(pending >> SYS_TICK & 1u) << 26 |
-           (uint32_t)interrupt << 22 | number << 12 | m->core.ipsr;
+           (uint32_t)interrupt << 22 | exception_waiting(m) << 12 | m->core.ipsr;
 }
 
 static void set_icsr(machine *m, uint32_t value) {

@@ -27,6 +27,8 @@ __attribute__((used, noinline)) uint32_t deep(uint32_t n) {
     return n == 0 ? room[0] : deep(n - 1) + room[n & 7];
 }
 __attribute__((used, noinline)) void forever(void) { for (;;) {} }
+__attribute__((used, noinline)) void stops_timer(void) { REG(0x40001000) = 0; }
+__attribute__((used, noinline)) void resets(void) { REG(0xE000ED0C) = 0x05FA0004; for (;;) {} }
 __attribute__((used, noinline)) void breaks(void) { STOP(); }
 __attribute__((used, noinline)) uint32_t choose(uint32_t n) {
     if (n > 10)
@@ -66,6 +68,7 @@ def test_a_call_leaves_core_peripherals_and_time_as_they_were(board: EmulatedBoa
     board.run_for(12_345)
     before = (board.registers(), board.cycles, board.time_s, word(board, "ticks"))
     board.call("divide", 10**9, 3)
+    board.call("stops_timer")
     assert (board.registers(), board.cycles, board.time_s, word(board, "ticks")) == before
     other = powered("calls", SOURCE)
     other.run_for(12_345)
@@ -113,6 +116,9 @@ def test_a_call_that_hangs_or_breaks_says_where(board: EmulatedBoard) -> None:
     with pytest.raises(StoppedError, match=r"BKPT 0; pc .* in breaks") as caught:
         board.call_many("breaks", (), [], [], 3)
     assert caught.value.stop.kind == StopKind.BREAKPOINT
+    with pytest.raises(StoppedError, match=r"was reset .* in resets"):
+        board.call("resets")
+    assert [reset.cause for reset in board.resets] == ["power"]
     assert board.call("divide", 9, 3).result == 3
 
 

@@ -56,11 +56,12 @@ def test_flash_stalls_are_taken_branches_and_data_read_from_flash(halfwords: lis
     assert board.flash_stalls == stalls
 
 
-def test_code_in_ram_runs_at_the_same_cost_and_may_rewrite_itself() -> None:
+@pytest.mark.parametrize("place", [0x20000200, FLASH_BASE + 0x2000, 0x2000], ids=["SRAM", "flash", "alias of flash"])
+def test_code_runs_everywhere_at_the_same_cost_and_a_change_of_it_takes_effect(place: int) -> None:
     board = powered("idle", IDLE)
     for value in (7, 9):  # movs r0, #value; b .
-        board.write_memory(0x20000200, bytes([value, 0x20, 0xFE, 0xE7]))
-        board.set_registers([0] * 13 + [SP, 0, 0x20000200, 0])
+        board.write_memory(place, bytes([value, 0x20, 0xFE, 0xE7]))
+        board.set_registers([0] * 13 + [SP, 0, place, 0])
         before = board.cycles
         board.run_for(3)
         assert board.registers()[0] == value

@@ -258,6 +258,43 @@ def test_wfe_takes_a_registered_event_and_wfi_sleeps_to_the_system_timer() -> No
     assert 1000 < board.cycles < 1000 + 150
 
 
+SLEEP_ON_EXIT = """
+void tick(void) { note(15); if (logged == 3) REG(0xE000ED10) = 0; }
+void Reset_Handler(void) {
+    logged = 0;
+    REG(0xE000ED10) = 2; /* SLEEPONEXIT */
+    REG(0xE000E014) = 999; REG(0xE000E018) = 0; REG(0xE000E010) = 7;
+    __asm volatile("wfi");
+    note(REG(0xE000ED04) >> 12 & 0x1FF);
+    STOP();
+}
+VECTORS(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, tick);
+"""
+
+
+def test_sleep_on_exit_returns_to_sleep_until_it_is_switched_off() -> None:
+    assert log(run("sleep_on_exit", SLEEP_ON_EXIT)) == [15, 15, 15, 0]
+
+
+PENDING_NUMBER = """
+void Reset_Handler(void) {
+    logged = 0;
+    __asm volatile("cpsid i");
+    IPR4 = 0x00004080;
+    ISER = 7u << 16;
+    ISPR = 7u << 16;
+    note(ICSR >> 12 & 0x1FF);
+    note(ICSR >> 22 & 1);
+    STOP();
+}
+VECTORS(0);
+"""
+
+
+def test_the_pending_number_is_the_most_urgent_one_whatever_primask_says() -> None:
+    assert log(run("pending_number", PENDING_NUMBER)) == [16 + 18, 1]
+
+
 NMI = """
 void nmi(void) { note(ipsr()); }
 void Reset_Handler(void) {

@@ -56,9 +56,11 @@ def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicor
     executed: dict[str, int] = {}
     compared = 0
     for _ in range(VISITS):
+        rows, flags = random_registers(rng, SLOTS), rng.integers(0, 16, SLOTS).tolist()
         for slot, instruction in enumerate(instructions):
-            pc = FLASH_BASE + FIRST + STRIDE * slot
-            registers, xpsr = random_registers(rng, instruction.kind, pc), int(rng.integers(16)) << 28
+            registers, xpsr = [*rows[slot], FLASH_BASE + FIRST + STRIDE * slot], flags[slot] << 28
+            if instruction.kind == "msr":  # unicorn keeps the low bits of a stack pointer, the architecture does not
+                registers = [value & ~3 for value in registers]
             ours, stop = board_step(board, registers, xpsr)
             if stop.kind == StopKind.UNALIGNED:  # unicorn lets it pass, ARMv6-M does not (DDI0419 A3.2)
                 assert stop.address % stop.detail

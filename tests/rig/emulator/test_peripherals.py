@@ -1,5 +1,7 @@
 """Clock tree, timers, encoders, PWM, pins, watchdog, identity."""
 
+from itertools import pairwise
+
 import pytest
 
 from rig.emulator.answers import BoardConfig
@@ -117,6 +119,15 @@ def test_the_system_timer_interrupts_every_reload_plus_one_counts_of_the_core_or
     assert word(board, "ticks") == pytest.approx(ticks, abs=1)
 
 
+def test_the_system_timer_wakes_the_core_at_exact_cycles() -> None:
+    board = powered("system_tick159", SYSTEM_TICK.replace("RELOAD", "159").replace("CONTROL", "7"))
+    woken = []
+    for _ in range(5):
+        board.run_until_symbol("tick", 1.0)
+        woken.append(board.cycles)
+    assert [after - before for before, after in pairwise(woken)] == [160] * 4
+
+
 NVIC = """
 volatile uint32_t ticks, seen[8];
 void tick(void) { ticks++; }
@@ -145,7 +156,7 @@ def test_the_interrupt_controllers_registers_set_clear_and_hold_two_priority_bit
     board = stopped("nvic", NVIC)
     seen = [word(board, "seen", i) for i in range(8)]
     cpu_id = 0x410CC601
-    assert seen == [5 << 16, 4 << 16, 2 << 20, 0xC0C0C0C0, 16 + 18, 0xC0000000, 0xC0C00000, cpu_id]
+    assert seen == [5 << 16, 4 << 16, 2 << 20, 0xC0C0C0C0, 0, 0xC0000000, 0xC0C00000, cpu_id]
     assert word(board, "ticks") == 0
 
 
@@ -303,6 +314,14 @@ def test_the_pin_resets_without_touching_ram() -> None:
     board.reset()
     assert [reset.cause for reset in board.resets] == ["power", "pin"]
     assert word(board, "ticks") == ticks > 0
+
+
+@pytest.mark.parametrize("register", [0x40021024, 0x40021028, 0x4002102C, 0x40021030])
+def test_resetting_single_peripherals_is_not_modelled_and_says_so_even_where_faults_do_not_stop(register: int) -> None:
+    source = f"void Reset_Handler(void) {{ REG({register:#x}) = 0; REG({register:#x}) = 1; STOP(); }} VECTORS(0);"
+    stop = powered(f"peripheral_reset_{register:x}", source, BoardConfig(stop_on_fault=False)).run_for(1000)
+    assert stop.kind == StopKind.UNMODELLED
+    assert f"{register:#010x}" in stop.message
 
 
 def test_the_unique_id_is_the_configured_one() -> None:

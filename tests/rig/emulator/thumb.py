@@ -84,30 +84,12 @@ def random_instruction(rng: np.random.Generator) -> Instruction:
 CORNERS = (0, 1, 2, 31, 32, 33, 255, 0x7FFFFFFF, 0x80000000, 0x80000001, 0xFFFFFFFF, 0xFFFFFF00)
 
 
-def random_registers(rng: np.random.Generator, kind: str, pc: int) -> list[int]:
-    """r0-r15: a mix of pointers into SRAM and flash, small offsets, corner values and anything.
-
-    MSR takes multiples of four only: unicorn keeps the low bits of a stack pointer, the architecture does not.
-    """
-    kinds, near, anything = (
-        rng.integers(0, 6, 15).tolist(),
-        rng.integers(0, 0x6000, 15).tolist(),
-        rng.integers(0, 2**32, 15).tolist(),
-    )
-    values = [_value(*row) for row in zip(kinds, near, anything, strict=True)]
-    values[13] = 0x20001000 + (near[13] & ~3)
-    if kind == "msr":
-        values = [value & ~3 for value in values]
-    return [*values, pc]
-
-
-def _value(kind: int, near: int, anything: int) -> int:
-    pointers = (
-        0x20001000 + (near & ~3),
-        0x20001000 + near,
-        near & 0xFC,
-        CORNERS[anything % len(CORNERS)],
-        anything,
-        0x08000001 + (near & ~1),
-    )
-    return pointers[kind]
+def random_registers(rng: np.random.Generator, count: int) -> list[list[int]]:
+    """`count` rows of r0-r14: a mix of pointers into SRAM and flash, small offsets, corner values and anything; sp is aligned."""
+    shape = (count, 15)
+    near, anything = rng.integers(0, 0x6000, shape), rng.integers(0, 2**32, shape)
+    corners = np.array(CORNERS, np.int64)[anything % len(CORNERS)]
+    choices = [0x20001000 + (near & ~3), 0x20001000 + near, near & 0xFC, corners, anything, 0x08000001 + (near & ~1)]
+    values = np.choose(rng.integers(0, len(choices), shape), choices)
+    values[:, 13] = choices[0][:, 13]
+    return [list(map(int, row)) for row in values.tolist()]
