@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
-PACKAGES = ("records", "toolchain", "sim", "recordings", "design", "codegen", "verification", "rig", "twinlaw")
+PACKAGES = ("records", "toolchain", "sim", "recordings", "design", "codegen", "verification", "rig", "blind", "twinlaw")
 
 
 def _run(*command: str) -> subprocess.CompletedProcess[str]:
