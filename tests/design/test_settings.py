@@ -29,6 +29,19 @@ def test_a_plant_file_without_a_design_section_gets_the_documented_defaults():
     assert settings.margins.max_sensitivity == MARGIN_DEFAULTS["max_sensitivity"]
 
 
+def test_defaults_are_what_the_plant_file_of_the_helicopter_states():
+    stated, default = read_settings(helicopter()), read({})
+    for axis in ("elevation", "azimuth"):
+        wishes = replace(
+            default.axis(axis),
+            reference_min_rad=stated.axis(axis).reference_min_rad,
+            reference_max_rad=stated.axis(axis).reference_max_rad,
+        )
+        assert stated.axis(axis) == wishes
+        assert default.axis(axis).reference_max_rad == pytest.approx(wishes.reference_max_rad, rel=1e-12)
+    assert stated.margins == default.margins
+
+
 def test_real_poles_and_pairs_are_read_in_any_order():
     poles = read({"elevation": {"poles_rad_s": [-3, PAIR[0], -7, -10, PAIR[1], -12]}}).elevation.poles_rad_s
     assert poles == (-3.0, -2.5 + 1.5j, -7.0, -10.0, -2.5 - 1.5j, -12.0)
