@@ -34,9 +34,10 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     Raises BadInput naming the angle when it lies beyond a stop or needs an input beyond its limits.
     """
     model = bound.model
-    positions = dict(zip((axis.position for axis in model.axes), positions_rad, strict=False))
+    arms = [axis for axis in model.axes if axis.position is not None]
+    positions = dict(zip((axis.position for axis in arms), positions_rad, strict=False))
     values = dict(zip(model.parameter_symbols, bound.p, strict=True))
-    for axis in model.axes:
+    for axis in arms:
         _check_stops(bound, axis, positions.get(axis.position, 0.0), values)
     x = np.array([positions.get(state, 0.0) for state in model.states])
     u = np.array([_middle(model.input_limits[variable], values) for variable in model.inputs])
@@ -48,9 +49,10 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
 def _solve(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
     """Newton's method from rest at the middle of the inputs' range: thrust and damping are convex, so it needs no damping."""
     model = bound.model
-    held = {variable for axis in model.axes for variable in (axis.position, axis.velocity)}
+    arms = [axis for axis in model.axes if axis.position is not None]
+    held = {variable for axis in arms for variable in (axis.position, axis.velocity)}
     free = [index for index, state in enumerate(model.states) if state not in held]
-    rows = [*free, *(model.states.index(axis.velocity) for axis in model.axes)]
+    rows = [*free, *(model.states.index(axis.velocity) for axis in arms)]
     equations, signs = reference(model), np.zeros(len(model.axes))
     for _ in range(MAX_ITERATIONS):
         at = (0.0, x, u, bound.p, signs)

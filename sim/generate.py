@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import sympy
 
 from sim.assignments import Constants, assignments, constant_lines
-from sim.model import TIME, Model
+from sim.model import TIME, Model, smooth
 
 _ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
 
@@ -23,6 +23,7 @@ def model_header(model: Model) -> str:
         "N_INPUTS": len(model.inputs),
         "N_OUTPUTS": len(model.outputs),
         "N_AXES": len(model.axes),
+        "N_KINKS": len(model.kinks),
         "N_PARAMETERS": len(model.parameter_symbols),
         "N_CONSTANTS": max(1, len(constants.expressions)),
     }
@@ -50,11 +51,15 @@ def _limits(model: Model) -> dict[str, list[sympy.Expr]]:
 
 
 def _index_tables(model: Model) -> list[str]:
-    """Which states are an axis' position and velocity, which constants are limits."""
+    """Which states are an axis' position and velocity or have a kink at 0, which constants are limits.
+
+    An axis without a position has no stops; its velocity stands in, which no infinite limit stops.
+    """
     index = {state: place for place, state in enumerate(model.states)}
     tables = {
-        "AXIS_POSITION": [index[axis.position] for axis in model.axes],
+        "AXIS_POSITION": [index[axis.position or axis.velocity] for axis in model.axes],
         "AXIS_VELOCITY": [index[axis.velocity] for axis in model.axes],
+        "KINK_STATE": [index[state] for state in model.kinks],
     }
     places = itertools.count()
     tables |= {name: [next(places) for _ in limits] for name, limits in _limits(model).items()}
@@ -114,11 +119,6 @@ def _jacobians(model: Model, constants: Constants) -> str:
             targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
     head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H)"
     return _function(head, [*_locals(model), *assignments(targets, constants)])
-
-
-def smooth(jacobian: sympy.Matrix) -> sympy.Matrix:
-    """Drop the impulses that SymPy makes of slopes of steps: events and sample times carry those, not slopes."""
-    return jacobian.replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
 
 
 def _locals(model: Model, *, inputs: bool = True) -> list[str]:

@@ -35,11 +35,12 @@ class Axis:
     """One mechanical degree of freedom with dry friction and hard stops.
 
     inertia * d(velocity)/dt = torque - coulomb * sgn(velocity), where at rest the friction takes any value within +-coulomb;
-    `lower` and `upper` are the stops of `position`, hit without rebound; None where there is none.
+    `coulomb` may depend on the friction's direction (Model.friction_signs). `lower` and `upper` are the stops of `position`, hit
+    without rebound; None where there is none. A rotor with dry friction is an axis without a position.
     """
 
     name: str
-    position: sympy.Symbol
+    position: sympy.Symbol | None
     velocity: sympy.Symbol
     inertia: sympy.Expr
     torque: sympy.Expr
@@ -76,12 +77,26 @@ class Model:
         """One symbol per axis for the direction of its dry friction: sgn(velocity), or 0 where it is left out."""
         return tuple(sympy.Symbol(f"sign_{axis.name}", real=True) for axis in self.axes)
 
+    @property
+    def kinks(self) -> tuple[sympy.Symbol, ...]:
+        """States at whose zero the rates have a kink or a step (|w|, sgn w): the kernel ends a step there, to keep its order."""
+        rates = [*self.rates.values(), *(term for axis in self.axes for term in (axis.torque, axis.inertia))]
+        bent = {f.args[0] for rate in rates for f in sympy.sympify(rate).atoms(sympy.Abs, sympy.sign, sympy.Heaviside)}
+        velocities = {axis.velocity for axis in self.axes}
+        return tuple(state for state in self.states if state in bent - velocities)
+
     def state_rates(self) -> sympy.Matrix:
         """dx/dt as a column (states,) in the order of `states`, with the friction directions as symbols."""
         rates = dict(self.rates)
         for axis, sign in zip(self.axes, self.friction_signs, strict=True):
             rates[axis.velocity] = (axis.torque - axis.coulomb * sign) / axis.inertia
         return sympy.Matrix([rates[state] for state in self.states])
+
+
+def smooth(jacobian: sympy.Matrix) -> sympy.Matrix:
+    """Drop the impulses that SymPy makes of slopes of steps: events and sample times carry those, not slopes."""
+    impulses = (sympy.DiracDelta, sympy.Derivative, sympy.Subs)
+    return jacobian.replace(lambda entry: isinstance(entry, impulses), lambda _: sympy.Integer(0))
 
 
 def symbol(name: str) -> sympy.Symbol:

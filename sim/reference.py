@@ -8,7 +8,7 @@ import numpy as np
 import sympy
 from numpy.typing import ArrayLike, NDArray
 
-from sim.model import TIME, Model
+from sim.model import TIME, Model, smooth
 
 Array = NDArray[np.float64]
 
@@ -40,16 +40,11 @@ def reference(model: Model) -> Reference:
     outputs = sympy.Matrix(list(model.outputs.values()))
     return Reference(
         rates=_function(model, rates, flat=True),
-        A=_function(model, _smooth(rates.jacobian(states))),
-        B=_function(model, rates.jacobian(inputs)),
-        D_p=_function(model, rates.jacobian(parameters)),
+        A=_function(model, smooth(rates.jacobian(states))),
+        B=_function(model, smooth(rates.jacobian(inputs))),
+        D_p=_function(model, smooth(rates.jacobian(parameters))),
         C=np.array(outputs.jacobian(states), dtype=float),
     )
-
-
-def _smooth(jacobian: sympy.Matrix) -> sympy.Matrix:
-    """Drop the impulse that SymPy makes of d sgn(w)/dw at w = 0."""
-    return jacobian.replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
 
 
 def _function(model: Model, expression: sympy.Matrix, *, flat: bool = False) -> Callable[..., Array]:

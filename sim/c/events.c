@@ -2,6 +2,8 @@
 #define LANES 1
 #include "events.h"
 
+#include <float.h>
+
 #include "step.h"
 
 typedef struct {
@@ -47,9 +49,21 @@ static void settle_all(moment *at)
     }
 }
 
+static bool is_break(int event)
+{
+    return event == EVENT_BREAK_UP || event == EVENT_BREAK_DOWN;
+}
+
+static bool is_kink(int event)
+{
+    return event == EVENT_KINK_UP || event == EVENT_KINK_DOWN;
+}
+
 /* Whether `event` can end the present motion of `axis`. */
 static bool watched(const moment *at, int axis, int event)
 {
+    if (is_kink(event))
+        return event == EVENT_KINK_UP ? at->body.x[KINK_STATE[axis]] < 0.0 : at->body.x[KINK_STATE[axis]] > 0.0;
     const double position = at->body.x[AXIS_POSITION[axis]];
     switch (event) {
     case EVENT_REST:
@@ -90,14 +104,13 @@ static double state_margin(const moment *at, const double *x, int axis, int even
         return at->body.sign[axis] * x[AXIS_VELOCITY[axis]];
     case EVENT_LOWER:
         return x[AXIS_POSITION[axis]] - at->c[AXIS_LOWER[axis]];
+    case EVENT_KINK_UP:
+        return -x[KINK_STATE[axis]];
+    case EVENT_KINK_DOWN:
+        return x[KINK_STATE[axis]];
     default:
         return at->c[AXIS_UPPER[axis]] - x[AXIS_POSITION[axis]];
     }
-}
-
-static bool is_break(int event)
-{
-    return event == EVENT_BREAK_UP || event == EVENT_BREAK_DOWN;
 }
 
 static double margin(const moment *at, const view *then, int axis, int event)
@@ -132,6 +145,10 @@ static double cubic_value(const cubic *g, double s)
 static cubic margin_cubic(const moment *at, const view *end, int axis, int event)
 {
     const step_stages *const seen = &end->seen;
+    if (is_kink(event)) { /* a chord; Newton's method does the rest */
+        const double before = state_margin(at, at->body.x, axis, event), after = state_margin(at, end->x, axis, event);
+        return (cubic){before, after - before, 0.0, 0.0};
+    }
     const int velocity = AXIS_VELOCITY[axis];
     const double direction = event == EVENT_REST ? at->body.sign[axis] : event == EVENT_LOWER ? 1.0 : -1.0;
     double first, last = margin(at, end, axis, event), slope_0, slope_1;
@@ -181,12 +198,12 @@ static bool leave_zero(const moment *at, double noise, double *early, double *la
 }
 
 /* The instant within the step to `end` at which the margin of `event`, past zero there, goes through zero: the root of the cubic, improved
- * with its slope, halving where that does not help. `then` is the plant at that instant. */
+ * by secants, halving where they do not help. `then` is the plant at that instant. */
 static void locate(const moment *at, const view *end, int axis, int event, view *then)
 {
     const cubic g = margin_cubic(at, end, axis, event);
     const double noise = 1e-10 * (fabs(g.value_0) + fabs(cubic_value(&g, 1.0)));
-    double early = 0.0, late = end->h_s, at_h = late, slope = -1.0, last = INFINITY;
+    double early = 0.0, late = end->h_s, at_h = late, slope = -1.0, last = INFINITY, last_h = 0.0;
     if (g.value_0 > noise && cubic_value(&g, 1.0) < 0.0) {
         const double s = cubic_root(&g);
         at_h = s * late;
@@ -203,9 +220,13 @@ static void locate(const moment *at, const view *end, int axis, int event, view 
             early = at_h;
         else
             late = at_h;
+        if (round > 0 && value != last)
+            slope = (value - last) / (at_h - last_h);
         const double next = at_h - value / slope;
-        at_h = fabs(value) < 0.5 * last && next > early && next < late ? next : 0.5 * (early + late);
-        last = fabs(value);
+        const bool helps = fabs(value) < 0.5 * fabs(last) && next > early && next < late;
+        last = value;
+        last_h = at_h;
+        at_h = helps ? next : 0.5 * (early + late);
     }
 }
 
@@ -236,8 +257,8 @@ typedef struct {
 
 static bool passed(const moment *at, const view *then, next_event known, next_event *found)
 {
-    for (int a = 0; a < N_AXES; a++)
-        for (int event = EVENT_REST; event <= EVENT_BREAK_DOWN; event++) {
+    for (int event = EVENT_REST; event <= EVENT_KINK_DOWN; event++)
+        for (int a = 0; a < (is_kink(event) ? N_KINKS : N_AXES); a++) {
             if ((known.event == event && known.axis == a) || !watched(at, a, event))
                 continue;
             const double value = margin(at, then, a, event);
@@ -287,6 +308,10 @@ static void apply(moment *at, next_event event)
 {
     const int axis = event.axis;
     switch (event.event) {
+    case EVENT_KINK_UP:
+    case EVENT_KINK_DOWN: /* just beyond, where sgn has its new value */
+        at->body.x[KINK_STATE[axis]] = event.event == EVENT_KINK_UP ? DBL_MIN : -DBL_MIN;
+        return;
     case EVENT_BREAK_UP:
     case EVENT_BREAK_DOWN:
         at->body.move[axis] = 1.0;
@@ -307,12 +332,12 @@ static void apply(moment *at, next_event event)
     settle_axis(at, axis, torque[axis], up[axis], down[axis]);
 }
 
-static void hold_all(moment *at)
+/* The way out of a step with too many events: what is at rest now stays so. */
+static void hold_resting(moment *at)
 {
-    for (int a = 0; a < N_AXES; a++) {
-        at->body.x[AXIS_VELOCITY[a]] = 0.0;
-        at->body.sign[a] = at->body.move[a] = 0.0;
-    }
+    for (int a = 0; a < N_AXES; a++)
+        if (at->body.x[AXIS_VELOCITY[a]] == 0.0)
+            at->body.sign[a] = at->body.move[a] = 0.0;
 }
 
 static void load(moment *at, const double *x, const double *sign, const double *move)
@@ -361,15 +386,16 @@ int events_advance(double *x, double *sign, double *move, double t_s, double h_s
     for (double left = h_s;;) {
         view end, then;
         if (count == MAX_EVENTS)
-            hold_all(&at);
+            hold_resting(&at);
         look(&at, left, &end);
-        const next_event next = first_event(&at, &end, &then);
+        then = end;
+        const next_event none = {0, EVENT_NONE}, next = count == MAX_EVENTS ? none : first_event(&at, &end, &then);
         if (pieces)
             pieces[count] = (event_piece){at.t_s, then.h_s, next.axis, next.event};
         count++;
         for (int i = 0; i < N_STATES; i++)
             at.body.x[i] = then.x[i];
-        if (next.event == EVENT_NONE || count > MAX_EVENTS)
+        if (next.event == EVENT_NONE)
             break;
         at.t_s += then.h_s;
         left -= then.h_s;

@@ -4,17 +4,17 @@
 
 #include <stdint.h>
 
-enum { EVENT_NONE, EVENT_REST, EVENT_LOWER, EVENT_UPPER, EVENT_BREAK_UP, EVENT_BREAK_DOWN };
+enum { EVENT_NONE, EVENT_REST, EVENT_LOWER, EVENT_UPPER, EVENT_BREAK_UP, EVENT_BREAK_DOWN, EVENT_KINK_UP, EVENT_KINK_DOWN };
 
 #define MAX_EVENTS 16
 
-/* A stretch of a step without events in it, and the event of `axis` that ended it. */
+/* A stretch of a step without events in it, and the event of `axis` that ended it; for EVENT_KINK_... `axis` counts the kinks. */
 typedef struct {
     double t_s, h_s;
     int32_t axis, event;
 } event_piece;
 
-/* Advance one run by h_s through all events, at most MAX_EVENTS of them, after which its axes are held for the rest.
+/* Advance one run by h_s through all events, at most MAX_EVENTS of them, after which axes at rest stay so for the rest.
  * `pieces` takes up to MAX_EVENTS + 1 stretches and may be NULL; returns how many there were. */
 int events_advance(double *x, double *sign, double *move, double t_s, double h_s, const double *u, const double *c,
                    event_piece *pieces);

@@ -68,7 +68,7 @@ ALWAYS_INLINE void advance(lane_group *group, num t_s, num h_s, const num *u)
     step_stages seen;
     rk4_step(t_s, h_s, &group->body, u, group->c, x, &seen);
     const mask suspect = step_suspect(&group->body, x, h_s, group->c, &seen);
-    if (N_AXES > 0 && __builtin_expect(any(suspect), 0)) {
+    if (N_AXES + N_KINKS > 0 && __builtin_expect(any(suspect), 0)) {
         for (int lane = 0; lane < LANES; lane++)
             if (lane_is(suspect, lane)) {
                 one_lane_events(group, lane, t_s, h_s, u, false);

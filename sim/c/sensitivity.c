@@ -145,6 +145,22 @@ static void jump(const context *at, const plant_body *before, const plant_body *
     }
 }
 
+/* At the zero of a state where the rates may have a step; a mere kink leaves S as it is. At a breakaway the rates do not jump. */
+static void jump_kink(const context *at, const plant_body *before, const plant_body *after, double t_s, event_piece piece, matrix *S)
+{
+    double old[N_STATES], new[N_STATES], torque[AXES], up[AXES], down[AXES];
+    plant_body last = *before;
+    const int state = KINK_STATE[piece.axis];
+    last.x[state] = -after->x[state];
+    model_rates(t_s, last.x, at->u, at->c, last.sign, last.move, old, torque, up, down);
+    model_rates(t_s, after->x, at->u, at->c, after->sign, after->move, new, torque, up, down);
+    for (int column = 0; column < at->request->columns; column++) {
+        const double later = old[state] != 0.0 ? -S->row[state][column] / old[state] : 0.0;
+        for (int i = 0; i < N_STATES; i++)
+            S->row[i][column] += (old[i] - new[i]) * later;
+    }
+}
+
 /* One step: the events are found by the same code as in a plain run, then S follows stretch by stretch. */
 static void advance_with(const context *at, plant_body *body, double t_s, double h_s, matrix *S)
 {
@@ -167,8 +183,10 @@ static void advance_with(const context *at, plant_body *body, double t_s, double
         const plant_body before = *body;
         const double then_s = pieces[n].t_s + pieces[n].h_s;
         events_apply(body->x, body->sign, body->move, then_s, at->u, at->c, pieces[n]);
-        if (pieces[n].event <= EVENT_UPPER)
+        if (pieces[n].event < EVENT_BREAK_UP)
             jump(at, &before, body, then_s, pieces[n], S);
+        else if (pieces[n].event > EVENT_BREAK_DOWN)
+            jump_kink(at, &before, body, then_s, pieces[n], S);
     }
     *body = next;
 }

@@ -51,6 +51,7 @@ ALWAYS_INLINE void rk4_step(num t_s, num h_s, const plant_body *body, const num 
 /* Lanes whose friction or stops may have acted within the step from `body` to x: these go the careful way of events.c.
  *
  * A moving axis: velocity at or through zero, or possibly there and back (both end tangents reach zero), or a stop passed.
+ * A state through the kink of the rates at its zero.
  * A held axis: torque beyond breakaway in any stage; towards a stop that it lies against, it is held by any torque.
  */
 ALWAYS_INLINE mask step_suspect(const plant_body *body, const num *x, num h_s, const num *c, const step_stages *seen)
@@ -72,6 +73,8 @@ ALWAYS_INLINE mask step_suspect(const plant_body *body, const num *x, num h_s, c
             suspect |= broken & ~moving;
         }
     }
+    UNROLLED for (int k = 0; k < N_KINKS; k++)
+        suspect |= is_less(body->x[KINK_STATE[k]] * x[KINK_STATE[k]], NUM(0.0));
     return suspect;
 }
 

@@ -7,7 +7,18 @@ from records.errors import BadInput
 from sim.equilibrium import equilibrium
 from sim.reference import reference
 
-U_M0_V = {-45: 4.653, -40: 4.859, -30: 5.191, -20: 5.424, -10: 5.562, 0: 5.607, 10: 5.562, 20: 5.424, 30: 5.191, 40: 4.859}
+U_M0_V = {
+    -45: 4.653,
+    -40: 4.859,
+    -30: 5.191,
+    -20: 5.424,
+    -10: 5.562,
+    0: 5.607,
+    10: 5.562,
+    20: 5.424,
+    30: 5.191,
+    40: 4.859,
+}
 RATES = 1e-11  # of what is left of dx/dt, where single terms reach 2000 rad/s^2
 
 
