@@ -93,9 +93,9 @@ def _environment() -> jinja2.Environment:
 
 
 def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
+    count = operation_count(table)  # refuses an unusable table before anything is made from it
     arrays = tuple(array for name in _AXES for array in _arrays(table, name))
     axes = tuple(_axis(table, name) for name in _AXES)
-    count = operation_count(table)
     return {
         "arithmetic": arithmetic,
         "arithmetic_code": ARITHMETIC_CODES[arithmetic],

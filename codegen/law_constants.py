@@ -54,8 +54,8 @@ class LawConstants(Generic[N]):
 def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawConstants[N]:
     """The law's numbers, each made by `number`; terms that are zero in float32 for every Psi are left out.
 
-    Raises BadInput for a table whose law could not run in float32: a number beyond its range, no feedback at all, or a
-    feedback voltage beyond PLAUSIBLE_V within reach.
+    Raises BadInput for a table whose law could not run: a sample period that is not whole microseconds, no feedback at all,
+    or voltages beyond PLAUSIBLE_V (so beyond float32's range as well) within reach.
     """
     _refuse_unusable(table)
     return LawConstants(
@@ -100,21 +100,33 @@ def without_vanishing_powers(polynomial: Polynomial) -> Polynomial:
 
 
 def _refuse_unusable(table: ControllerTable) -> None:
+    period_us = table.sample_period_s * 1e6
+    if abs(period_us - round(period_us)) > 1e-6 * period_us or not 1 <= round(period_us) < 2**32:
+        raise BadInput(
+            "sample_period_s",
+            "controller table",
+            f"{table.sample_period_s!r} s",
+            "whole microseconds, as the board's timer counts them",
+            "choose another sample period and design the table again",
+        )
     for name, axis in (("elevation", table.elevation), ("azimuth", table.azimuth)):
-        gains = [_largest(polynomial, table) for polynomial in axis.q_V_rad]
+        psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
+        gains = [_largest(polynomial, psi_rad) for polynomial in axis.q_V_rad]
         if not any(gains):
             raise _unusable(name, "every q is zero", "an axis with feedback")
         # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
         span_V = axis.u_max_V - axis.u_min_V
         feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
-        recursion_V = sum(_largest(p, table) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
-        if not feedback_V + recursion_V + span_V < PLAUSIBLE_V:
-            raise _unusable(name, f"feedback of up to {feedback_V + recursion_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
+        recursion_V = sum(_largest(p, psi_rad) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
+        reference_rad = max(abs(table.elevation.reference_min_rad), abs(table.elevation.reference_max_rad))
+        reached_V = feedback_V + recursion_V + span_V + _largest(axis.feedforward_V, reference_rad)
+        if not reached_V < PLAUSIBLE_V:
+            raise _unusable(name, f"voltages of up to {reached_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
 
 
-def _largest(polynomial: Polynomial, table: ControllerTable) -> float:
-    psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
-    return sum(abs(coefficient) * psi_rad**power for power, coefficient in enumerate(polynomial))
+def _largest(polynomial: Polynomial, angle_rad: float) -> float:
+    """Bound of |polynomial| up to this angle."""
+    return sum(abs(coefficient) * angle_rad**power for power, coefficient in enumerate(polynomial))
 
 
 def _unusable(axis: str, got: str, expected: str) -> BadInput:

@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,11 +88,21 @@ def test_an_unknown_arithmetic_is_refused_with_its_name() -> None:
 
 @pytest.mark.parametrize(
     ("change", "complaint"),
-    [({"q_V_rad": ((0.0,),) * 4}, "every q is zero"), ({"q_V_rad": ((1e6,),) * 4}, "feedback of up to")],
+    [
+        ({"q_V_rad": ((0.0,),) * 4}, "every q is zero"),
+        ({"q_V_rad": ((1e6,),) * 4}, "voltages of up to"),
+        ({"feedforward_V": (1e39,)}, "voltages of up to"),
+        ({"p": ((float("nan"),),) * 3}, "voltages of up to nan"),
+    ],
 )
 def test_a_table_that_cannot_fly_is_refused(change: dict[str, object], complaint: str) -> None:
     with pytest.raises(BadInput, match=complaint):
         generate_law(changed_axis(ce150_table(), "elevation", **change))
+
+
+def test_a_sample_period_that_the_timer_cannot_count_is_refused() -> None:
+    with pytest.raises(BadInput, match="whole microseconds"):
+        generate_law(replace(ce150_table(), sample_period_s=0.01 / 3.0))
 
 
 def test_generated_text_has_no_date_and_no_place() -> None:
