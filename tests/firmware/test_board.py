@@ -336,6 +336,12 @@ def test_the_float_law_in_the_loop_says_how_long_it_took(float32):
     assert max(cycles) < 64_000_000 * TICK_S
 
 
+@pytest.mark.parametrize("optimisation", ["-O0", "-Os"])
+def test_the_law_passes_its_self_test_however_the_image_is_optimised(optimisation):
+    board = EmulatedBoard(build_firmware(generate_law(ce150_table()), optimisation=optimisation).elf)
+    assert board.call("law_self_test").result == 0
+
+
 def test_a_self_test_that_fails_on_the_board_forbids_arming():
     failing = stand_in_law()
     failing["law.c"] = failing["law.c"].replace("== 2.5f ? 0u : 1u", "== 2.5f ? 7u : 1u")

@@ -1,6 +1,7 @@
 """The client and the real image through `emulated://`: the same bits as the compiled law, nothing lost, flights on encoders."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.client import BoardClient
 from rig.controller import BoardController
+from rig.emulator.pty_port import PtyBoard
 from rig.image import build_firmware
 from rig.numbers import Float32Numbers
 from rig.port import open_port
@@ -107,6 +109,16 @@ def test_a_host_that_goes_away_leaves_the_rotors_off(url):
     port.wait((PROTOCOL.constant("HOST_LOSS_SAMPLES") + PROTOCOL.constant("RAMP_SAMPLES")) * TICK_S)
     pwm = port.board.pwm()
     assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks) == (False, 0, 0)
+
+
+def test_the_same_client_speaks_through_a_real_terminal_device(url):
+    with PtyBoard(Path(url.removeprefix("emulated://"))) as board:
+        with BoardClient.connect(board.path, table_digest=TABLE.digest, timeout_s=1.0) as client:
+            assert client.self_test() == 0
+            client.arm("LOOP")
+            client.disarm()
+            assert client.counters()["crc_errors"] == 0
+        assert board.stop is None
 
 
 def test_a_line_at_another_speed_says_noise_or_nothing(url):
