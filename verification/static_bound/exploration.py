@@ -10,7 +10,7 @@ from verification.static_bound.control_flow import FlowGraph
 from verification.static_bound.elf_image import ElfFunction, ElfImage
 from verification.static_bound.liveness import ARGUMENTS, CLOBBERED, FLAGS, Locations
 from verification.static_bound.loop_nest import LoopNest
-from verification.static_bound.state import OPPOSITE, UNKNOWN_FLAGS, State, assume, join_states
+from verification.static_bound.state import OPPOSITE, UNKNOWN_FLAGS, State, assume_all, join_states
 from verification.static_bound.step import data_address, operand, step, without_frame
 from verification.static_bound.thumb import LOADS, Instruction
 from verification.static_bound.thumb_cycles import NO_CYCLES, Cycles, data_stalls, instruction_cycles, jump_stalls
@@ -190,13 +190,13 @@ class Exploration:
         return Visit(visit.address, visit.passes, state, cycles, visit.trail), target
 
     def _branch(self, visit: Visit, i: Instruction) -> Iterator[tuple[Visit, int | None]]:
-        stays, goes = assume(visit.state, OPPOSITE[i.condition]), assume(visit.state, i.condition)
-        if stays:
-            yield visit._replace(state=stays, cycles=visit.cycles.plus(_both(1, 0))), i.next_address
-        if goes and i.address in self.prepared.graph.calls:
-            yield self._called(visit._replace(state=goes), i, self.prepared.graph.calls[i.address])
-        elif goes:
-            yield visit._replace(state=goes, cycles=visit.cycles.plus(_both(2, jump_stalls(i.target)))), i.target
+        for state in assume_all(visit.state, OPPOSITE[i.condition]):
+            yield visit._replace(state=state, cycles=visit.cycles.plus(_both(1, 0))), i.next_address
+        for state in assume_all(visit.state, i.condition):
+            if i.address in self.prepared.graph.calls:
+                yield self._called(visit._replace(state=state), i, self.prepared.graph.calls[i.address])
+            else:
+                yield visit._replace(state=state, cycles=visit.cycles.plus(_both(2, jump_stalls(i.target)))), i.target
 
     def _called(self, visit: Visit, i: Instruction, callee: ElfFunction) -> tuple[Visit, int | None]:
         graph = self.prepared.graph

@@ -88,8 +88,8 @@ def live_before(graph: FlowGraph, arguments: Mapping[int, Locations]) -> dict[in
 def _transfer(graph: FlowGraph, address: int, arguments: Mapping[int, Locations]) -> tuple[Locations, Locations]:
     i = graph.instructions[address]
     reads, writes = effects(i, graph.sp[address])
-    if i.op == "blx":
-        return reads | ARGUMENTS, CLOBBERED
+    if address in graph.indirect:  # a call, a tail call, or a jump that may be one
+        return reads | ARGUMENTS, CLOBBERED if i.op == "blx" else NOTHING
     if address in graph.calls:
         reads |= arguments[graph.calls[address].start]
         writes = CLOBBERED if i.op == "bl" else writes

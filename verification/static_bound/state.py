@@ -1,5 +1,6 @@
 """What is known of the processor before an instruction: words by location, and where the flags come from."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from verification.static_bound import words
@@ -8,32 +9,44 @@ from verification.static_bound.words import MASK, SIGN, TOP, Word
 NOWHERE = -1
 
 
+class Relative(NamedTuple):
+    """A location that holds a number shifted by a constant: to the left, to the right where `shift` is negative."""
+
+    location: int
+    shift: int
+
+
 class Flags(NamedTuple):
     """Flags of the last instruction that set them.
 
     After a subtraction `a - b` (kind "subtract") all conditions are decided by `a` and `b`; otherwise Z and N by `result`, C by `carry`.
-    After a shift by a constant (kind "lsls", "lsrs") Z also tells of `a`, which was shifted by `b`.
-    The `_at` members name registers that still hold the operands and the result.
+    After a shift of `a` by the constant `b` (kind "lsls", "lsrs") or a test of the bits `b` (kind "ands") Z also tells of `a`.
+    The registers `b_at` and `result_at` still hold `b` and the result; `relatives` hold `a` or follow from it.
     """
 
     kind: str = ""
     a: Word = TOP
     b: Word = TOP
     result: Word = TOP
-    a_at: int = NOWHERE
+    relatives: tuple[Relative, ...] = ()
     b_at: int = NOWHERE
     result_at: int = NOWHERE
     carry: int | None = None
 
 
 UNKNOWN_FLAGS = Flags()
+NO_ORIGINS: Mapping[int, Relative] = {}
 
 
 class State(NamedTuple):
-    """Words known by location (TOP where absent) and flags. A state is never changed once it is made."""
+    """Words known by location (TOP where absent) and flags. A state is never changed once it is made.
+
+    `origins` tells of locations that were copied or shifted from another one, which has not changed since.
+    """
 
     values: dict[int, Word]
     flags: Flags
+    origins: Mapping[int, Relative] = NO_ORIGINS
 
     def at(self, location: int) -> Word:
         """What is known of a location."""
@@ -44,7 +57,17 @@ class State(NamedTuple):
         values = {**self.values, location: word}
         if word == TOP:
             del values[location]
-        return State(values, _forget(self.flags, location))
+        return State(values, _forget(self.flags, location), self._origins_without(location))
+
+    def with_copy(self, location: int, source: int, shift: int, word: Word) -> "State":
+        """The state after `location` was overwritten by `source`, shifted; `word` is the result."""
+        after = self.with_value(location, word)
+        flags = after.flags
+        if shift == 0 and source != location:
+            copied = [Relative(location, relative.shift) for relative in flags.relatives if relative.location == source]
+            flags = flags._replace(relatives=(*flags.relatives, *copied))
+        origins = after.origins if source == location else {**after.origins, location: Relative(source, shift)}
+        return State(after.values, flags, origins)
 
     def without(self, locations: frozenset[int]) -> "State":
         """The state after `locations` were overwritten with something unknown."""
@@ -53,13 +76,25 @@ class State(NamedTuple):
             flags = _forget(flags, location)
         return State({place: word for place, word in self.values.items() if place not in locations}, flags)
 
+    def relatives_of(self, location: int) -> tuple[Relative, ...]:
+        """The location itself, its copies, and what was shifted from it."""
+        found = [Relative(place, origin.shift) for place, origin in self.origins.items() if origin.location == location]
+        if location in self.origins and self.origins[location].shift == 0:
+            found.append(Relative(self.origins[location].location, 0))
+        return (Relative(location, 0), *found)
 
-def _forget(flags: Flags, register: int) -> Flags:
-    if register == flags.a_at:
-        flags = flags._replace(a_at=NOWHERE)
-    if register == flags.b_at:
+    def _origins_without(self, location: int) -> Mapping[int, Relative]:
+        if not self.origins:
+            return self.origins
+        return {place: origin for place, origin in self.origins.items() if location not in (place, origin.location)}
+
+
+def _forget(flags: Flags, location: int) -> Flags:
+    if any(relative.location == location for relative in flags.relatives):
+        flags = flags._replace(relatives=tuple(r for r in flags.relatives if r.location != location))
+    if location == flags.b_at:
         flags = flags._replace(b_at=NOWHERE)
-    return flags._replace(result_at=NOWHERE) if register == flags.result_at else flags
+    return flags._replace(result_at=NOWHERE) if location == flags.result_at else flags
 
 
 def join_states(a: State, b: State) -> State:
@@ -71,17 +106,28 @@ def join_states(a: State, b: State) -> State:
 
 
 def _joined_flags(a: Flags, b: Flags) -> Flags:
-    same_places = (a.a_at, a.b_at, a.result_at) == (b.a_at, b.b_at, b.result_at)
+    same_places = (a.relatives, a.b_at, a.result_at) == (b.relatives, b.b_at, b.result_at)
     if a.kind != b.kind or not same_places:
         return UNKNOWN_FLAGS
     return Flags(
         a.kind, words.join(a.a, b.a), words.join(a.b, b.b), words.join(a.result, b.result),
-        a.a_at, a.b_at, a.result_at, a.carry if a.carry == b.carry else None,
+        a.relatives, a.b_at, a.result_at, a.carry if a.carry == b.carry else None,
     )  # fmt: skip
 
 
 OPPOSITE = {"eq": "ne", "hs": "lo", "mi": "pl", "vs": "vc", "hi": "ls", "ge": "lt", "gt": "le"}
 OPPOSITE |= {second: first for first, second in OPPOSITE.items()}
+
+
+def assume_all(state: State, condition: str) -> list[State]:
+    """States that together hold all of `state` where `condition` holds; an arc around zero that must not be zero is cut into two."""
+    around_zero = state.flags.result.start + state.flags.result.span > MASK
+    if condition == "ne" and around_zero:
+        halves = [assume(state, sign) for sign in ("mi", "pl")]
+        parts = [half and assume(half, "ne") for half in halves]
+    else:
+        parts = [assume(state, condition)]
+    return [part for part in parts if part]
 
 
 def assume(state: State, condition: str) -> State | None:
@@ -93,7 +139,7 @@ def assume(state: State, condition: str) -> State | None:
     if flags.kind != "subtract":
         carries = {"hs": 1, "hi": 1, "lo": 0}
         possible = flags.carry is None or carries.get(condition, flags.carry) == flags.carry
-        source = _shifted_where(flags, condition)
+        source = _source_where(flags, condition)
         return _refined(state, flags._replace(a=source, result=result)) if possible and source else None
     pair = _operands_where(flags.a, flags.b, condition)
     if pair is None:
@@ -102,8 +148,8 @@ def assume(state: State, condition: str) -> State | None:
     return narrower and _refined(state, flags._replace(a=pair[0], b=pair[1], result=narrower))
 
 
-def _shifted_where(flags: Flags, condition: str) -> Word | None:
-    """What was shifted, where the shift's result is zero or not."""
+def _source_where(flags: Flags, condition: str) -> Word | None:
+    """What was shifted or tested, where the result is zero or not."""
     amount = flags.b.constant or 0
     match flags.kind, condition:
         case "lsrs", "eq":
@@ -114,15 +160,30 @@ def _shifted_where(flags: Flags, condition: str) -> Word | None:
             return words.common(flags.a, words.bit_pattern(MASK >> amount, 0))
         case "lsls", "ne":
             return words.within(flags.a, 1, MASK)
+        case "ands", "eq":
+            return words.common(flags.a, words.bit_pattern(amount, 0))
+        case "ands", "ne" if amount and amount & (amount - 1) == 0:
+            return words.common(flags.a, words.bit_pattern(amount, amount))
     return flags.a
 
 
-def _refined(state: State, flags: Flags) -> State:
+def _refined(state: State, flags: Flags) -> State | None:
     known = dict(state.values)
-    for place, word in ((flags.a_at, flags.a), (flags.b_at, flags.b), (flags.result_at, flags.result)):
-        if place != NOWHERE and word != TOP:
-            known[place] = word
-    return State(known, flags)
+    found = [(relative.location, _moved(flags.a, relative.shift)) for relative in flags.relatives]
+    found += [
+        (place, word) for place, word in ((flags.b_at, flags.b), (flags.result_at, flags.result)) if place != NOWHERE
+    ]
+    for place, word in found:
+        both = words.common(known.get(place, TOP), word)
+        if both is None:
+            return None
+        if both != TOP:
+            known[place] = both
+    return State(known, flags, state.origins)
+
+
+def _moved(word: Word, shift: int) -> Word:
+    return words.shift_left(word, shift) if shift >= 0 else words.shift_right(word, -shift)
 
 
 def _result_where(result: Word, condition: str) -> Word | None:
@@ -145,6 +206,9 @@ def _operands_where(a: Word, b: Word, condition: str) -> tuple[Word, Word] | Non
             return (both, both) if both else None
         case "ne":
             return _unequal(a, b)
+        case "mi" | "pl" if b.constant == 0:
+            sign = words.within(a, SIGN, MASK) if condition == "mi" else words.within(a, 0, SIGN - 1)
+            return (sign, b) if sign else None
         case "lo" | "ls":
             return _ordered(a, b, (a.lowest, a.highest), (b.lowest, b.highest), (0, MASK), condition == "lo")
         case "hi" | "hs":

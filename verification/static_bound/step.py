@@ -5,7 +5,7 @@ from collections.abc import Callable
 from verification.static_bound import words
 from verification.static_bound.elf_image import ElfImage
 from verification.static_bound.liveness import FLAG_WRITERS, effects, slot, written_register
-from verification.static_bound.state import NOWHERE, Flags, State
+from verification.static_bound.state import NOWHERE, Flags, Relative, State
 from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
 from verification.static_bound.words import MASK, TOP, Word
 
@@ -28,8 +28,11 @@ SHIFTS = {"lsls": words.shift_left, "lsrs": words.shift_right, "asrs": words.shi
 
 def step(state: State, i: Instruction, sp: int, image: ElfImage, frame_escapes: bool) -> list[State]:
     """States behind the instruction: one, or one for each word that a table in flash may have given."""
+    if i.op == "ldr" and i.n == SP:
+        place = slot(sp + i.imm)
+        return [state.with_copy(i.d, place, 0, state.at(place))]
     if i.op in LOADS or i.op == "ldr_literal":
-        return [state.with_value(i.d, word) for word in loaded(state, i, sp, image)]
+        return [state.with_value(i.d, word) for word in loaded(state, i, image)]
     if i.op in STORES:
         return [_stored(state, i, sp, frame_escapes)]
     if i.op in ("push", "pop"):
@@ -56,12 +59,10 @@ def data_address(state: State, i: Instruction) -> Word:
     return words.add(operand(state, i.n, i), second_operand(state, i))
 
 
-def loaded(state: State, i: Instruction, sp: int, image: ElfImage) -> list[Word]:
+def loaded(state: State, i: Instruction, image: ElfImage) -> list[Word]:
     """The words that a load may give, as few sets as its address allows."""
     if i.op == "ldr_literal":
         return [words.constant(image.read(i.imm, 4) or 0)]
-    if i.n == SP:
-        return [state.at(slot(sp + i.imm))]
     size = {"ldr": 4, "ldrh": 2, "ldrsh": 2}.get(i.op, 1)
     places = data_address(state, i).members(MOST_ADDRESSES)
     contents = {image.read(place, size) for place in places if place % size == 0} if places else {None}
@@ -75,7 +76,7 @@ def loaded(state: State, i: Instruction, sp: int, image: ElfImage) -> list[Word]
 
 def _stored(state: State, i: Instruction, sp: int, frame_escapes: bool) -> State:
     if i.n == SP:
-        return state.with_value(slot(sp + i.imm), operand(state, i.d, i))
+        return state.with_copy(slot(sp + i.imm), i.d, 0, state.at(i.d))
     return without_frame(state) if frame_escapes else state
 
 
@@ -97,6 +98,8 @@ def _moved_block(state: State, i: Instruction, sp: int) -> State:
 
 def _without_flags(state: State, i: Instruction, sp: int, frame_escapes: bool) -> State:
     match i.op:
+        case "mov" if i.d < SP and i.m < SP:
+            return state.with_copy(i.d, i.m, 0, state.at(i.m))
         case "mov" | "uxtb" | "uxth" | "adr" | "add_high" | "sxtb" | "sxth":
             return state.with_value(i.d, _plain_result(state, i)) if i.d < SP else state
         case "stm":
@@ -133,11 +136,32 @@ def _computed(state: State, i: Instruction) -> State:
     else:
         result, carry = _added(i, a, b, state.flags.carry)
     d = written_register(i)
-    after = state.with_value(d, result) if d >= 0 else state
+    if i.op in ("lsls", "lsrs", "movs") and (i.m < 0) == (i.op != "movs"):
+        shift = {"lsls": i.imm, "lsrs": -i.imm}.get(i.op, 0)
+        source = i.n if i.m < 0 else i.m
+        after = state.with_copy(d, source, shift, result)
+    else:
+        after = state.with_value(d, result) if d >= 0 else state
+    return State(after.values, _flags(state, i, a, b, result, carry), after.origins)
+
+
+def _flags(state: State, i: Instruction, a: Word, b: Word, result: Word, carry: int | None) -> Flags:
+    """Flags of all but subtractions."""
+    d = written_register(i)
     if i.op in ("lsls", "lsrs") and i.m < 0:
-        source_at = i.n if i.n != d else NOWHERE
-        return State(after.values, Flags(i.op, a, b, result, source_at, NOWHERE, d, carry))
-    return State(after.values, Flags(result=result, result_at=d, carry=carry))
+        return Flags(i.op, a, b, result, _others(state, i.n, d), NOWHERE, d, carry)
+    if i.op in ("ands", "tst") and a.constant is not None:
+        return Flags("ands", b, a, result, _others(state, i.m, d), NOWHERE, d, carry)
+    if i.op in ("ands", "tst") and b.constant is not None:
+        return Flags("ands", a, b, result, _others(state, i.n, d), NOWHERE, d, carry)
+    return Flags(result=result, result_at=d, carry=carry)
+
+
+def _others(state: State, source: int, d: int) -> tuple[Relative, ...]:
+    """Locations that still hold `source`, or follow from it, when `d` is overwritten."""
+    if not 0 <= source < SP:
+        return ()
+    return tuple(relative for relative in state.relatives_of(source) if relative.location != d)
 
 
 def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
@@ -147,8 +171,8 @@ def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
     result = words.subtract(a, b) if a_at != b_at else words.constant(0)
     after = state.with_value(d, result) if d >= 0 else state
     carry = 1 if a.lowest >= b.highest else 0 if a.highest < b.lowest else None
-    a_at, b_at = (place if place != d and place < SP else NOWHERE for place in (a_at, b_at))
-    return State(after.values, Flags("subtract", a, b, result, a_at, b_at, d, carry))
+    b_at = b_at if b_at != d and b_at < SP else NOWHERE
+    return State(after.values, Flags("subtract", a, b, result, _others(state, a_at, d), b_at, d, carry), after.origins)
 
 
 def _added(i: Instruction, a: Word, b: Word, carry_in: int | None) -> tuple[Word, int | None]:

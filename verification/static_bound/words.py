@@ -163,6 +163,12 @@ def bit_and(a: Word, b: Word) -> Word:
     zeros = (a.known & ~a.bits) | (b.known & ~b.bits)
     ones = a.bits & b.bits
     result = bit_pattern(zeros | ones, ones)
+    for word, mask in ((a, b), (b, a)):
+        if (
+            mask.span == 0 and ~word.known & ~mask.start & MASK == 0
+        ):  # only known bits are taken away: the arc moves as a whole
+            start = (word.start - (word.bits & ~mask.start)) & MASK
+            return _settled(start, word.span, result.known, result.bits) or TOP
     return within(result, 0, min(a.highest, b.highest)) or TOP
 
 
@@ -173,6 +179,8 @@ def bit_or(a: Word, b: Word) -> Word:
 
 def bit_xor(a: Word, b: Word) -> Word:
     """Bitwise exclusive disjunction."""
+    if b.constant == SIGN:
+        return add(a, b)
     known = a.known & b.known
     return bit_pattern(known, (a.bits ^ b.bits) & known)
 
