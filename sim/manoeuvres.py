@@ -1,7 +1,8 @@
 """What the references do over a flight: holds, steps and ramps."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,11 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 
     It starts as a rig does: rotors still, the arm on its lower stop, azimuth at 0.
     """
-    return manoeuvre("flight", at_rest(bound), FLIGHT_S, sample_period_s, (FLIGHT_ELEVATION, FLIGHT_AZIMUTH))
+    steps_rad = [bound.plant.sensors[output] for output in bound.model.outputs]
+    legs = [
+        on_encoder_steps(axis, step) for axis, step in zip((FLIGHT_ELEVATION, FLIGHT_AZIMUTH), steps_rad, strict=True)
+    ]
+    return manoeuvre("flight", at_rest(bound), FLIGHT_S, sample_period_s, legs)
 
 
 def hop(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
@@ -71,6 +76,12 @@ def manoeuvre(
         )
     t_s = np.asarray(np.arange(round(duration_s / sample_period_s) + 1) * sample_period_s, dtype=float)
     return Manoeuvre(name, t_s, np.column_stack([profile_rad(axis, t_s) for axis in legs]), x0)
+
+
+def on_encoder_steps(legs: Sequence[Leg], step_rad: float) -> tuple[Leg, ...]:
+    """The same legs ending on whole encoder steps: asked for an angle between two, an integrating loop hunts from one to the other."""
+    step_deg = math.degrees(step_rad)
+    return tuple(replace(leg, angle_deg=step_deg * round(leg.angle_deg / step_deg)) for leg in legs)
 
 
 def profile_rad(legs: Sequence[Leg], t_s: Array) -> Array:
