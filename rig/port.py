@@ -20,6 +20,8 @@ def open_port(url: str, *, timeout_s: float) -> Any:
     try:
         return serial.serial_for_url(url, baudrate=PROTOCOL.constant("BAUD_RATE"), timeout=timeout_s)
     except (OSError, ValueError) as error:
+        if isinstance(error.__cause__, BadInput):
+            raise error.__cause__ from error  # an emulated board knows better what is wrong
         raise BadInput(
             what="serial port",
             where=url,
