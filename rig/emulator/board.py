@@ -204,6 +204,11 @@ class EmulatedBoard:
         kept = self._lib.emulator_resets(self._machine, causes, times)
         return [Reset(names[causes[i]], times[i] / PS_PER_S) for i in range(kept)]
 
+    @property
+    def resets_total(self) -> int:
+        """How many resets there were, the power-on included."""
+        return int(self._status().resets_total)
+
     def exception_counts(self) -> dict[int, int]:
         """How often each exception number was taken (16 + n is interrupt n)."""
         counts = self._ffi.new("uint64_t[48]")

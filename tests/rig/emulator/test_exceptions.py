@@ -346,7 +346,7 @@ def test_hard_fault_is_entered_at_the_faulting_instruction_when_the_run_shall_no
 
 def test_a_fault_inside_hard_fault_locks_up() -> None:
     source = (
-        HARD_FAULT.replace("PROLOGUE", "nop")
+        HARD_FAULT.replace("PROLOGUE", "cpsid i")
         .replace("CULPRIT", ".short 0xDE00")
         .replace("HANDLER_END", ".short 0xDE00")
     )
