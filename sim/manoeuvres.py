@@ -44,7 +44,7 @@ FLIGHT_ELEVATION = (
     Leg(78.0, -30.0),
     Leg(96.0, 0.0),
 )
-FLIGHT_AZIMUTH = (Leg(0.0, 0.0), Leg(16.0, 30.0), Leg(40.0, -30.0), Leg(68.0, 60.0, 15.0), Leg(88.0, 0.0))
+FLIGHT_AZIMUTH = (Leg(0.0, 0.0), Leg(16.0, 30.0), Leg(40.0, -30.0), Leg(68.0, 60.0, 20.0), Leg(88.0, 0.0))
 FLIGHT_S = 104.0
 
 
