@@ -24,6 +24,14 @@ CONTRACT = {  # columns after t_s as the contract has them, then any of the opti
     "emps": ("u_V,q_m", "q_ref_m", "carriage"),
     "pamh_aeropendulum": ("u_V,theta_rad", "theta_ref_rad", "arm"),
 }
+PUBLISHED = {  # what the authors state, SI
+    "quanser_aero": "dt=0.158 me=0.2 dx=0.016 mpa=0.146 lt=0.165 mrod=0.458 ry=0.02 my=0.526 g=9.81 K_omega=17.38 u_max=24 "
+    "Kmt=1.26e-6 Ktp=1.26e-6 Ktt=1.08e-6 Kmp=1.08e-6 d1=0.0031 d2=0.0075",
+    "aeroshield": "m=0.005 l=0.1 c=0.001 K=0.01 g=9.81",
+    "antx_2dof_drone": "omega_n=2.9499 xi=0.1817 mu=404.87608841 tau=0.0196",
+    "emps": "M=95.11 F_v=203.5 gtau=35.15 u_max=10 F_c=0 offset=0",  # dry friction is published too, and left to be found
+    "pamh_aeropendulum": "b=5.3807 d=0.1984 k=15.657",
+}
 recorded_plant = pytest.mark.parametrize("name", list(CONTRACT))
 
 
@@ -41,6 +49,13 @@ def test_columns_and_axes_are_those_of_the_contract(name: str) -> None:
     assert ",".join((*columns.inputs, *columns.outputs)) == needed
     assert set(optional.split(",")) <= set(columns.optional)
     assert " ".join(columns.axes) == axes
+
+
+@pytest.mark.parametrize("name", list(PUBLISHED))
+def test_nominal_parameters_are_the_published_ones(name: str) -> None:
+    plant = bound(name)
+    stated = dict(item.split("=") for item in PUBLISHED[name].split())
+    assert {key: plant.parameter(key) for key in stated} == {key: float(value) for key, value in stated.items()}
 
 
 @recorded_plant
