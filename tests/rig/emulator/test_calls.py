@@ -5,6 +5,7 @@ import pytest
 
 from records.errors import BadInput
 from rig.emulator.answers import StoppedError
+from rig.emulator.bench import measure
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.stops import StopKind
 from tests.rig.emulator.programs import PRELUDE, build, powered, word
@@ -185,3 +186,11 @@ def test_the_high_water_mark_of_the_stack_counts_exception_frames(board: Emulate
     before = board.stack_bytes
     board.run_for(10_000)
     assert board.stack_bytes >= before + 32
+
+
+def test_the_speed_is_instructions_of_real_work_per_cpu_second(board: EmulatedBoard) -> None:
+    steps = 2000
+    speed = measure(board, "scale", (bits(2.5),), steps)
+    single = board.call("scale", bits(2.5))
+    assert (speed.instructions, speed.cycles) == (steps * single.instructions, steps * single.cycles)
+    assert speed.instructions_per_s == speed.instructions / speed.cpu_s > 0
