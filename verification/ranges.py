@@ -38,18 +38,21 @@ class Motion:
 
 
 def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
-    """Ranges of flight: angles within the stops and moving no faster than the rates, references within their limits, filters
-    within the references' range, and saturation by no more than the span of the limits:
+    """Ranges of flight: angles within the stops and moving no faster than the rates, both as the encoders show them, references
+    within their limits, filters within the references' range, and saturation by no more than the span of the limits:
 
-        e in x_2 - angle                    |delta e| <= rate Ts + b span(x)     |delta^2 e| <= 2 |delta e|
-        s = limited u - u_ff                |delta s| <= span(s)                 |delta^2 s| <= 2 |delta s|
-        |w| <= span of the limits           |delta w| <= 2 |w|                   |delta^2 w| <= 2 |delta w|       v = s + w
+        e in x_2 - angle                    |delta e| <= rate Ts + step + b span(x)   |delta^2 e| <= 2 |delta e|
+        s = limited u - u_ff                |delta s| <= span(s)                      |delta^2 s| <= 2 |delta s|
+        |w| <= span of the limits           |delta w| <= 2 |w|                        |delta^2 w| <= 2 |delta w|
+        v = s + w
 
-    Beyond such saturation an output stands at its limit by more than its span, and rounding cannot move it.
+    A step that starts outside, after a harder saturation say, is not covered; `share_within` tells how many of a flight's did.
     """
-    elevation = _axis_ranges(table, table.elevation, motion.psi_limit_rad, motion.psi_rate_rad_s)
-    azimuth = _axis_ranges(table, table.azimuth, motion.phi_limit_rad, motion.phi_rate_rad_s)
-    psi_rad, phi_rad = _around_zero(motion.psi_limit_rad), _around_zero(motion.phi_limit_rad)
+    psi_limit_rad = motion.psi_limit_rad + table.elevation.resolution_rad
+    phi_limit_rad = motion.phi_limit_rad + table.azimuth.resolution_rad
+    elevation = _axis_ranges(table, table.elevation, psi_limit_rad, motion.psi_rate_rad_s)
+    azimuth = _axis_ranges(table, table.azimuth, phi_limit_rad, motion.phi_rate_rad_s)
+    psi_rad, phi_rad = _around_zero(psi_limit_rad), _around_zero(phi_limit_rad)
     psi_ref_rad, phi_ref_rad = _reference(table.elevation), _reference(table.azimuth)
     return LawRanges(
         LawState(elevation, azimuth, psi_rad, phi_rad, psi_ref_rad, phi_ref_rad),
@@ -67,7 +70,8 @@ def share_within(ranges: LawRanges, states: NDArray[np.uint32]) -> float:
 def _axis_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_rad_s: float) -> AxisState[Range]:
     low_rad, high_rad = _reference(axis)
     gain = prefilter_gain(axis.prefilter_time_constant_s, table.sample_period_s)
-    move_rad = _SLACK * (rate_rad_s * table.sample_period_s + gain * (high_rad - low_rad))
+    measured_move_rad = rate_rad_s * table.sample_period_s + axis.resolution_rad
+    move_rad = _SLACK * (measured_move_rad + gain * (high_rad - low_rad))
     psi_ref_rad = np.linspace(*_reference(table.elevation), 201)
     u_ff_V = np.polynomial.polynomial.polyval(psi_ref_rad, axis.feedforward_V)
     span_V = _SLACK * (axis.u_max_V - axis.u_min_V)
