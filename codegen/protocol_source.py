@@ -4,7 +4,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from records.protocol import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
+from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
 

@@ -5,7 +5,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from records.protocol import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
+from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 from rig.cobs import cobs_decode, cobs_encode
 
 Value = int | bytes

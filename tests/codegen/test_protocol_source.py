@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from codegen.protocol_source import protocol_source
-from records.protocol import PROTOCOL, Message, canonical_text
+from records.protocol import PROTOCOL
+from records.wire import Message, canonical_text
 from rig.frames import encode_frame, parse_content
 from toolchain.host import CText, build_shared, load_shared
 

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from records.protocol import MAX_PAYLOAD_SIZE, PROTOCOL, U8, Field, Protocol
+from records.protocol import PROTOCOL
+from records.wire import MAX_PAYLOAD_SIZE, U8, Field, Protocol
 
 
 def test_codes_and_names_are_unique():
