@@ -1,7 +1,7 @@
 """The emulated STM32G071 board: the unmodified ELF runs on it in virtual time."""
 
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,12 +33,14 @@ class EmulatedBoard:
     def __init__(self, elf: bytes | Path, config: BoardConfig | None = None) -> None:
         self.config = config or BoardConfig()
         self._ffi, self._lib = library()
+        self._finalizer: Callable[[], object] = lambda: None
         self.load(elf)
 
     def load(self, elf: bytes | Path) -> None:
         """Put another image into flash and power the board up afresh; raises BadInput for what is no image."""
         self.image = Image(elf, "image in memory") if isinstance(elf, bytes) else Image.from_file(elf)
         config = self.config
+        self._finalizer()
         machine = self._lib.emulator_create(self.image.flash, FLASH_BYTES, list(config.unique_id))
         self._finalizer = weakref.finalize(self, self._lib.emulator_destroy, machine)
         self._machine = machine

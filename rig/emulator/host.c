@@ -21,6 +21,7 @@ machine *emulator_create(const uint8_t *flash, uint32_t bytes, const uint32_t *u
     m->device.host.to_board = line_create();
     m->device.host.to_host = line_create();
     m->device.host.inbox = inbox_create();
+    m->count.lowest_sp[MAIN_STACK] = m->count.lowest_sp[PROCESS_STACK] = UINT32_MAX;
     m->stop_on_fault = true;
     return m;
 }
@@ -135,8 +136,6 @@ uint32_t emulator_resets(machine *m, uint32_t *causes, uint64_t *times_ps) {
     }
     return kept;
 }
-
-void emulator_clear_stack_mark(machine *m) { m->count.lowest_sp[MAIN_STACK] = m->core.control & 2u && !m->core.ipsr ? m->core.other_sp : m->core.r[13]; }
 
 void emulator_send(machine *m, const uint8_t *bytes, uint32_t count, uint64_t earliest_ps) {
     for (uint32_t i = 0; i < count; i++) host_send(m, bytes[i], earliest_ps);

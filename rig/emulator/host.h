@@ -32,7 +32,6 @@ void emulator_break(machine *m, uint32_t address, uint32_t set);
 void emulator_execution_counts(machine *m, uint64_t *flash, uint64_t *sram);
 void emulator_exception_counts(machine *m, uint64_t *out);
 uint32_t emulator_resets(machine *m, uint32_t *causes, uint64_t *times_ps);
-void emulator_clear_stack_mark(machine *m);
 
 void emulator_call(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles, call_report *out);
 uint32_t emulator_call_many(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles, uint32_t steps,

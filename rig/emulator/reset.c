@@ -6,9 +6,9 @@
 #include "fault.h"
 #include "peripherals.h"
 #include "schedule.h"
+#include "stack_guard.h"
 
 #define RCC_CSR 24u
-#define RESET_CYCLES 0u /* the internal reset pulse of 20 us is not modelled */
 
 static uint32_t word_at(const machine *m, uint32_t offset) {
     uint32_t word;
@@ -29,7 +29,7 @@ static void core_reset(machine *m) {
     m->core = (core_state){.now = now, .z = 1};
     m->core.r[13] = word_at(m, 0) & ~3u;
     m->core.r[14] = 0xFFFFFFFFu;
-    if (m->count.lowest_sp[MAIN_STACK] > m->core.r[13] || m->count.lowest_sp[MAIN_STACK] == 0) m->count.lowest_sp[MAIN_STACK] = m->core.r[13];
+    stack_reaches(m, MAIN_STACK, m->core.r[13]);
     go_to(m, word_at(m, 4));
 }
 

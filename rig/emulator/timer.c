@@ -5,7 +5,7 @@
 #include "peripherals.h"
 #include "schedule.h"
 
-enum { CR1 = 0, CR2 = 1, SMCR = 2, DIER = 3, SR = 4, EGR = 5, CCMR1 = 6, CCMR2 = 7, CNT = 9, PSC = 10, ARR = 11, RCR = 12, LAST_CCR = 16, BDTR = 17 };
+enum { CR1 = 0, SMCR = 2, DIER = 3, SR = 4, EGR = 5, CNT = 9, PSC = 10, ARR = 11, RCR = 12 }; /* word offsets */
 enum { CEN = 1, UDIS = 2, URS = 4, OPM = 8, DIR = 0x10, CMS = 0x60, ARPE = 0x80 };
 enum { UIF = 1, UIE = 1, UG = 1 };
 

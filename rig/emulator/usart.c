@@ -30,7 +30,10 @@ static uint64_t bit_cycles(const machine *m) {
     return u->cr1 & OVER8 ? cycles / 2 : cycles;
 }
 
-static uint64_t bit_ps(const machine *m) { return time_of_cycle_ps(m, m->device.clock.base_cycle + bit_cycles(m)) - m->device.clock.base_ps; }
+static uint64_t bit_ps(const machine *m) {
+    const clock_state *clock = &m->device.clock;
+    return time_of_cycle_ps(m, clock->base_cycle + bit_cycles(m)) - clock->base_ps;
+}
 
 static bool sends(const usart_state *u) { return (u->cr1 & (UE | TE)) == (UE | TE) && u->brr >= 16; }
 static bool receives(const usart_state *u) { return (u->cr1 & (UE | RE)) == (UE | RE) && u->brr >= 16; }

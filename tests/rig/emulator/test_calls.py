@@ -167,6 +167,13 @@ def test_the_same_input_gives_the_same_cycles_and_the_same_counters() -> None:
     assert flown() == flown()
 
 
+def test_another_image_starts_the_board_afresh(board: EmulatedBoard) -> None:
+    board.run_for(10_000)
+    board.load(build("calls", SOURCE).read_bytes())
+    assert (board.cycles, board.stack_bytes, word(board, "ticks")) == (0, 0, 0)
+    assert board.call("divide", 6, 3).result == 2
+
+
 def test_two_boards_live_side_by_side(board: EmulatedBoard) -> None:
     other = powered("calls", SOURCE)
     board.run_for(10_000)

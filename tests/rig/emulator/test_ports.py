@@ -108,6 +108,15 @@ def test_a_pseudo_terminal_opened_at_another_speed_garbles(echo: Path) -> None:
         assert opened.read(8) != b"uxjo!mbx"
 
 
+def test_a_board_that_talks_to_nobody_neither_hangs_nor_stops() -> None:
+    chatter = build(
+        "chatter", START + "void Reset_Handler(void) { usart_start(1 | 8); for (;;) TDR = 0x55; } VECTORS(0);"
+    )
+    with PtyBoard(chatter) as board, serial.Serial(board.path, baudrate=BAUD, timeout=5) as opened:
+        assert opened.read(20_000) == b"U" * 20_000
+    assert board.stop is None
+
+
 def test_a_missing_image_and_a_foreign_file_are_refused_in_one_line(tmp_path: Path) -> None:
     register_emulated_ports()
     foreign = tmp_path / "foreign.elf"
