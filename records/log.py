@@ -181,6 +181,11 @@ def _check_numbers(data: Mapping[str, Array], where: str, columns: LogColumns) -
                 "a finite number",
                 "remove the row",
             )
+    if "seq" in data and np.any(data["seq"] != np.round(data["seq"])):
+        row = int(np.flatnonzero(data["seq"] != np.round(data["seq"]))[0])
+        raise BadInput(
+            "column 'seq'", f"{where}, line {row + 2}", repr(float(data["seq"][row])), "a whole number", "mend the row"
+        )
     for name in (*columns.outputs, *(name for name in columns.optional if name in data)):
         bad = np.flatnonzero(np.isinf(data[name]))
         if bad.size:

@@ -1,0 +1,134 @@
+"""Run logs: what is written reads back, and every way of being wrong is one clear line."""
+
+import numpy as np
+import pytest
+
+from records.errors import BadInput
+from records.log import LogColumns, RunLog, csv_text, load_log, plant_of_log, save_log
+
+COLUMNS = LogColumns(
+    "ce150", ("u_M_V", "u_T_V"), ("psi_rad", "phi_rad"), ("omega_M_rad_s", "psi_ref_rad"), ("elevation", "azimuth")
+)
+SIDECAR = """schema = "run-log/1"
+plant = "ce150"
+sample_period_s = 0.01
+loop = "closed"
+locked = []
+"""
+HEADER = "t_s,u_M_V,u_T_V,psi_rad,phi_rad\n"
+ROWS = "0.0,5.0,1.8,-0.1,0.0\n0.01,5.1,1.9,-0.09,0.001\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """A good log, as its two texts; returns a function that writes it with changes and reads it."""
+
+    def read(csv=HEADER + ROWS, sidecar=SIDECAR):
+        if csv is not None:
+            (tmp_path / "a.csv").write_text(csv) if isinstance(csv, str) else (tmp_path / "a.csv").write_bytes(csv)
+        if sidecar is not None:
+            (tmp_path / "a.toml").write_text(sidecar)
+        return load_log(tmp_path / "a.csv", COLUMNS)
+
+    return read
+
+
+def random_log(seed=0, rows=50):
+    random = np.random.default_rng(seed)
+    y = random.normal(size=(rows, 2))
+    y[3, 1] = np.nan
+    t_s = np.cumsum(random.uniform(0.005, 0.015, rows))
+    return RunLog(
+        COLUMNS, 0.01, "closed", t_s, random.normal(size=(rows, 2)), y,
+        extra={"psi_ref_rad": random.normal(size=rows)}, seq=np.arange(7, 7 + rows), locked=("azimuth",), table_digest="ab12",
+    )  # fmt: skip
+
+
+def test_a_log_reads_back_exactly_with_its_jitter_gaps_and_nan(tmp_path):
+    log = random_log()
+    save_log(tmp_path / "run.csv", log)
+    back = load_log(tmp_path / "run.csv", COLUMNS)
+    for name in ("t_s", "u", "y", "seq"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(log, name))
+    np.testing.assert_array_equal(back.column("psi_ref_rad"), log.extra["psi_ref_rad"])
+    assert (back.sample_period_s, back.loop, back.locked, back.table_digest) == (0.01, "closed", ("azimuth",), "ab12")
+    assert csv_text(back) == csv_text(log)
+    assert plant_of_log(tmp_path / "run.csv") == "ce150"
+
+
+def test_columns_are_found_by_name_whatever_their_order(files):
+    log = files("phi_rad,t_s,psi_rad,u_T_V,u_M_V,omega_M_rad_s\n4,0,3,2,1,400\n")
+    assert [
+        float(log.column(name)[0]) for name in ("t_s", "u_M_V", "u_T_V", "psi_rad", "phi_rad", "omega_M_rad_s")
+    ] == [0, 1, 2, 3, 4, 400]
+    assert log.seq is None
+
+
+def test_an_empty_cell_of_an_output_is_a_value_that_was_not_measured(files):
+    assert np.isnan(files(HEADER + "0,5,1.8,,0\n").y[0, 0])
+
+
+@pytest.mark.parametrize(
+    ("csv", "message"),
+    [
+        ("", r"a\.csv: run log: got an empty file, expected a header and rows"),
+        (HEADER, "got a header only"),
+        (b"\xff\xfe\x00rubbish", "got no text"),
+        ("t_s,u_M_V,psi_rad,phi_rad\n0,5,0,0\n", "column 'u_T_V': got nothing"),
+        (
+            HEADER.replace("phi_rad", "phi_rad,altitude_m") + "0,5,1,0,0,7\n",
+            "column 'altitude_m': got an unknown column",
+        ),
+        (HEADER.replace("phi_rad", "phi_rad,phi_rad") + "0,5,1,0,0,7\n", "header: got a column twice"),
+        (HEADER + ROWS + "0.02,5.0,1.8\n", r"line 4: row: got 3 cells, expected 5"),
+        (HEADER + "0,5\n0.01,5\n", r"line 2: row: got 2 cells, expected 5"),
+        (HEADER + ROWS + "0.02,5.0,up,0,0\n", r"line 4: number: got 'up'"),
+        (HEADER + ROWS + "0.01,5,1,0,0\n", r"line 4: t_s: got 0\.01 after 0\.01, expected a time that increases"),
+        (HEADER + ROWS + "0.005,5,1,0,0\n", r"line 4: t_s: got 0\.005 after 0\.01"),
+        (HEADER + "nan,5,1,0,0\n", r"line 2: column 't_s': got nan"),
+        (HEADER + ROWS + "0.02,nan,1,0,0\n", r"line 4: column 'u_M_V': got nan, expected a finite number"),
+        (HEADER + ROWS + "0.02,inf,1,0,0\n", r"line 4: column 'u_M_V': got inf"),
+        (HEADER + ROWS + "0.02,5,1,inf,0\n", r"line 4: column 'psi_rad': got an infinity"),
+        ("seq," + HEADER + "0.5,0,5,1,0,0\n", r"line 2: column 'seq': got 0\.5, expected a whole number"),
+        (None, r"a\.csv: run log: got No such file"),
+    ],
+)
+def test_a_wrong_csv_is_refused_with_its_line(files, csv, message):
+    with pytest.raises(BadInput, match=message):
+        files(csv=csv)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("run-log/1", "run-log/9", r"a\.toml: schema: schema: got 'run-log/9', expected 'run-log/1'"),
+        ('"ce150"', '"aeroshield"', "plant: got 'aeroshield', expected 'ce150'"),
+        ('"ce150"', "3", "plant: text: got 3"),
+        ("0.01", "0.0", "sample_period_s: number: got 0.0, expected a number above 0"),
+        ("0.01", "nan", "expected a finite number"),
+        ("0.01", '"10 ms"', "expected a finite number"),
+        ('"closed"', '"half"', "loop: got 'half', expected 'open' or 'closed'"),
+        ("[]", '["roll"]', r"locked: got \['roll'\], expected a list of elevation, azimuth"),
+        ("[]", '"azimuth"', "locked: got 'azimuth'"),
+        ("locked = []\n", "", "key 'locked': got nothing"),
+        ("locked = []\n", "locked = []\nwind = 3\n", "key 'wind': got an unknown key"),
+        ("locked = []\n", "locked = []\n[controller]\n", "key 'table_digest': got nothing"),
+        ("locked = []\n", 'locked = []\n[controller]\ntable_digest = ""\n', "table_digest: text: got ''"),
+        ("locked = []\n", "locked = [\n", "got no TOML"),
+    ],
+)
+def test_a_wrong_sidecar_is_refused_with_its_key(files, old, new, message):
+    with pytest.raises(BadInput, match=message):
+        files(sidecar=SIDECAR.replace(old, new))
+
+
+def test_a_log_without_its_sidecar_is_refused(files):
+    with pytest.raises(BadInput, match=r"a\.toml: sidecar of the run log: got No such file"):
+        files(sidecar=None)
+
+
+def test_where_the_sidecar_cannot_be_written_no_log_stays_behind(tmp_path):
+    (tmp_path / "run.toml").mkdir()
+    with pytest.raises(BadInput, match="output file"):
+        save_log(tmp_path / "run.csv", random_log())
+    assert not (tmp_path / "run.csv").exists()
