@@ -132,8 +132,19 @@ def test_the_loop_answers_each_sample_with_the_bits_of_the_law():
     controller.reset(0.0, 0.0)
     assert controller.step(0.25, 0.0, 0.125, 0.0) == (1.25, pytest.approx(0.001, rel=1e-6))
     assert port.box.view.steps == 1
+    assert controller.step(0.25, 0.0, 0.125, 0.0)[1] == pytest.approx(0.002, rel=1e-6)
     controller.reset(0.5, -0.5)
-    assert (port.box.view.steps, port.box.view.psi_start_rad) == (0, 0.5)
+    controller.step(0.25, 0.0, 0.125, 0.0)
+    assert (port.box.view.steps, port.box.view.psi_start_rad, port.box.view.phi_start_rad) == (1, 0.5, -0.5)
+
+
+def test_a_host_that_needs_long_before_its_first_sample_is_not_lost():
+    port = BoxPort()
+    controller = BoardController(client_over(port))
+    controller.reset(0.0, 0.0)
+    for _ in range(LOSS + RAMP):
+        port.tick()
+    assert controller.step(0.25, 0.0, 0.125, 0.0)[0] == 1.25
 
 
 @pytest.mark.parametrize("direction", ["to_board", "to_host"])
@@ -220,6 +231,7 @@ def test_a_board_that_lost_its_host_refuses_samples_with_the_remedy():
     port = BoxPort()
     controller = BoardController(client_over(port))
     controller.reset(0.0, 0.0)
+    controller.step(0.0, 0.0, 0.0, 0.0)
     for _ in range(LOSS + RAMP):
         port.tick()
     error = refusal(lambda: controller.step(0.0, 0.0, 0.0, 0.0))
@@ -234,6 +246,7 @@ def test_the_loop_is_back_within_ten_frames_after_the_line_heals():
     port = BoxPort(to_board=lambda line: b"" if down else line)
     controller = BoardController(client_over(port))
     controller.reset(0.0, 0.0)
+    controller.step(0.0, 0.0, 0.0, 0.0)
     down = True
     for _ in range(LOSS + RAMP):
         port.tick()
