@@ -56,6 +56,14 @@ class Oracle:
         after = self.uc.reg_read_batch(GENERAL + SPECIAL)
         return Outcome(False, normal(after))
 
+    def call(self, address: int, arguments: Sequence[int]) -> int:
+        """r0 after a whole function."""
+        back = FLASH_BASE + FLASH_BYTES - 16
+        registers = [*arguments, *[0] * (13 - len(arguments)), SRAM_BASE + SRAM_BYTES, back | 1, address]
+        self.uc.reg_write_batch(list(zip(GENERAL, registers, strict=True)))
+        self.uc.emu_start(address | 1, back)
+        return int(self.uc.reg_read(GENERAL[0]))
+
 
 def normal(after: Sequence[int]) -> tuple[int, ...]:
     """Comparable form: flags only of xPSR; SP, MSP and PSP without the two low bits, which unicorn wrongly keeps."""

@@ -8,7 +8,7 @@ from rig.emulator.board import EmulatedBoard
 from rig.emulator.image import FLASH_BASE, SRAM_BASE, SRAM_BYTES
 from rig.emulator.stops import StopKind
 from tests.rig.emulator.oracle import Oracle, board_step
-from tests.rig.emulator.programs import build
+from tests.rig.emulator.programs import build, powered
 from tests.rig.emulator.thumb import (
     CLASSES,
     HIGH_CLASSES,
@@ -21,6 +21,16 @@ from tests.rig.emulator.thumb import (
 SHARDS, SLOTS, VISITS = 4, 6900, 8  # 220 800 instructions, of which some 7 % are unaligned accesses
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
 STRIDE = 8
+SOFT = """
+__attribute__((used, noinline)) float scale(uint32_t a, uint32_t b) {
+    union { uint32_t word; float value; } x = {a}, y = {b};
+    return (x.value + y.value) / (x.value * y.value - 0.3f);
+}
+__attribute__((used, noinline)) int32_t divide(int32_t a, int32_t b) { return b ? a / b : a; }
+__attribute__((used, noinline)) int32_t product(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 27); }
+void Reset_Handler(void) { for (;;) {} }
+VECTORS(0);
+"""
 IDLE = "void Reset_Handler(void) { for (;;) {} }\nVECTORS(0);"
 
 
@@ -73,3 +83,14 @@ def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicor
     assert compared >= 50_000
     assert set(executed) == {*CLASSES, *HIGH_CLASSES, *LONG_CLASSES}
     assert min(executed.values()) > 100, executed
+
+
+@pytest.mark.parametrize("name", ["scale", "divide", "product"])
+def test_compiled_functions_of_soft_arithmetic_return_the_same_words_as_in_unicorn(name: str) -> None:
+    board = powered("soft", SOFT)
+    oracle = Oracle(board.image.flash)
+    words = np.random.default_rng(7).integers(0, 2**32, (300, 2)).tolist()
+    corners = [0, 1, 0x7F800000, 0xFF800000, 0x7FC00000, 0x00800000, 0x007FFFFF, 0x80000000, 0x3F800000, 0xFFFFFFFF]
+    for first, second in [*words, *[(a, b) for a in corners for b in corners]]:
+        ours = board.call(name, first, second).result
+        assert ours == oracle.call(board.symbol(name)[0], [first, second]), (name, hex(first), hex(second))

@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from rig.emulator.answers import BoardConfig
@@ -160,3 +161,26 @@ def test_features_that_are_not_modelled_stop_with_the_register_named(feature: st
     stop = powered("feature", START + source).run_for(1000)
     assert stop.kind == StopKind.UNMODELLED
     assert feature[:10] in stop.message
+
+
+BUSY_ECHO = (
+    ECHO.replace('__asm volatile("wfi");', "count = count;")
+    .replace("got[count]", "got[0]")
+    .replace("flags[count]", "flags[0]")
+)
+
+
+@pytest.mark.parametrize("source", [ECHO, BUSY_ECHO], ids=["asleep between bytes", "always awake"])
+def test_what_happens_does_not_depend_on_how_a_run_is_cut_into_slices(source: str) -> None:
+    def final(slices: int) -> tuple[object, ...]:
+        board = powered(f"slices{len(source)}", START + source)
+        board.uart_write(b"0123456789", earliest_s=1e-3)
+        rng = np.random.default_rng(slices)
+        for t_s in sorted(rng.uniform(0, 2e-3, slices)):
+            board.run_until_s(t_s)
+        board.run_until_s(2e-3)
+        return board.registers(), board.cycles, board.instructions, board.uart_read_timed(), board.exception_counts()
+
+    whole = final(0)
+    assert len(whole[3]) == 10  # type: ignore[arg-type]
+    assert final(700) == whole
