@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import ModuleType
 
-from twinlaw.verbs import build, design, flash, generate, run, simulate, validate, verify
+from twinlaw.verbs import bench, blind, build, design, flash, generate, import_record, run, simulate, validate, verify
 
 VERBS: Mapping[str, ModuleType] = {
     "run": run,
@@ -14,4 +14,7 @@ VERBS: Mapping[str, ModuleType] = {
     "simulate": simulate,
     "flash": flash,
     "validate": validate,
+    "import": import_record,
+    "blind": blind,
+    "bench": bench,
 }
