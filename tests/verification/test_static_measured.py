@@ -39,6 +39,7 @@ def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
 
 
 # How far the bound may lie above the dearest of 4 000 inputs: paths that exclude each other beyond what sets of words can show.
+LAW_CLOSENESS = 2.2
 CLOSENESS = {"sum": 1.2, "product": 1.2, "ratio": 1.2, "less": 1.1, "whole": 1.1, "as_float": 1.1}
 
 
@@ -63,6 +64,12 @@ def test_the_passes_of_a_division_follow_from_its_code() -> None:
     assert dearest <= bound.cycles_bound <= 1.2 * dearest
 
 
+def subnormals(rng: np.random.Generator, shape: tuple[int, int]) -> Words:
+    """Subnormals alone: the slow paths of products and sums, in every one of them."""
+    bits = rng.integers(1, 0x800000, shape, dtype=np.uint32) >> rng.integers(0, 8, shape).astype(np.uint32)
+    return bits | rng.integers(0, 2, shape, dtype=np.uint32) << 31
+
+
 def test_one_step_of_the_law_never_costs_more_than_its_bound() -> None:
     table = ce150_table()
     elf = build_firmware(generate_law(table)).elf
@@ -70,10 +77,10 @@ def test_one_step_of_the_law_never_costs_more_than_its_bound() -> None:
     for stimulus in standard_stimuli(table, 20_000):
         states = law.start(stimulus.angles) if stimulus.states is None else stimulus.states
         law.run(states, stimulus.inputs)
-    ordinary = law.cycles_max
-    words = nasty_floats(np.random.default_rng(SEED), (20_000, STATE_WORDS + 4))
-    law.run(words[:, :STATE_WORDS], words[np.newaxis, :, STATE_WORDS:])
+    ordinary, rng = law.cycles_max, np.random.default_rng(SEED)
+    for words in (nasty_floats(rng, (10_000, STATE_WORDS + 4)), subnormals(rng, (10_000, STATE_WORDS + 4))):
+        law.run(words[:, :STATE_WORDS], words[np.newaxis, :, STATE_WORDS:])
     assert law.cycles_max > ordinary  # the stimuli of the equality tests do not look for the dearest step
-    assert law.cycles_max <= bound.cycles_bound <= 1.6 * law.cycles_max
+    assert law.cycles_max <= bound.cycles_bound <= LAW_CLOSENESS * law.cycles_max
     assert law.stack_bytes == bound.stack_bytes
     assert sum(share.cycles for share in bound.path) == bound.cycles_bound
