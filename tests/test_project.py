@@ -10,7 +10,19 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
-PACKAGES = ("records", "toolchain", "sim", "recordings", "design", "codegen", "verification", "rig", "blind", "twinlaw")
+PACKAGES = (
+    "records",
+    "toolchain",
+    "sim",
+    "recordings",
+    "design",
+    "codegen",
+    "verification",
+    "rig",
+    "diagnosis",
+    "blind",
+    "twinlaw",
+)
 
 
 def _run(*command: str) -> subprocess.CompletedProcess[str]:

@@ -1,0 +1,273 @@
+"""What a diagnosis found, as diagnosis.json states it (schema diagnosis/1 of CONTRACT.md)."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from records import checks
+from records.errors import BadInput
+from records.files import write_atomic
+
+SCHEMA = "diagnosis/1"
+VERDICTS = ("gap", "no gap", "cannot tell")
+SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class PlaceShare:
+    """How much of the gap lies at a place of the plant ("azimuth", "main_input", "loop")."""
+
+    place: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Span:
+    """How much of the gap lies between two times."""
+
+    start_s: float
+    end_s: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Region:
+    """How much of the gap lies where a signal is between two values, in the signal's unit."""
+
+    signal: str
+    from_: float
+    to: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Band:
+    """How much of the gap lies between two frequencies."""
+
+    from_Hz: float
+    to_Hz: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Firmware:
+    """The controller's own code run again on the log; `cause` is one sentence, None where nothing differs."""
+
+    replayed: bool
+    bit_exact: bool
+    first_difference_s: float | None
+    cause: str | None
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An estimated parameter of an effect, one standard deviation and its unit."""
+
+    value: float
+    sd: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One effect or several jointly ("a.b + c.d"), what it depends on and acts on, how probable it is, and what looks the same."""
+
+    effect: str
+    class_: str
+    probability: float
+    parameters: Mapping[str, Estimate]
+    ambiguous_with: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """The chance that no candidate explains the gap; where it acts and on what it depends, None where there is nothing to place."""
+
+    probability: float
+    place: str | None = None
+    class_: str | None = None
+
+
+@dataclass(frozen=True)
+class Shrinkage:
+    """Errors of prediction on the hold-out logs by output, and which share of the removable error the effects remove."""
+
+    rms_nominal: Mapping[str, float]
+    rms_before: Mapping[str, float]
+    rms_after: Mapping[str, float]
+    rms_floor: Mapping[str, float]
+    fraction: float | None
+    fraction_ci95: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """All of diagnosis.json; `firmware` is None where no log names a table, `shrinkage` where there is no hold-out log."""
+
+    verdict: str
+    false_alarm_probability: float | None
+    places: tuple[PlaceShare, ...] = ()
+    when: tuple[Span, ...] = ()
+    regions: tuple[Region, ...] = ()
+    bands: tuple[Band, ...] = ()
+    firmware: Firmware | None = None
+    effects: tuple[Hypothesis, ...] = ()
+    unknown: Unknown = Unknown(0.0)
+    found: tuple[str, ...] = ()
+    shrinkage: Shrinkage | None = None
+    next_experiment: Mapping[str, Any] | None = None
+    notes: tuple[str, ...] = ()
+
+
+def diagnosis_text(diagnosis: Diagnosis) -> str:
+    """The record as JSON text in the form of CONTRACT.md; raises BadInput for a number out of its range."""
+    _check(diagnosis, "diagnosis")
+    try:
+        return json.dumps({"schema": SCHEMA, **_plain(diagnosis)}, indent=1, allow_nan=False) + "\n"
+    except ValueError as error:
+        raise BadInput("number", "diagnosis", str(error), "finite numbers", "write null for what is unknown") from error
+
+
+def save_diagnosis(path: Path, diagnosis: Diagnosis) -> None:
+    """Write diagnosis.json; raises BadInput when it is unwritable or out of range."""
+    write_atomic(path, diagnosis_text(diagnosis))
+
+
+def load_diagnosis(path: Path) -> Diagnosis:
+    """Read diagnosis.json; raises BadInput naming file, key and remedy."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInput(
+            "diagnosis", str(path), error.strerror or str(error), "a readable file", "run `twinlaw diagnose`"
+        ) from error
+    except ValueError as error:
+        raise BadInput("diagnosis", str(path), f"no JSON ({error})", "a whole file", "diagnose again") from error
+    return parse_diagnosis(checks.table(content, str(path)), str(path))
+
+
+def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
+    """A diagnosis from the content of its file; raises BadInput."""
+    checks.schema(content, f"{where}: schema", SCHEMA)
+    checks.keys(content, where, ("schema", *(_json_name(field.name) for field in fields(Diagnosis))))
+    p = content["false_alarm_probability"]
+    diagnosis = Diagnosis(
+        verdict=checks.text(content["verdict"], f"{where}: verdict"),
+        false_alarm_probability=None if p is None else checks.number(p, f"{where}: false_alarm_probability"),
+        places=_list(PlaceShare, content, "places", where),
+        when=_list(Span, content, "when", where),
+        regions=_list(Region, content, "regions", where),
+        bands=_list(Band, content, "bands", where),
+        firmware=_optional(Firmware, content, "firmware", where),
+        effects=_list(Hypothesis, content, "effects", where),
+        unknown=_record(Unknown, content["unknown"], f"{where}: unknown"),
+        found=_texts(content["found"], f"{where}: found"),
+        shrinkage=_optional(Shrinkage, content, "shrinkage", where),
+        next_experiment=None
+        if content["next_experiment"] is None
+        else checks.table(content["next_experiment"], f"{where}: next_experiment"),
+        notes=_texts(content["notes"], f"{where}: notes"),
+    )
+    _check(diagnosis, where)
+    return diagnosis
+
+
+def _check(diagnosis: Diagnosis, where: str) -> None:
+    """Probabilities within 0..1, shares that sum to 1, known verdict."""
+    if diagnosis.verdict not in VERDICTS:
+        expected = " or ".join(map(repr, VERDICTS))
+        raise BadInput("verdict", where, repr(diagnosis.verdict), expected, "give one of these")
+    ranked = [hypothesis.probability for hypothesis in diagnosis.effects]
+    for p in (*ranked, diagnosis.unknown.probability, diagnosis.false_alarm_probability or 0.0):
+        if not 0.0 <= p <= 1.0:
+            raise BadInput("probability", where, repr(p), "a number from 0 to 1", "check how it was computed")
+    for name in ("places", "when", "regions", "bands"):
+        shares = [entry.share for entry in getattr(diagnosis, name)]
+        if any(not 0.0 <= share <= 1.0 + SHARE_TOLERANCE for share in shares):
+            raise BadInput(f"share of {name}", where, repr(shares), "numbers from 0 to 1", "scale them by their sum")
+    total = sum(entry.share for entry in diagnosis.places)
+    if diagnosis.places and abs(total - 1.0) > SHARE_TOLERANCE:
+        raise BadInput("shares of places", where, f"a sum of {total:g}", "a sum of 1", "scale them by their sum")
+
+
+def _plain(value: Any) -> Any:
+    """A record as JSON knows it: mappings, lists, numbers and texts."""
+    if is_dataclass(value):
+        return {_json_name(field.name): _plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    return value
+
+
+def _json_name(name: str) -> str:
+    """`class_` and `from_` are `class` and `from` in the file, which Python keeps for itself."""
+    return name.removesuffix("_")
+
+
+def _optional(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> T | None:
+    return None if content[key] is None else _record(kind, content[key], f"{where}: {key}")
+
+
+def _list(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> tuple[T, ...]:
+    entries = content[key]
+    if not isinstance(entries, list):
+        raise BadInput(key, where, repr(entries)[:60], "a list", "write [] where there is none")
+    return tuple(_record(kind, entry, f"{where}: {key}[{index}]") for index, entry in enumerate(entries))
+
+
+def _record(kind: type[T], entry: Any, where: str) -> T:
+    """A record whose keys are the fields of `kind`, each read as its annotation says."""
+    section = checks.table(entry, where)
+    names = {_json_name(field.name): field for field in fields(kind)}  # type: ignore[arg-type]
+    checks.keys(section, where, names)
+    return kind(**{field.name: _READ[str(field.type)](section[key], f"{where}.{key}") for key, field in names.items()})
+
+
+def _flag(value: Any, where: str) -> bool:
+    if not isinstance(value, bool):
+        raise BadInput("flag", where, repr(value), "true or false", "write one of these")
+    return value
+
+
+def _texts(value: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise BadInput("list of texts", where, repr(value)[:60], "a list", "write [] where there is none")
+    return tuple(checks.text(entry, f"{where}[{index}]") for index, entry in enumerate(value))
+
+
+def _numbers_by_name(value: Any, where: str) -> Mapping[str, float]:
+    return {name: checks.number(entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
+
+
+def _estimates(value: Any, where: str) -> Mapping[str, Estimate]:
+    return {name: _record(Estimate, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
+
+
+def _interval(value: Any, where: str) -> tuple[float, float]:
+    low, high = checks.numbers(value, where, 2)
+    return low, high
+
+
+def _or_none(read: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
+    return lambda value, where: None if value is None else read(value, where)
+
+
+_READ: Mapping[str, Callable[[Any, str], Any]] = {
+    str(annotation): read
+    for annotation, read in (
+        (str, checks.text),
+        (float, checks.number),
+        (bool, _flag),
+        (str | None, _or_none(checks.text)),
+        (float | None, _or_none(checks.number)),
+        (tuple[str, ...], _texts),
+        (tuple[float, float] | None, _or_none(_interval)),
+        (Mapping[str, float], _numbers_by_name),
+        (Mapping[str, Estimate], _estimates),
+    )
+}
