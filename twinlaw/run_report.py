@@ -1,7 +1,7 @@
 """The report of `twinlaw run`: what was designed, what was verified, and how it flew."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ def run_page(
     sizes: ImageSizes,
     log: RunLog,
     tracking: Sequence[Tracking],
-    counters: Sequence[summary.Row],
+    counters: Mapping[str, int],
 ) -> Page:
     """The whole page."""
     failures = verification.failures
@@ -45,33 +45,37 @@ def run_page(
     )
 
 
-def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Sequence[summary.Row]) -> Section:
-    t = log.t_s
-    angle_panels = [
+def flight_plot(log: RunLog) -> str:
+    """Angles with their references, and both inputs, over time, as SVG text."""
+    angles = (("elevation Psi", "psi_rad", "psi_ref_rad"), ("azimuth Phi", "phi_rad", "phi_ref_rad"))
+    inputs = (("main rotor u_M", "u_M_V", GREEN), ("tail rotor u_T", "u_T_V", RED))
+    panels = [
         Panel(
             f"{name} [deg]",
             (
-                Curve(t, np.degrees(log.column(reference)), "reference", ORANGE, "--"),
-                Curve(t, np.degrees(log.column(output)), "measured", BLUE),
+                Curve(log.t_s, np.degrees(log.column(output)), "measured", BLUE),
+                Curve(log.t_s, np.degrees(log.column(reference)), "reference", ORANGE, "--"),
             ),
         )
-        for name, output, reference in (
-            ("elevation Psi", "psi_rad", "psi_ref_rad"),
-            ("azimuth Phi", "phi_rad", "phi_ref_rad"),
-        )
+        for name, output, reference in angles
     ]
-    input_panels = [
-        Panel("main rotor u_M [V]", (Curve(t, log.column("u_M_V"), "", GREEN),)),
-        Panel("tail rotor u_T [V]", (Curve(t, log.column("u_T_V"), "", RED),)),
+    panels += [
+        Panel(f"{name} [V]", (Curve(log.t_s, log.column(column), "", colour),)) for name, column, colour in inputs
     ]
+    return stack(panels, "time [s]")
+
+
+def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
+    faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
     return Section(
         "Flight",
         (
             "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
             "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
+            f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
-        (Table(summary.tracking_rows(tracking), summary.TRACKING_HEADING), Table(counters, ("serial line", "count"))),
-        (stack([*angle_panels, *input_panels], "time [s]"),),
+        (Table(summary.tracking_rows(tracking), summary.TRACKING_HEADING),),
+        (flight_plot(log),),
     )
 
 

@@ -34,6 +34,7 @@ from sim.tracking import Tracking, tracking
 from twinlaw.console import stage
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
+from verification.ranges import Motion
 from verification.replay import Replay, replay_of, replayed_equality
 from verification.rounding import rounding_bound
 from verification.stateless import Stateless
@@ -81,6 +82,7 @@ def build_image(law: Mapping[str, str], folder: Path) -> FirmwareImage:
 
 
 def verify_table(
+    bound: BoundPlant,
     table: ControllerTable,
     poles: Sequence[PoleMigration],
     law: Mapping[str, str],
@@ -95,9 +97,9 @@ def verify_table(
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
     with stage("proving a bound on rounding"):
-        rounding = rounding_bound(table)
+        rounding = rounding_bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
     with stage("bounding cycles and stack from the image"):
-        bound = static_bound(image.elf, "law_step")
+        cost = static_bound(image.elf, "law_step")
     return Verification(
         table_digest=table.digest,
         equality=tuple(equality),
@@ -108,8 +110,8 @@ def verify_table(
             TargetCost(
                 arithmetic="float32",
                 cycles_max=target.cycles_max,
-                cycles_bound=bound.cycles_bound,
-                stack_bytes=bound.stack_bytes,
+                cycles_bound=cost.cycles_bound,
+                stack_bytes=cost.stack_bytes,
                 flash_bytes=image.sizes.flash_bytes,
                 ram_bytes=image.sizes.ram_bytes,
             ),
@@ -194,16 +196,12 @@ def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
     return tuple(PoleMigration(**entry) for entry in report.pole_entries())
 
 
-def table_poles(plant: Path, table: ControllerTable) -> tuple[PoleMigration, ...]:
-    """Poles of a table that exists already, on the plant of that file; raises BadInput when the table is for another plant."""
-    bound = load_bound(plant)
+def table_poles(bound: BoundPlant, table: ControllerTable) -> tuple[PoleMigration, ...]:
+    """Poles of a table that exists already, on this plant; raises BadInput when the table is for another plant."""
     if table.plant != bound.plant.name:
+        what = f"a table for {table.plant!r}"
         raise BadInput(
-            "controller table",
-            str(plant),
-            f"a table for {table.plant!r}",
-            f"one for {bound.plant.name!r}",
-            "give its plant with --plant",
+            "controller table", table.digest[:16], what, f"one for {bound.plant.name!r}", "give its plant with --plant"
         )
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)

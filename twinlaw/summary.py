@@ -78,7 +78,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     ]
     bound = verification.rounding
     rows.append(
-        ("rounding of one step, proved", f"u_M {1e6 * bound.u_M:.3g} uV, u_T {1e6 * bound.u_T:.3g} uV", "proved")
+        ("rounding of one step, proved", f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV", "proved")
     )
     rows += [
         (

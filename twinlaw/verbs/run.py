@@ -39,14 +39,13 @@ def run(chosen: argparse.Namespace) -> int:
     write_atomic(out / "controller.json", table_text(designed.table))
     law = generate_sources(designed.table, "float32", out / "generated")
     image = build_image(law, out)
-    verification = verify_table(designed.table, poles_of(designed.report), law, image)
+    verification = verify_table(designed.bound, designed.table, poles_of(designed.report), law, image)
     write_atomic(out / "verification.json", verification_text(verification))
     demand(verification)
     flight = fly_board(designed.bound, designed.table, board_url("emulated", out / "firmware.elf"))
     save_log(out / "run.csv", flight.log)
-    counters = [(name, str(value)) for name, value in flight.counters.items()]
     page = run_page(
-        chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, counters
+        chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, flight.counters
     )
     write_atomic(out / "report.html", page_text(page))
     if chosen.json:

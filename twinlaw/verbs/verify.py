@@ -11,7 +11,16 @@ from records.files import write_atomic
 from records.table import load_table
 from records.verification import verification_text
 from twinlaw import console, options, summary
-from twinlaw.stages import STEPS, build_image, demand, generate_sources, recorded_replay, table_poles, verify_table
+from twinlaw.stages import (
+    STEPS,
+    build_image,
+    demand,
+    generate_sources,
+    load_bound,
+    recorded_replay,
+    table_poles,
+    verify_table,
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,10 +39,11 @@ def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
     table = load_table(chosen.table)
     recorded = [recorded_replay(path, table) for path in chosen.log]
-    poles = table_poles(chosen.plant, table)
+    bound = load_bound(chosen.plant)
+    poles = table_poles(bound, table)
     law = generate_sources(table, "float32", chosen.out / "generated")
     image = build_image(law, chosen.out)
-    verification = verify_table(table, poles, law, image, recorded, chosen.steps)
+    verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps)
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(summary.verification_rows(verification)))
