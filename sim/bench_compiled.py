@@ -24,10 +24,9 @@ def _module(name: str) -> Any:
         return None
 
 
-def _rates(bound: BoundPlant, modules: Any) -> Callable[..., Any]:
-    return sympy.lambdify(
-        [*bound.model.states, *bound.model.inputs], tuple(smooth_rates(bound)), modules=modules, cse=True
-    )  # type: ignore[no-any-return]
+def _rates(bound: BoundPlant, modules: Any) -> Any:
+    arguments = [*bound.model.states, *bound.model.inputs]
+    return sympy.lambdify(arguments, tuple(smooth_rates(bound)), modules=modules, cse=True)
 
 
 def _readings(bound: BoundPlant) -> list[tuple[int, float]]:

@@ -15,13 +15,14 @@ from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
 
 C_DIR = Path(__file__).parent / "c"
 SOURCES = ("single.c", "batch.c", "events.c", "sensitivity.c")
+HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """A model's compiled functions: `lib` as declared in sim/c/kernel.cdef, called through `ffi`."""
+    """A model's compiled functions: `lib` as declared in sim/c/exports.h, called through `ffi`."""
 
     model: Model
     ffi: Any
@@ -52,5 +53,6 @@ def kernel(model: Model) -> Kernel:
 
 
 def _declarations() -> str:
-    """What cffi must know: the plain structs and the exported functions."""
-    return (C_DIR / "kernel.cdef").read_text(encoding="utf-8")
+    """What cffi must know, from the headers themselves: it reads C without the preprocessor."""
+    lines = [line for name in HEADERS for line in (C_DIR / name).read_text(encoding="utf-8").splitlines()]
+    return "\n".join(line for line in lines if not line.startswith("#"))

@@ -7,7 +7,7 @@ from records.errors import BadInput
 from records.table import AxisLaw, ControllerTable, Polynomial
 from sim.kernel import Kernel
 
-MAX_COEFFICIENTS = 12
+MAX_COEFFICIENTS = 12  # as in sim/c/law_table.h
 SPARE: Polynomial = ()  # fills each axis up to eight rows in C
 
 

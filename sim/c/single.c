@@ -2,6 +2,8 @@
 #define LANES 1
 #include "run.h"
 
+#include "exports.h"
+
 void run_single(const run_request *request)
 {
     for (int64_t run = 0; run < request->runs; run++)
@@ -51,7 +53,6 @@ void constants_single(const double *p, double *c)
     model_constants(p, c);
 }
 
-/* How many constants there are room for. */
 int32_t constants_count(void)
 {
     return N_CONSTANTS;

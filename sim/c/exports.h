@@ -1,0 +1,21 @@
+/* What Python calls. */
+#ifndef EXPORTS_H
+#define EXPORTS_H
+
+#include <stdint.h>
+
+#include "request.h"
+
+/* The runs one after another, or side by side. */
+void run_single(const run_request *request);
+void run_batch(const run_request *request);
+
+/* For a controller that calls from outside; arrays as in request.h, state and modes (sign, move) in place. */
+int32_t constants_count(void); /* how many constants there are room for */
+void constants_single(const double *p, double *c);
+void limit_single(const double *c, double *u);
+void settle_single(const double *c, const double *u, double t_s, double *x, double *sign, double *move);
+void advance_single(const double *c, const double *u, double t_s, double h_s, int32_t substeps, double *x, double *sign, double *move);
+void measure_single(const double *c, const double *resolution, double t_s, const double *x, double *y);
+
+#endif
