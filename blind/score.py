@@ -190,13 +190,21 @@ def _by_severity(judged: Sequence[Judgement], size: Callable[[Truth], float]) ->
     return tuple(rows)
 
 
+def _named_right(judgement: Judgement) -> bool:
+    """No gap where there is none; no wrong name where no name of the table fits; exactly the effects elsewhere."""
+    if judgement.truth.kind == "nominal":
+        return not judgement.detected
+    if judgement.truth.kind == "outside":
+        return judgement.detected and not judgement.wrong_names
+    return judgement.found_right
+
+
 def _confusions(judged: Sequence[Judgement]) -> tuple[tuple[str, str, int], ...]:
     """(truth, what was found instead, how often), most frequent first."""
     pairs: Counter[tuple[str, str]] = Counter()
     for j in judged:
         truth = " + ".join(sorted(effect.name for effect in j.truth.effects)) or "no effect"
         found = " + ".join(sorted(j.found)) or ("gap, not named" if j.detected else "no gap")
-        right = j.found_right if j.truth.effects else not j.detected
-        if not right and j.failure is None:
+        if not _named_right(j) and j.failure is None:
             pairs[truth, found] += 1
     return tuple((truth, found, count) for (truth, found), count in sorted(pairs.items(), key=lambda e: (-e[1], e[0])))

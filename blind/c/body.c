@@ -1,12 +1,13 @@
-/* Rotors, thrust, the two axes and their friction: one semi-implicit step (rates first, then angles with the new rates). */
+/* Rotors, thrust, the two axes and their friction: one step (rotors at their middle, then rates,
+ * then angles with the mean of old and new rates; bristles implicitly). */
 #include <math.h>
 
 #include "truth.h"
 
 enum { MAIN = 0, TAIL = 1, ELEVATION = 0, AZIMUTH = 1 };
 
-/* Displacement of the bristles at full slip: far below one encoder count, as a metal bearing's. */
-static const double PRESLIDING_RAD = 1.5e-4;
+/* Displacement of the bristles at full slip: far below one encoder count, as in a hard bearing. */
+static const double PRESLIDING_RAD = 1.0e-5;
 
 double rig_damping(const rig_t *rig, int rotor, double speed)
 {
@@ -39,37 +40,40 @@ void rig_slow(const effects_t *fx, state_t *s)
     s->gravity_factor = 1.0 + fx->weight * (moved < 0.0 ? 0.0 : (moved > 1.0 ? 1.0 : moved));
 }
 
+/* Midpoint rule, so that the rotor neither leads nor lags the body by half a step. */
 static void spin_rotor(const rig_t *rig, const effects_t *fx, state_t *s, int rotor, double dt)
 {
-    double u = driver_output(rig, fx, s, rotor, dt);
+    double drive = rig->drive[rotor] * s->warm_factor[rotor] * driver_output(rig, fx, s, rotor, dt);
     double w = s->omega[rotor];
-    double next = w + dt * (rig->drive[rotor] * s->warm_factor[rotor] * u - rig_damping(rig, rotor, w) * w);
+    double middle = w + 0.5 * dt * (drive - rig_damping(rig, rotor, w) * w);
+    double next = w + dt * (drive - rig_damping(rig, rotor, middle) * middle);
     double dry = fx->dry[rotor] * dt;
     if (dry > 0.0)
         next = fabs(next) <= dry ? 0.0 : next - copysign(dry, next);
     s->spin[rotor] = (next - w) / dt;
+    s->middle[rotor] = 0.5 * (w + next);
     s->omega[rotor] = next;
 }
 
 static double main_thrust(const rig_t *rig, const effects_t *fx, const state_t *s)
 {
-    double force = rig_thrust(rig, MAIN, s->omega[MAIN]);
+    double force = rig_thrust(rig, MAIN, s->middle[MAIN]);
     if (fx->ground != 0.0) {
         /* Image rotor below the floor: inverse square of the height. */
         double h = fx->ground_height_rad / (fx->ground_height_rad + s->angle[ELEVATION] + rig->stop_rad[ELEVATION]);
         force *= 1.0 + fx->ground * h * h;
     }
-    return force - fx->inflow[MAIN] * s->omega[MAIN] * s->rate[ELEVATION];
+    return force - fx->inflow[MAIN] * s->middle[MAIN] * s->rate[ELEVATION];
 }
 
 static double tail_thrust(const rig_t *rig, const effects_t *fx, const state_t *s)
 {
-    double w = s->omega[TAIL];
+    double w = s->middle[TAIL];
     double force = rig_thrust(rig, TAIL, w);
     if (fx->reverse != 0.0)
         force *= 1.0 + fx->reverse * 0.5 * (1.0 - tanh(w / fx->reverse_width_rad_s));
     if (fx->downwash != 0.0)
-        force /= 1.0 + fx->downwash * s->omega[MAIN] / 600.0;
+        force /= 1.0 + fx->downwash * s->middle[MAIN] / 600.0;
     if (fx->stall_rad_s > 0.0) {
         double x = w / fx->stall_rad_s, x4 = x * x * x * x;
         force /= 1.0 + x4;
@@ -116,7 +120,7 @@ static double elevation_torque(const rig_t *rig, const effects_t *fx, state_t *s
     double v = s->rate[ELEVATION], turn = s->rate[AZIMUTH];
     double torque = rig->arm_m[MAIN] * lift + 2.0 * rig->centrifugal * turn * turn * sn * c;
     torque -= rig->gravity_Nm * s->gravity_factor * c - fx->centre_Nm * sn;
-    torque -= rig->viscous[ELEVATION] * s->grease_factor[ELEVATION] * v - rig->gyro * turn * s->omega[MAIN] * sn;
+    torque -= rig->viscous[ELEVATION] * s->grease_factor[ELEVATION] * v - rig->gyro * turn * s->middle[MAIN] * sn;
     torque += fx->tail_to_elevation_m * side - fx->spin_inertia[ELEVATION] * s->spin[TAIL];
     if (fx->bumper_Nm_rad > 0.0 && s->angle[ELEVATION] > fx->bumper_rad)
         torque -= fx->bumper_Nm_rad * (s->angle[ELEVATION] - fx->bumper_rad);
@@ -126,7 +130,7 @@ static double elevation_torque(const rig_t *rig, const effects_t *fx, state_t *s
 
 static double azimuth_torque(const rig_t *rig, const effects_t *fx, state_t *s, double side, double c, double sn, double dt)
 {
-    double v = s->rate[AZIMUTH], w = s->omega[MAIN], x = s->angle[AZIMUTH];
+    double v = s->rate[AZIMUTH], w = s->middle[MAIN], x = s->angle[AZIMUTH];
     double torque = c * (rig->arm_m[TAIL] * side - rig->reaction * w - fx->reaction_quadratic * w * w);
     torque -= rig->viscous[AZIMUTH] * s->grease_factor[AZIMUTH] * v + c * fx->spin_inertia[AZIMUTH] * s->spin[MAIN];
     torque += (fx->coriolis * 2.0 * c * v - fx->gyro_azimuth * w) * s->rate[ELEVATION] * sn;
@@ -143,9 +147,11 @@ static double azimuth_torque(const rig_t *rig, const effects_t *fx, state_t *s, 
 }
 
 /* Inelastic stop. */
-static void move(const rig_t *rig, state_t *s, int axis, double dt)
+static void move(const rig_t *rig, state_t *s, int axis, double acceleration, double dt)
 {
-    s->angle[axis] += dt * s->rate[axis];
+    double before = s->rate[axis];
+    s->rate[axis] += dt * acceleration;
+    s->angle[axis] += 0.5 * dt * (before + s->rate[axis]);
     double stop = rig->stop_rad[axis];
     if (fabs(s->angle[axis]) >= stop) {
         s->angle[axis] = copysign(stop, s->angle[axis]);
@@ -164,9 +170,7 @@ void rig_step(const rig_t *rig, const effects_t *fx, state_t *s, const double gu
     double about_azimuth = (rig->inertia[AZIMUTH] + fx->inertia_cosine2 * (c - 1.0)) * c;
     double raise = gust_Nm[ELEVATION] + elevation_torque(rig, fx, s, lift, side, c, sn, dt);
     double turn = gust_Nm[AZIMUTH] + azimuth_torque(rig, fx, s, side, c, sn, dt);
-    s->rate[ELEVATION] += dt * raise / rig->inertia[ELEVATION];
-    s->rate[AZIMUTH] += dt * turn / about_azimuth;
-    move(rig, s, ELEVATION, dt);
-    move(rig, s, AZIMUTH, dt);
+    move(rig, s, ELEVATION, raise / rig->inertia[ELEVATION], dt);
+    move(rig, s, AZIMUTH, turn / about_azimuth, dt);
     s->t_s += dt;
 }

@@ -130,7 +130,7 @@ void predict(const rig_t *rig, int rows, const double *t_s, const double *u_V, c
                 s->angle[i] = apparent[6 * row + 2 * i];
                 s->rate[i] = apparent[6 * row + 2 * i + 1];
                 s->omega[i] = apparent[6 * row + 4 + i];
-                s->bristle[i] = s->rate[i] == 0.0 ? 0.0 : copysign(1.5e-4, s->rate[i]);
+                s->bristle[i] = s->rate[i] == 0.0 ? 0.0 : copysign(1.0e-5, s->rate[i]);
             }
             rig_slow(&none, s);
         }

@@ -44,7 +44,8 @@ typedef struct {
 
 typedef struct {
     double t_s;
-    double angle[2], rate[2], omega[2], spin[2];   /* spin: d(omega)/dt of the last step */
+    double angle[2], rate[2], omega[2];
+    double middle[2], spin[2];                     /* rotor speed halfway through the last step, and its change per second */
     double bristle[2], cable[2];
     double slewed_V[2], lagged_V[2], played_V[2], load_V;
     pipe_t pipe[2];
