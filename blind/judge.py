@@ -20,6 +20,7 @@ class Judgement:
     failure: str | None
     detected: bool
     place_right: bool
+    side_right: bool
     rank: int | None
     found_right: bool
     set_hit: bool
@@ -45,7 +46,8 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         truth=truth,
         failure=None,
         detected=answer.verdict == "gap",
-        place_right=_place_right(truth, answer),
+        place_right=_first_place(answer) in _right_places(truth),
+        side_right=_side(_first_place(answer)) in {_side(place) for place in _right_places(truth)},
         rank=ranks[0] if ranks else None,
         found_right=_means(answer.found, truth),
         set_hit=_set_hit(true, answer),
@@ -68,6 +70,7 @@ def _failed(case: str, truth: Truth, reason: str, shrinkage: float | None) -> Ju
         failure=reason,
         detected=alarm,
         place_right=False,
+        side_right=False,
         rank=None,
         found_right=False,
         set_hit=False,
@@ -99,11 +102,18 @@ def _means(names: Names, truth: Truth) -> bool:
     )
 
 
-def _place_right(truth: Truth, answer: Answer) -> bool:
-    """The first place is one of the truth's; with several effects, of any of them."""
-    right = {place for effect in truth.effects for place in effect.places}
-    first = answer.places[0] if answer.places else answer.unknown_place
-    return first in right
+def _first_place(answer: Answer) -> str:
+    return answer.places[0] if answer.places else answer.unknown_place
+
+
+def _right_places(truth: Truth) -> set[str]:
+    """Every place where one of the effects acts."""
+    return {place for effect in truth.effects for place in effect.places}
+
+
+def _side(place: str) -> str:
+    """A rotor and its input as one: without rotor speeds the equations do not tell them apart."""
+    return place.replace("_rotor", "").replace("_input", "")
 
 
 def _set_hit(true: Names, answer: Answer) -> bool:

@@ -104,6 +104,7 @@ def _figures(judged: Sequence[Judgement], bins: Sequence[Bin]) -> list[Figure]:
         _share("detected, severity after re-tune >= 2", severe, lambda j: j.detected, 0.97),
         _share("detected, severity >= 2", plain, lambda j: j.detected, None),
         _share("place right, of the detected", seen, lambda j: j.place_right, 0.95),
+        _share("place right, an input and its rotor as one", seen, lambda j: j.side_right, None),
         _share("cause first, single library effect", single, lambda j: j.rank == 1, 0.90),
         _share("cause in the first three", single, lambda j: j.rank is not None and j.rank <= 3, 0.98),
         _share("cause in the stated ambiguous set", single, lambda j: j.set_hit or j.rank == 1, None),

@@ -12,6 +12,8 @@ from tests.blind.conftest import calm_flight, lively_flight
 
 Flown = Callable[..., Record]
 ALL = (*KNOWN, *TIMING, *OUTSIDE)
+# The others act through lost commands, the rig's own friction, or the counts.
+SIMULATED = [e for e in ALL if not e.loss and not e.coulomb and not e.name.endswith("sensor.quantization")]
 
 
 def hovering_V(
@@ -134,6 +136,23 @@ def rotor_lag_rows(record: Record) -> int:
     return int(np.argmin(fits))
 
 
+def test_a_lost_command_leaves_the_last_one_in_force(flown: Flown) -> None:
+    """With every command lost after 1 s the voltage stays, so the tail rotor's speed settles although u_T moves on."""
+    flight = lively_flight(6.0)
+    flight.lost[flight.settle + 100 :] = 1
+    record = flown(flight, {})
+    assert np.ptp(record.u_V[120:, 1]) > 1.0
+    assert np.ptp(record.apparent[450:, 5]) < 1.0
+
+
+def test_friction_that_the_plant_file_denies_holds_a_resting_axis(flown: Flown) -> None:
+    """A torque of 1e-4 N m for 0.5 s moves a free azimuth; bristles of 4e-3 N m hold it within 2e-5 rad."""
+    push = {("pulse_Nm", 1): 1e-4, ("pulse_start_s", 1): 0.01, ("pulse_s", 1): 0.5}
+    held = flown(calm_flight(0.5), push, changes={"b_cA": 4e-3})
+    free = flown(calm_flight(0.5), push, changes={"b_cA": 0.0})
+    assert np.ptp(held.apparent[:, 2]) < 2e-5 < 1e-4 < np.ptp(free.apparent[:, 2])
+
+
 def test_a_push_moves_the_axis_the_way_it_pushes(flown: Flown) -> None:
     for axis, sign in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
         settings = {("pulse_Nm", axis): sign * 3e-3, ("pulse_start_s", axis): 1.0, ("pulse_s", axis): 0.5}
@@ -161,11 +180,9 @@ def test_more_friction_or_drag_slows_a_coasting_axis(flown: Flown) -> None:
         assert carried(slower) < 0.99 * free, slower
 
 
-@pytest.mark.parametrize("effect", ALL, ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", SIMULATED, ids=lambda effect: effect.name)
 def test_every_effect_is_felt_and_the_rig_without_it_is_not_changed_by_its_shape(flown: Flown, effect: Effect) -> None:
     """At four times its reference size (within bounds) an excited run's free predictions differ by more than 1e-4 rad."""
-    if effect.loss or effect.coulomb or effect.name.endswith("quantization"):
-        pytest.skip("no setting of the simulated rig: felt through lost commands, plant parameters or counts")
     shape = effect.draw(np.random.default_rng(1))
     size = float(np.clip(4.0 if effect.bounds[1] > 4.0 else 1.0, *effect.bounds))
     seconds = 12.0 if effect.name.endswith(("weight_shift", "disturbance", "count_slip", "bumper")) else 6.0

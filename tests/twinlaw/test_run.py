@@ -1,0 +1,178 @@
+"""The whole chain, once: what it leaves behind, what the files say, what the page shows, and that it can be done again."""
+
+import json
+import re
+import tomllib
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from records.log import load_log, save_log
+from records.table import load_table
+from sim.columns import log_columns
+from sim.plants import MODELS
+from sim.tracking import tracking
+from twinlaw.command import main
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PLANT = ROOT / "plants" / "ce150.toml"
+FILES = {
+    "controller.json",
+    "generated",
+    "firmware.elf",
+    "firmware.bin",
+    "run.csv",
+    "run.toml",
+    "verification.json",
+    "report.html",
+}
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    assert main(["run", "--plant", str(PLANT), "--out", str(folder)]) == 0
+    return folder
+
+
+def test_run_leaves_the_files_of_the_contract_and_no_others(out: Path) -> None:
+    assert {path.name for path in out.iterdir()} == FILES
+
+
+def test_verification_has_the_fields_of_the_contract_and_passes(out: Path) -> None:
+    said = json.loads((out / "verification.json").read_text())
+    assert said["schema"] == "verification/1"
+    assert said["passed"] is True
+    assert said["table_digest"] == load_table(out / "controller.json").digest
+    pairs = {tuple(row["between"]) for row in said["equality"] if row["arithmetic"] == "float32"}
+    assert {("twin", "host"), ("host", "target")} <= pairs
+    for row in said["equality"]:
+        assert row["steps"] >= 100_000
+        assert row["mismatches"] == 0
+    assert 0.0 < said["rounding_bound_V"]["u_M"] < 0.01
+    assert 0.0 < said["rounding_bound_V"]["u_T"] < 0.01
+    assert {row["axis"] for row in said["poles"]} == {"elevation", "azimuth"}
+    for row in said["poles"]:
+        assert row["stable"]
+        assert row["worst_slowest_rad_s"] < 0.0
+    for row in said["target"]:
+        assert 0 < row["cycles_max"] <= row["cycles_bound"]
+        assert 0 < row["stack_bytes"] < 1024
+        assert 0 < row["flash_bytes"] <= 128 * 1024
+        assert 0 < row["ram_bytes"] <= 32 * 1024
+
+
+def test_the_flight_tracks_within_two_percent_and_a_twentieth_of_a_degree(out: Path) -> None:
+    log = load_log(out / "run.csv", log_columns(MODELS["ce150"]()))
+    assert log.t_s[-1] >= 95.0
+    assert log.table_digest == load_table(out / "controller.json").digest
+    assert np.degrees(log.extra["psi_ref_rad"].min()) == pytest.approx(-30.0, abs=0.05)
+    assert np.degrees(log.extra["psi_ref_rad"].max()) == pytest.approx(30.0, abs=0.05)
+    for output in ("psi_rad", "phi_rad"):
+        found = tracking(log, output)
+        assert found.holds >= 10
+        assert found.overshoot <= 0.02
+        assert np.degrees(found.steady_error_rad) <= 0.05
+
+
+def test_the_log_of_the_flight_replays_bit_by_bit(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["verify", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--json"]
+    assert main([*arguments, "--log", str(out / "run.csv"), "--steps", "1000", "--out", str(tmp_path)]) == 0
+    rows = json.loads(capsys.readouterr().out)["equality"]
+    assert [row for row in rows if row["between"] == ["log", "host"] and row["mismatches"] == 0 and row["steps"] > 9500]
+
+
+def test_a_log_with_one_changed_input_fails_the_verification(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = load_log(out / "run.csv", log_columns(MODELS["ce150"]()))
+    log.u[5000, 0] = np.nextafter(np.float32(log.u[5000, 0]), np.float32(9.0))
+    save_log(tmp_path / "changed.csv", log)
+    arguments = ["verify", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--steps", "1000"]
+    assert main([*arguments, "--log", str(tmp_path / "changed.csv"), "--out", str(tmp_path)]) == 1
+    assert "log and host differ in 1 of" in capsys.readouterr().err
+    assert json.loads((tmp_path / "verification.json").read_text())["passed"] is False
+
+
+class _Page(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.links += [value or "" for name, value in attrs if name in ("src", "href", "xlink:href", "srcset", "data")]
+
+
+def test_the_report_is_one_page_without_network_or_script(out: Path) -> None:
+    text = (out / "report.html").read_text(encoding="utf-8")
+    page = _Page()
+    page.feed(text)
+    assert page.tags.count("svg") == 3
+    assert "script" not in page.tags
+    assert [link for link in page.links if not link.startswith("#")] == []
+    assert not re.search(r"url\((?!#)|@import", text)
+    for word in ("Flight", "Verification", "poles", "Margins", "elevation Psi [deg]", "main rotor u_M [V]"):
+        assert word in text
+    assert load_table(out / "controller.json").digest in text
+
+
+def test_the_same_plant_gives_the_same_bytes_again(out: Path, tmp_path: Path) -> None:
+    assert main(["design", "--plant", str(PLANT), "--out", str(tmp_path)]) == 0
+    assert main(["build", "--table", str(tmp_path / "controller.json"), "--out", str(tmp_path)]) == 0
+    for name in (
+        "controller.json",
+        "firmware.elf",
+        "firmware.bin",
+        *(f"generated/{p.name}" for p in (out / "generated").iterdir()),
+    ):
+        assert (tmp_path / name).read_bytes() == (out / name).read_bytes(), name
+
+
+def test_validate_checks_the_emulated_board(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [
+        "validate",
+        "--plant",
+        str(PLANT),
+        "--table",
+        str(out / "controller.json"),
+        "--steps",
+        "1000",
+        "--out",
+        str(out),
+    ]
+    assert main([*arguments, "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["passed"] is True
+    assert said["equality"]["mismatches"] == 0
+    for name in ("validation.json", "validation.csv", "validation.toml"):
+        (out / name).unlink()
+
+
+def test_simulate_flies_without_a_board(tmp_path: Path) -> None:
+    assert main(["simulate", "--plant", str(PLANT), "--out", str(tmp_path)]) == 0
+    assert tomllib.loads((tmp_path / "simulation.toml").read_text())["plant"] == "ce150"
+
+
+def test_nothing_is_shown_while_it_works_in_a_pipe(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["generate", "--table", str(out / "controller.json"), "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_help_names_the_verbs_in_the_order_of_the_work(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--help"])
+    assert left.value.code == 0
+    shown = capsys.readouterr().out
+    order = ["run", "design", "generate", "build", "verify", "simulate", "flash", "validate"]
+    places = [re.search(rf"^    {verb} ", shown, re.MULTILINE) for verb in order]
+    starts = [place.start() for place in places if place]
+    assert len(starts) == len(order)
+    assert starts == sorted(starts)
