@@ -275,3 +275,39 @@ def test_the_receiver_survives_any_bytes_and_takes_the_next_frame(garbage):
     receiver.feed(garbage + DELIMITER)
     frames = receiver.feed(encode_frame(PROTOCOL, "IDENTIFY", 7, {}))
     assert [frame.sequence for frame in frames] == [7]
+
+
+def test_half_a_frame_that_an_earlier_host_left_costs_nothing():
+    port = BoxPort()
+    port.box.feed(b"\x09half a fr")
+    assert client_over(port).identity.table_digest == TABLE
+    assert port.time_outs == 0
+
+
+def test_a_frame_without_its_end_costs_one_repetition_and_not_two():
+    port = BoxPort()
+    client = client_over(port)
+    client.arm("LOOP")
+    port.time_outs, pieces = 0, []
+
+    def first_without_end(line: bytes) -> bytes:
+        pieces.append(line)
+        return line[:-1] if len(pieces) == 1 else line
+
+    port.to_board = first_without_end
+    client.sample(0.25, 0.0, 0.125, 0.0)
+    assert len(pieces) == 2
+
+
+def test_a_doubled_reply_is_not_taken_for_the_next_one():
+    controller = BoardController(client_over(BoxPort(to_host=lambda line: line + line)))
+    controller.reset(0.0, 0.0)
+    answers = [controller.step(0.25, 0.0, 0.0, 0.0)[1] for _ in range(5)]
+    assert answers == pytest.approx([0.001, 0.002, 0.003, 0.004, 0.005], rel=1e-5)
+
+
+def test_noise_without_an_end_does_not_fill_the_memory():
+    receiver = FrameReceiver(PROTOCOL)
+    for _ in range(100):
+        receiver.feed(b"\x55" * 1000)
+    assert len(receiver.pending) <= 1024
