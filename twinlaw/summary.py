@@ -78,7 +78,11 @@ def verification_rows(verification: Verification) -> list[Row]:
     ]
     bound = verification.rounding
     rows.append(
-        ("rounding of one step, proved", f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV", "proved")
+        (
+            "rounding of one step, proved",
+            f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV",
+            "proved",
+        )
     )
     rows += [
         (
