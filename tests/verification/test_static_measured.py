@@ -39,7 +39,7 @@ def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
 
 
 # How far the bound may lie above the dearest of 4 000 inputs: paths that exclude each other beyond what sets of words can show.
-LAW_CLOSENESS = 2.2
+LAW_CLOSENESS = 1.6
 CLOSENESS = {"sum": 1.2, "product": 1.2, "ratio": 1.2, "less": 1.1, "whole": 1.1, "as_float": 1.1}
 
 

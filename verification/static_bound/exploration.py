@@ -145,9 +145,8 @@ class Exploration:
             heapq.heappush(self.waiting, place)
             self.at_place[place] = []
         live = prepared.live[target]
-        values = {where: word for where, word in visit.state.values.items() if where in live}
-        flags = visit.state.flags if FLAGS in live else UNKNOWN_FLAGS
-        self.at_place[place].append(Visit(target, tuple(passes), State(values, flags), visit.cycles, visit.trail))
+        state = visit.state.limited_to(live, FLAGS in live)
+        self.at_place[place].append(Visit(target, tuple(passes), state, visit.cycles, visit.trail))
 
     def _may_pass(self, head: int, count: int) -> bool:
         bound = self.prepared.known_passes.get(head)
@@ -203,7 +202,7 @@ class Exploration:
         done = self.call(callee, {register: visit.state.at(register) for register in ARGUMENTS})
         self.stack_bytes = max(self.stack_bytes, done.stack_bytes - graph.sp[i.address])
         state = (without_frame(visit.state) if graph.frame_escapes else visit.state).without(CLOBBERED)
-        state = State(state.values, UNKNOWN_FLAGS).with_value(0, done.results[0]).with_value(1, done.results[1])
+        state = state._replace(flags=UNKNOWN_FLAGS).with_value(0, done.results[0]).with_value(1, done.results[1])
         cycles = visit.cycles.plus(_both(instruction_cycles(i), jump_stalls(callee.start))).plus(done.cycles)
         on = i.next_address if i.op in ("bl", "blx") else None
         return visit._replace(state=state, cycles=cycles, trail=Trail(done, visit.trail)), on
@@ -236,9 +235,9 @@ def _both(cycles: int, stalls: int) -> Cycles:
 
 def _met(visits: list[Visit]) -> list[Visit]:
     """Visits with equal states become one that costs what the dearest does; beyond MOST_STATES the cheaper ones are joined."""
-    distinct: dict[tuple[frozenset[tuple[int, Word]], object], Visit] = {}
+    distinct: dict[object, Visit] = {}
     for visit in visits:
-        key = (frozenset(visit.state.values.items()), visit.state.flags)
+        key = (frozenset(visit.state.values.items()), visit.state.flags, frozenset(visit.state.origins.items()))
         distinct[key] = _dearer(distinct[key], visit) if key in distinct else visit
     ordered = sorted(distinct.values(), key=lambda visit: visit.cycles.zero_wait, reverse=True)
     if len(ordered) <= MOST_STATES:

@@ -1,19 +1,14 @@
 """What is known of the processor before an instruction: words by location, and where the flags come from."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from verification.static_bound import words
+from verification.static_bound.relation import SAME, Relation
 from verification.static_bound.words import MASK, SIGN, TOP, Word
 
 NOWHERE = -1
-
-
-class Relative(NamedTuple):
-    """A location that holds a number shifted by a constant: to the left, to the right where `shift` is negative."""
-
-    location: int
-    shift: int
+Derive = Callable[[Relation], Relation | None]
 
 
 class Flags(NamedTuple):
@@ -21,32 +16,35 @@ class Flags(NamedTuple):
 
     After a subtraction `a - b` (kind "subtract") all conditions are decided by `a` and `b`; otherwise Z and N by `result`, C by `carry`.
     After a shift of `a` by the constant `b` (kind "lsls", "lsrs") or a test of the bits `b` (kind "ands") Z also tells of `a`.
-    The registers `b_at` and `result_at` still hold `b` and the result; `relatives` hold `a` or follow from it.
+    The registers `b_at` and `result_at` still hold `b` and the result. `a` follows from `root` by `relation`, as do `relatives`.
     """
 
     kind: str = ""
     a: Word = TOP
     b: Word = TOP
     result: Word = TOP
-    relatives: tuple[Relative, ...] = ()
+    relation: Relation = SAME
+    root: Word = TOP
+    relatives: tuple[tuple[int, Relation], ...] = ()
     b_at: int = NOWHERE
     result_at: int = NOWHERE
     carry: int | None = None
 
 
 UNKNOWN_FLAGS = Flags()
-NO_ORIGINS: Mapping[int, Relative] = {}
+Origins = Mapping[int, tuple[int, Relation]]
+NO_ORIGINS: Origins = {}
 
 
 class State(NamedTuple):
     """Words known by location (TOP where absent) and flags. A state is never changed once it is made.
 
-    `origins` tells of locations that were copied or shifted from another one, which has not changed since.
+    `origins` gives locations that follow from another one, which has not changed since, and how they do.
     """
 
     values: dict[int, Word]
     flags: Flags
-    origins: Mapping[int, Relative] = NO_ORIGINS
+    origins: Origins = NO_ORIGINS
 
     def at(self, location: int) -> Word:
         """What is known of a location."""
@@ -59,39 +57,60 @@ class State(NamedTuple):
             del values[location]
         return State(values, _forget(self.flags, location), self._origins_without(location))
 
-    def with_copy(self, location: int, source: int, shift: int, word: Word) -> "State":
-        """The state after `location` was overwritten by `source`, shifted; `word` is the result."""
-        after = self.with_value(location, word)
-        flags = after.flags
-        if shift == 0 and source != location:
-            copied = [Relative(location, relative.shift) for relative in flags.relatives if relative.location == source]
-            flags = flags._replace(relatives=(*flags.relatives, *copied))
-        origins = after.origins if source == location else {**after.origins, location: Relative(source, shift)}
-        return State(after.values, flags, origins)
+    def with_derived(self, location: int, source: int, derive: Derive, word: Word) -> "State":
+        """The state after `location` was overwritten by what `derive` makes of `source`; `word` is the result."""
+        root, relation = self.origins.get(source, (source, SAME))
+        after, derived = self.with_value(location, word), derive(relation)
+        if root == location:
+            copies = [place for place, origin in self.origins.items() if origin == (root, SAME) and place != location]
+            root = copies[0] if copies else NOWHERE
+        origins = after.origins
+        if derived and root != NOWHERE:
+            origins = {**origins, location: (root, derived)}
+        of_source = [derive(relation) for place, relation in self.flags.relatives if place == source]
+        more = tuple((location, relation) for relation in of_source if relation)
+        return State(after.values, after.flags._replace(relatives=after.flags.relatives + more), origins)
 
     def without(self, locations: frozenset[int]) -> "State":
         """The state after `locations` were overwritten with something unknown."""
         flags = self.flags
         for location in locations:
             flags = _forget(flags, location)
-        return State({place: word for place, word in self.values.items() if place not in locations}, flags)
+        origins = {
+            place: (root, how)
+            for place, (root, how) in self.origins.items()
+            if place not in locations and root not in locations
+        }
+        return State({place: word for place, word in self.values.items() if place not in locations}, flags, origins)
 
-    def relatives_of(self, location: int) -> tuple[Relative, ...]:
-        """The location itself, its copies, and what was shifted from it."""
-        found = [Relative(place, origin.shift) for place, origin in self.origins.items() if origin.location == location]
-        if location in self.origins and self.origins[location].shift == 0:
-            found.append(Relative(self.origins[location].location, 0))
-        return (Relative(location, 0), *found)
+    def limited_to(self, live: frozenset[int], flags_live: bool) -> "State":
+        """The state without what is not read any more; a copy takes the place of an origin that ends."""
+        state = self
+        for root in {root for root, _ in self.origins.values()} - live:
+            state = state._replace(origins=state._origins_without(root))
+        origins = {place: origin for place, origin in state.origins.items() if place in live}
+        values = {place: word for place, word in self.values.items() if place in live}
+        return State(values, self.flags if flags_live else UNKNOWN_FLAGS, origins)
 
-    def _origins_without(self, location: int) -> Mapping[int, Relative]:
+    def related(self, location: int) -> tuple[Relation, Word, tuple[tuple[int, Relation], ...]]:
+        """How a location follows from its root, what is known of that, and all that follows from the root, itself included."""
+        root, relation = self.origins.get(location, (location, SAME))
+        family = tuple((place, how) for place, (of, how) in self.origins.items() if of == root)
+        return relation, self.at(root), ((root, SAME), *family)
+
+    def _origins_without(self, location: int) -> Origins:
         if not self.origins:
             return self.origins
-        return {place: origin for place, origin in self.origins.items() if location not in (place, origin.location)}
+        rest = {place: origin for place, origin in self.origins.items() if place != location}
+        copies = [place for place, origin in rest.items() if origin == (location, SAME)]
+        heir = copies[0] if copies else NOWHERE
+        moved = {place: (heir if root == location else root, how) for place, (root, how) in rest.items()}
+        return {place: (root, how) for place, (root, how) in moved.items() if root not in (NOWHERE, place)}
 
 
 def _forget(flags: Flags, location: int) -> Flags:
-    if any(relative.location == location for relative in flags.relatives):
-        flags = flags._replace(relatives=tuple(r for r in flags.relatives if r.location != location))
+    if any(place == location for place, _ in flags.relatives):
+        flags = flags._replace(relatives=tuple(r for r in flags.relatives if r[0] != location))
     if location == flags.b_at:
         flags = flags._replace(b_at=NOWHERE)
     return flags._replace(result_at=NOWHERE) if location == flags.result_at else flags
@@ -102,17 +121,21 @@ def join_states(a: State, b: State) -> State:
     shared = a.values.keys() & b.values.keys()
     values = {place: words.join(a.values[place], b.values[place]) for place in shared}
     flags = a.flags if a.flags == b.flags else _joined_flags(a.flags, b.flags)
-    return State({place: word for place, word in values.items() if word != TOP}, flags)
+    origins = {place: origin for place, origin in a.origins.items() if b.origins.get(place) == origin}
+    return State({place: word for place, word in values.items() if word != TOP}, flags, origins)
 
 
 def _joined_flags(a: Flags, b: Flags) -> Flags:
-    same_places = (a.relatives, a.b_at, a.result_at) == (b.relatives, b.b_at, b.result_at)
+    same_places = (a.relation, a.relatives, a.b_at, a.result_at) == (b.relation, b.relatives, b.b_at, b.result_at)
     if a.kind != b.kind or not same_places:
         return UNKNOWN_FLAGS
-    return Flags(
-        a.kind, words.join(a.a, b.a), words.join(a.b, b.b), words.join(a.result, b.result),
-        a.relatives, a.b_at, a.result_at, a.carry if a.carry == b.carry else None,
-    )  # fmt: skip
+    return a._replace(
+        a=words.join(a.a, b.a),
+        b=words.join(a.b, b.b),
+        result=words.join(a.result, b.result),
+        root=words.join(a.root, b.root),
+        carry=a.carry if a.carry == b.carry else None,
+    )
 
 
 OPPOSITE = {"eq": "ne", "hs": "lo", "mi": "pl", "vs": "vc", "hi": "ls", "ge": "lt", "gt": "le"}
@@ -168,22 +191,23 @@ def _source_where(flags: Flags, condition: str) -> Word | None:
 
 
 def _refined(state: State, flags: Flags) -> State | None:
-    known = dict(state.values)
-    found = [(relative.location, _moved(flags.a, relative.shift)) for relative in flags.relatives]
+    """The state with what its flags tell carried over to all locations concerned."""
+    root = flags.relation.root(flags.a, flags.root)
+    if root is None:
+        return None
+    found = [(place, relation.number(root)) for place, relation in flags.relatives]
+    found += [(place, flags.a) for place, relation in flags.relatives if relation == flags.relation]
     found += [
         (place, word) for place, word in ((flags.b_at, flags.b), (flags.result_at, flags.result)) if place != NOWHERE
     ]
+    known = dict(state.values)
     for place, word in found:
         both = words.common(known.get(place, TOP), word)
         if both is None:
             return None
         if both != TOP:
             known[place] = both
-    return State(known, flags, state.origins)
-
-
-def _moved(word: Word, shift: int) -> Word:
-    return words.shift_left(word, shift) if shift >= 0 else words.shift_right(word, -shift)
+    return State(known, flags._replace(root=root), state.origins)
 
 
 def _result_where(result: Word, condition: str) -> Word | None:

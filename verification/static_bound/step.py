@@ -5,7 +5,8 @@ from collections.abc import Callable
 from verification.static_bound import words
 from verification.static_bound.elf_image import ElfImage
 from verification.static_bound.liveness import FLAG_WRITERS, effects, slot, written_register
-from verification.static_bound.state import NOWHERE, Flags, Relative, State
+from verification.static_bound.relation import SAME, Relation
+from verification.static_bound.state import NOWHERE, Derive, Flags, State
 from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
 from verification.static_bound.words import MASK, TOP, Word
 
@@ -30,7 +31,7 @@ def step(state: State, i: Instruction, sp: int, image: ElfImage, frame_escapes: 
     """States behind the instruction: one, or one for each word that a table in flash may have given."""
     if i.op == "ldr" and i.n == SP:
         place = slot(sp + i.imm)
-        return [state.with_copy(i.d, place, 0, state.at(place))]
+        return [state.with_derived(i.d, place, _copied, state.at(place))]
     if i.op in LOADS or i.op == "ldr_literal":
         return [state.with_value(i.d, word) for word in loaded(state, i, image)]
     if i.op in STORES:
@@ -76,7 +77,7 @@ def loaded(state: State, i: Instruction, image: ElfImage) -> list[Word]:
 
 def _stored(state: State, i: Instruction, sp: int, frame_escapes: bool) -> State:
     if i.n == SP:
-        return state.with_copy(slot(sp + i.imm), i.d, 0, state.at(i.d))
+        return state.with_derived(slot(sp + i.imm), i.d, _copied, state.at(i.d))
     return without_frame(state) if frame_escapes else state
 
 
@@ -99,8 +100,11 @@ def _moved_block(state: State, i: Instruction, sp: int) -> State:
 def _without_flags(state: State, i: Instruction, sp: int, frame_escapes: bool) -> State:
     match i.op:
         case "mov" if i.d < SP and i.m < SP:
-            return state.with_copy(i.d, i.m, 0, state.at(i.m))
-        case "mov" | "uxtb" | "uxth" | "adr" | "add_high" | "sxtb" | "sxth":
+            return state.with_derived(i.d, i.m, _copied, state.at(i.m))
+        case "uxtb" | "uxth":
+            mask = 0xFF if i.op == "uxtb" else 0xFFFF
+            return state.with_derived(i.d, i.m, lambda relation: relation.masked(mask), _plain_result(state, i))
+        case "mov" | "adr" | "add_high" | "sxtb" | "sxth":
             return state.with_value(i.d, _plain_result(state, i)) if i.d < SP else state
         case "stm":
             return (without_frame(state) if frame_escapes else state).without(frozenset({i.n}))
@@ -136,32 +140,61 @@ def _computed(state: State, i: Instruction) -> State:
     else:
         result, carry = _added(i, a, b, state.flags.carry)
     d = written_register(i)
-    if i.op in ("lsls", "lsrs", "movs") and (i.m < 0) == (i.op != "movs"):
-        shift = {"lsls": i.imm, "lsrs": -i.imm}.get(i.op, 0)
-        source = i.n if i.m < 0 else i.m
-        after = state.with_copy(d, source, shift, result)
-    else:
-        after = state.with_value(d, result) if d >= 0 else state
+    source, derive = _derivation(i, a, b)
+    after = (
+        state
+        if d < 0
+        else state.with_derived(d, source, derive, result)
+        if source >= 0
+        else state.with_value(d, result)
+    )
     return State(after.values, _flags(state, i, a, b, result, carry), after.origins)
+
+
+def _copied(relation: Relation) -> Relation:
+    return relation
+
+
+def _derivation(i: Instruction, a: Word, b: Word) -> tuple[int, Derive]:
+    """The register that the result follows from, and how; NOWHERE where it follows from none alone."""
+    by_constant = i.m < 0
+    match i.op:
+        case "movs" if not by_constant:
+            return i.m, _copied
+        case "lsls" | "lsrs" if by_constant:
+            shift = i.imm if i.op == "lsls" else -i.imm
+            return i.n, lambda relation: relation.shifted(shift)
+        case "ands" if a.constant is not None:
+            mask = a.start
+            return i.m, lambda relation: relation.masked(mask)
+        case "ands" | "bics" if b.constant is not None:
+            mask = b.start if i.op == "ands" else ~b.start & MASK
+            return i.n, lambda relation: relation.masked(mask)
+        case "rsbs":
+            return i.m, Relation.opposite
+    return NOWHERE, _copied
 
 
 def _flags(state: State, i: Instruction, a: Word, b: Word, result: Word, carry: int | None) -> Flags:
     """Flags of all but subtractions."""
     d = written_register(i)
+    if i.op == "bics" and b.constant is not None:
+        b = words.invert(b)
     if i.op in ("lsls", "lsrs") and i.m < 0:
-        return Flags(i.op, a, b, result, _others(state, i.n, d), NOWHERE, d, carry)
+        return Flags(i.op, a, b, result, *_family(state, i.n, d), NOWHERE, d, carry)
     if i.op in ("ands", "tst") and a.constant is not None:
-        return Flags("ands", b, a, result, _others(state, i.m, d), NOWHERE, d, carry)
-    if i.op in ("ands", "tst") and b.constant is not None:
-        return Flags("ands", a, b, result, _others(state, i.n, d), NOWHERE, d, carry)
+        return Flags("ands", b, a, result, *_family(state, i.m, d), NOWHERE, d, carry)
+    if i.op in ("ands", "tst", "bics") and b.constant is not None:
+        return Flags("ands", a, b, result, *_family(state, i.n, d), NOWHERE, d, carry)
     return Flags(result=result, result_at=d, carry=carry)
 
 
-def _others(state: State, source: int, d: int) -> tuple[Relative, ...]:
-    """Locations that still hold `source`, or follow from it, when `d` is overwritten."""
+def _family(state: State, source: int, d: int) -> tuple[Relation, Word, tuple[tuple[int, Relation], ...]]:
+    """How `source` follows from its root, what is known of that, and who else does, when `d` is overwritten."""
     if not 0 <= source < SP:
-        return ()
-    return tuple(relative for relative in state.relatives_of(source) if relative.location != d)
+        return SAME, TOP, ()
+    relation, root, relatives = state.related(source)
+    return relation, root, tuple(relative for relative in relatives if relative[0] != d)
 
 
 def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
@@ -169,10 +202,17 @@ def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
     if i.op == "rsbs":
         a, b, a_at, b_at = words.constant(0), operand(state, i.m, i), NOWHERE, i.m
     result = words.subtract(a, b) if a_at != b_at else words.constant(0)
-    after = state.with_value(d, result) if d >= 0 else state
+    source, derive = _derivation(i, a, b)
+    after = (
+        state
+        if d < 0
+        else state.with_derived(d, source, derive, result)
+        if source >= 0
+        else state.with_value(d, result)
+    )
     carry = 1 if a.lowest >= b.highest else 0 if a.highest < b.lowest else None
     b_at = b_at if b_at != d and b_at < SP else NOWHERE
-    return State(after.values, Flags("subtract", a, b, result, _others(state, a_at, d), b_at, d, carry), after.origins)
+    return State(after.values, Flags("subtract", a, b, result, *_family(state, a_at, d), b_at, d, carry), after.origins)
 
 
 def _added(i: Instruction, a: Word, b: Word, carry_in: int | None) -> tuple[Word, int | None]:
