@@ -38,7 +38,7 @@ from verification.ranges import Motion
 from verification.replay import Replay, replay_of, replayed_equality
 from verification.rounding import rounding_bound
 from verification.stateless import Stateless
-from verification.static_bound import static_bound
+from verification.static_bound import kept_bound
 from verification.stimuli import Stimulus, sequences, standard_stimuli
 
 STEPS = 100_000
@@ -99,7 +99,7 @@ def verify_table(
     with stage("proving a bound on rounding"):
         rounding = rounding_bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
     with stage("bounding cycles and stack from the image"):
-        cost = static_bound(image.elf, "law_step")
+        cost = kept_bound(image.elf, "law_step")
     return Verification(
         table_digest=table.digest,
         equality=tuple(equality),
