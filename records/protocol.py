@@ -55,8 +55,8 @@ _ENUMERATIONS = (
             Choice("DISARMED", 0, "disarmed, power stage off"),
             Choice("FLYING", 1, "flying on its own encoders"),
             Choice("LOOP", 2, "host in the loop"),
-            Choice("RAMPING", 3, "the host was lost, the inputs ramp to the safe value"),
-            Choice("LOST", 4, "the host was lost, inputs at the safe value until armed again"),
+            Choice("RAMPING", 3, "the host was lost or an encoder failed, the inputs ramp to the safe value"),
+            Choice("LOST", 4, "the host was lost or an encoder failed, inputs at the safe value until armed again"),
         ),
     ),
     Enumeration(
@@ -70,6 +70,9 @@ _ENUMERATIONS = (
             Choice("NOT_ARMED", 4, "the board is not armed for this; arm it first"),
             Choice("ARMED", 5, "the board is armed; disarm it first"),
             Choice("SELF_TEST_FAILED", 6, "the law's self-test fails on this board; flash it again"),
+            Choice(
+                "POSITION_LOST", 7, "an encoder jumped or stood still; mend it, then PRESET where the plant stands now"
+            ),
         ),
     ),
     Enumeration(
@@ -84,7 +87,9 @@ _ENUMERATIONS = (
             Choice("POWER", 0, "power on or brown-out"),
             Choice("PIN", 1, "reset pin"),
             Choice("SOFTWARE", 2, "software reset"),
-            Choice("WATCHDOG", 3, "independent watchdog: a control step did not finish"),
+            Choice(
+                "WATCHDOG", 3, "independent watchdog: a control step did not finish, or the board had stopped safely"
+            ),
             Choice("OTHER", 4, "another cause"),
         ),
     ),
@@ -203,6 +208,7 @@ _FROM_BOARD = (
             _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
             _count("tick_overruns", "ticks that came before the step of the last had finished"),
             _count("host_losses", "times that the host was lost while armed"),
+            _count("encoder_faults", "times that an encoder was not believed while flying"),
             _count("resets", "resets since power on"),
         ),
     ),
@@ -218,8 +224,12 @@ _FROM_BOARD = (
 PROTOCOL = Protocol(
     version=1,
     constants=(
-        Constant("HOST_LOSS_SAMPLES", 10, "samples without a setpoint from the host after which it counts as lost"),
-        Constant("RAMP_SAMPLES", 8, "samples from the loss of the host to the safe value"),
+        Constant("HOST_LOSS_SAMPLES", 7, "samples without a setpoint from the host after which it counts as lost"),
+        Constant(
+            "RAMP_SAMPLES", 4, "samples of the ramp to the safe value, which is reached 10 after the last setpoint"
+        ),
+        Constant("ENCODER_JUMP_COUNTS", 256, "counts in one sample beyond which an encoder is not believed"),
+        Constant("ENCODER_STILL_SAMPLES", 100, "samples at full drive without a count after which it is not believed"),
         Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),
     ),
     enumerations=_ENUMERATIONS,

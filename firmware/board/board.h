@@ -30,12 +30,8 @@ void pin_output(pin_port port, uint32_t pin);
 void pin_write(pin_port port, uint32_t pin, bool high);
 
 /* encoders.c */
-typedef struct {
-    encoder_counts total;
-    uint16_t last_phi; /* 16-bit counter at the last reading */
-} encoder_state;
-void encoders_start(encoder_state *self);
-encoder_counts encoders_read(encoder_state *self); /* within every 32 767 counts of azimuth */
+void encoders_start(encoder_counts *self);
+encoder_counts encoders_read(encoder_counts *self); /* within every 32 767 counts of azimuth */
 
 /* pwm.c */
 void pwm_start(void);                              /* power stage off */
@@ -64,5 +60,9 @@ board_identity board_identify(void); /* reads and clears the reset cause */
 
 /* sleep.c */
 void board_sleep(void); /* until an interrupt has left work */
+
+/* startup.c */
+_Noreturn void board_stop(void); /* rotors off, then wait for the watchdog to start the board anew */
+void stack_check(void);          /* stops the board when the stack has left its reserve */
 
 #endif

@@ -15,7 +15,7 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
     timer->CR1 = TIM_CR1_CEN;
 }
 
-void encoders_start(encoder_state *self)
+void encoders_start(encoder_counts *self)
 {
     RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
     pin_alternate(PORT_A, 0, AF_TIM2, true);
@@ -24,16 +24,18 @@ void encoders_start(encoder_state *self)
     pin_alternate(PORT_A, 7, AF_TIM3, true);
     encoder_timer_start(TIM2, UINT32_MAX);
     encoder_timer_start(TIM3, UINT16_MAX);
-    *self = (encoder_state){0};
+    *self = (encoder_counts){0};
 }
 
-encoder_counts encoders_read(encoder_state *self)
+encoder_counts encoders_read(encoder_counts *self)
 {
-    /* The difference of two readings modulo 2^16 has no overflow event that could be missed. */
+    /*
+     * The difference of two readings modulo 2^16 has no overflow event that could be missed. The last reading is the low
+     * half of the total: a bit that flips there is mended here, and one that flips above is a jump.
+     */
     const uint16_t phi = (uint16_t)TIM3->CNT;
-    const int16_t moved = (int16_t)(uint16_t)(phi - self->last_phi);
-    self->last_phi = phi;
-    self->total.phi_counts = (int32_t)((uint32_t)self->total.phi_counts + (uint32_t)moved);
-    self->total.psi_counts = (int32_t)TIM2->CNT;
-    return self->total;
+    const int16_t moved = (int16_t)(uint16_t)(phi - (uint16_t)self->phi_counts);
+    self->phi_counts = (int32_t)((uint32_t)self->phi_counts + (uint32_t)moved);
+    self->psi_counts = (int32_t)TIM2->CNT;
+    return *self;
 }

@@ -19,6 +19,16 @@ static void drive_outputs(path_state *path)
     pwm_write(duty, supervisor_power_allowed(&path->supervisor));
 }
 
+static void obey(path_state *path, path_demand demand)
+{
+    if (demand == PATH_BROKEN) {
+        board_stop();
+    }
+    if (demand == PATH_STEP) {
+        run_law(path);
+    }
+}
+
 static void serve_line(path_state *path)
 {
     uint8_t byte;
@@ -28,32 +38,30 @@ static void serve_line(path_state *path)
         if (demand == PATH_NOTHING) {
             continue;
         }
-        if (demand == PATH_STEP) {
-            run_law(path);
-        }
+        obey(path, demand);
         drive_outputs(path);
         usart_faults(&path->faults);
         usart_write(line, path_reply(path, time_us(), line));
+        path_seal(path);
     }
 }
 
-static void control_tick(path_state *path, encoder_state *encoders)
+static void control_tick(path_state *path, encoder_counts *encoders)
 {
     uint8_t line[PROTOCOL_LINE_MAX];
-    path->faults.tick_overruns += tick_take() - 1u;
+    const uint32_t passed = tick_take();
     const encoder_counts measured = encoders_read(encoders);
-    if (path_tick(path, &measured)) {
-        run_law(path);
-    }
+    obey(path, path_tick(path, &measured, passed));
     drive_outputs(path);
     usart_write(line, path_telemetry(path, time_us(), line));
+    path_seal(path);
     watchdog_feed();
 }
 
 int main(void)
 {
     static path_state path;
-    static encoder_state encoders;
+    static encoder_counts encoders;
     clock_start();
     cycle_counter_start();
     pins_start();

@@ -4,7 +4,9 @@
 #include "board.h"
 #include "stm32g071.h"
 
-extern uint32_t _stack_top, _data_load, _data_start, _data_end, _bss_start, _bss_end;
+extern uint32_t _stack_top, _stack_limit, _stack_guard, _data_load, _data_start, _data_end, _bss_start, _bss_end;
+
+#define GUARD_WORD 0x5ac3a53cu /* no address, no small number, no float of the law */
 
 int main(void);
 void Reset_Handler(void);
@@ -42,12 +44,29 @@ void Reset_Handler(void)
     for (uint32_t *to = &_bss_start; to < &_bss_end; to++) {
         *to = 0;
     }
+    for (uint32_t *to = &_stack_guard; to < &_stack_limit; to++) {
+        *to = GUARD_WORD;
+    }
     main();
-    Fault_Handler();
+    board_stop();
 }
 
-/* Rotors off, then wait for the watchdog to start the board anew. */
+/* Called by the tick's interrupt, which runs even while the main loop digs down. */
+void stack_check(void)
+{
+    for (const uint32_t *at = &_stack_guard; at < &_stack_limit; at++) {
+        if (*at != GUARD_WORD) {
+            board_stop();
+        }
+    }
+}
+
 void Fault_Handler(void)
+{
+    board_stop();
+}
+
+_Noreturn void board_stop(void)
 {
     pwm_safe();
     for (;;) {

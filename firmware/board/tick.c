@@ -26,6 +26,7 @@ void TIM6_Handler(void)
 {
     TIM6->SR = ~TIM_SR_UIF;
     ticks++;
+    stack_check();
 }
 
 bool tick_waiting(void)

@@ -46,10 +46,11 @@ static void clear_errors(uint32_t status)
     USART2->ICR = USART_ICR_ORECF | USART_ICR_FECF | USART_ICR_NECF;
 }
 
+/* More than the ring holds: an index is damaged. Empty is the only state that is known to be true. */
 static void keep(uint8_t byte)
 {
     const uint32_t head = rx.head;
-    if (head - rx.tail == RX_ROOM) {
+    if (head - rx.tail >= RX_ROOM) {
         ring_overflows++;
         return;
     }
@@ -60,7 +61,10 @@ static void keep(uint8_t byte)
 static void send_next(void)
 {
     const uint32_t tail = tx.tail;
-    if (tail == tx.head) {
+    if (tx.head - tail > TX_ROOM) {
+        tx.tail = tx.head; /* an index is damaged */
+    }
+    if (tx.tail == tx.head) {
         USART2->CR1 &= ~USART_CR1_TXEIE;
         return;
     }
@@ -88,6 +92,10 @@ bool usart_waiting(void)
 bool usart_read(uint8_t *byte)
 {
     const uint32_t tail = rx.tail;
+    if (rx.head - tail > RX_ROOM) {
+        rx.tail = rx.head;
+        return false;
+    }
     if (tail == rx.head) {
         return false;
     }
@@ -102,7 +110,8 @@ void usart_write(const uint8_t *line, size_t length)
     if (length == 0u) {
         return;
     }
-    if (TX_ROOM - (head - tx.tail) < length) {
+    const uint32_t waiting = head - tx.tail;
+    if (waiting <= TX_ROOM && TX_ROOM - waiting < length) {
         frames_dropped++;
         return;
     }

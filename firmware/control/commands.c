@@ -35,6 +35,7 @@ static path_demand arm(path_state *self, const uint8_t *payload)
     if (reason == PROTOCOL_REASON_DONE && !was_armed) {
         self->law_reset_due = true;
         self->output = (law_output){0}; /* nothing of an earlier flight until the law has run */
+        encoder_watch_start(&self->watch, &self->measured);
         /* Hold the present place until the host names another. */
         self->input.psi_ref_rad = law_angle_from_counts_psi(self->measured.psi_counts);
         self->input.phi_ref_rad = law_angle_from_counts_phi(self->measured.phi_counts);
@@ -107,11 +108,38 @@ static path_demand preset(path_state *self, const uint8_t *payload)
     self->offset.phi_counts = (int32_t)((uint32_t)self->offset.phi_counts + (uint32_t)now.phi_counts
                                         - (uint32_t)self->measured.phi_counts);
     self->measured = (encoder_counts){.psi_counts = now.psi_counts, .phi_counts = now.phi_counts};
+    supervisor_position_known(&self->supervisor);
     return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_DONE);
+}
+
+/*
+ * The same frame again must not act again: a copy that a bridge or a driver held back would re-arm a board that has
+ * lost its host, keep a flight alive without one, or move the origin of the encoders.
+ */
+static bool acts_once(uint8_t type)
+{
+    return type == PROTOCOL_TYPE_ARM || type == PROTOCOL_TYPE_PRESET || type == PROTOCOL_TYPE_RESET_LAW
+           || type == PROTOCOL_TYPE_REFERENCE;
+}
+
+/* What the reply says is still as the first copy left it, unless its effect is gone; a taken reference has no reply. */
+static path_demand reply_again(path_state *self, uint8_t type)
+{
+    if (self->reply_to != type) {
+        return PATH_NOTHING;
+    }
+    if (type == PROTOCOL_TYPE_ARM && self->reply_reason == PROTOCOL_REASON_DONE
+        && !supervisor_is_armed(&self->supervisor)) {
+        return reply_result(self, type, PROTOCOL_REASON_NOT_ARMED);
+    }
+    return reply(self, PROTOCOL_TYPE_RESULT);
 }
 
 path_demand command_obey(path_state *self, const link_frame *frame)
 {
+    if (frame->repeated && acts_once(frame->type)) {
+        return reply_again(self, frame->type);
+    }
     switch (frame->type) {
     case PROTOCOL_TYPE_IDENTIFY:
         return reply(self, PROTOCOL_TYPE_IDENTITY);

@@ -77,7 +77,7 @@ static bool follows(link_state *self, link_frame *frame)
 
 static bool accept(link_state *self, size_t encoded_length, link_frame *frame)
 {
-    uint8_t *bytes = self->received;
+    uint8_t *bytes = self->incoming.bytes;
     const size_t length = cobs_decode(bytes, encoded_length, bytes);
     uint32_t *fault = fault_of_bytes(&self->counters, bytes, length);
     if (fault != NULL) {
@@ -98,19 +98,20 @@ static bool accept(link_state *self, size_t encoded_length, link_frame *frame)
 
 bool link_receive(link_state *self, uint8_t byte, link_frame *frame)
 {
+    link_incoming *incoming = &self->incoming;
     if (byte != COBS_DELIMITER) {
-        if (self->length < sizeof self->received) {
-            self->received[self->length++] = byte;
+        if (incoming->length < sizeof incoming->bytes) {
+            incoming->bytes[incoming->length++] = byte;
         } else {
-            self->overflowed = true;
+            incoming->overflowed = true;
         }
         return false;
     }
-    const size_t length = self->length;
-    const bool overflowed = self->overflowed;
-    self->length = 0;
-    self->overflowed = false;
-    if (overflowed) {
+    const size_t length = incoming->length;
+    const bool overflowed = incoming->overflowed;
+    incoming->length = 0;
+    incoming->overflowed = false;
+    if (overflowed || length > sizeof incoming->bytes) {
         self->counters.too_long++;
         return false;
     }

@@ -19,10 +19,15 @@ typedef struct {
     uint8_t payload[PROTOCOL_PAYLOAD_MAX];
 } link_frame;
 
+/* What has come since the last delimiter; the only part that a byte inside a frame changes. */
 typedef struct {
-    uint8_t received[PROTOCOL_LINE_MAX]; /* encoded bytes since the last delimiter */
+    uint8_t bytes[PROTOCOL_LINE_MAX]; /* encoded */
     size_t length;
     bool overflowed; /* more came than any message needs: dropped up to the next delimiter */
+} link_incoming;
+
+typedef struct {
+    link_incoming incoming;
     bool in_session; /* a first frame has set the host's sequence number */
     uint8_t last_type;
     uint16_t last_sequence; /* of the last accepted frame */

@@ -1,6 +1,11 @@
 #include "path.h"
 
+#include "cobs.h"
 #include "commands.h"
+#include "integrity.h"
+
+/* A clock that claims more is wrong, and one second is enough to have lost the host. */
+#define PASSED_MAX 100u
 
 void path_start(path_state *self, const board_identity *identity)
 {
@@ -8,15 +13,34 @@ void path_start(path_state *self, const board_identity *identity)
     link_start(&self->link);
     supervisor_start(&self->supervisor);
     self->self_test_mismatches = law_self_test();
+    path_seal(self);
+}
+
+static uint32_t sum_of(const path_state *self)
+{
+    return integrity_sum((const uint8_t *)self + sizeof(link_incoming), &self->seal);
+}
+
+void path_seal(path_state *self)
+{
+    self->seal = sum_of(self);
 }
 
 path_demand path_receive(path_state *self, uint8_t byte)
 {
     link_frame frame;
-    if (!link_receive(&self->link, byte, &frame)) {
-        return PATH_NOTHING;
+    path_demand demand = PATH_NOTHING;
+    const bool ends = byte == COBS_DELIMITER && (self->link.incoming.length > 0u || self->link.incoming.overflowed);
+    if (ends && sum_of(self) != self->seal) {
+        return PATH_BROKEN;
     }
-    return command_obey(self, &frame);
+    if (link_receive(&self->link, byte, &frame)) {
+        demand = command_obey(self, &frame);
+    }
+    if (ends && demand == PATH_NOTHING) {
+        path_seal(self);
+    }
+    return demand;
 }
 
 static int32_t shifted(int32_t counts, int32_t offset)
@@ -24,26 +48,45 @@ static int32_t shifted(int32_t counts, int32_t offset)
     return (int32_t)((uint32_t)counts + (uint32_t)offset); /* counters wrap, they do not overflow */
 }
 
-bool path_tick(path_state *self, const encoder_counts *measured)
+static void measure(path_state *self, const encoder_counts *measured)
 {
-    self->tick++;
     self->measured = (encoder_counts){
         .psi_counts = shifted(measured->psi_counts, self->offset.psi_counts),
         .phi_counts = shifted(measured->phi_counts, self->offset.phi_counts),
     };
+}
+
+static void supervise(path_state *self, uint32_t passed)
+{
     const uint8_t before = self->supervisor.state;
     self->telemetry_due = before == PROTOCOL_STATE_FLYING || before == PROTOCOL_STATE_RAMPING;
-    supervisor_tick(&self->supervisor, &self->applied);
+    if (before == PROTOCOL_STATE_FLYING
+        && !encoder_watch_believes(&self->watch, &self->measured, &self->applied, (int32_t)LAW_PWM_TICKS, passed)) {
+        supervisor_encoder_fault(&self->supervisor, &self->applied);
+    }
+    supervisor_tick(&self->supervisor, &self->applied, passed);
     self->telemetry_due = self->telemetry_due || self->supervisor.state == PROTOCOL_STATE_RAMPING;
     if (!supervisor_is_armed(&self->supervisor)) {
         self->output = (law_output){0};
     }
+}
+
+path_demand path_tick(path_state *self, const encoder_counts *measured, uint32_t passed)
+{
+    const uint32_t counted = passed > PASSED_MAX ? PASSED_MAX : passed;
+    if (sum_of(self) != self->seal) {
+        return PATH_BROKEN;
+    }
+    self->tick += passed;
+    self->faults.tick_overruns += passed - 1u;
+    measure(self, measured);
+    supervise(self, counted);
     if (self->supervisor.state != PROTOCOL_STATE_FLYING) {
-        return false;
+        return PATH_NOTHING;
     }
     self->input.psi_rad = law_angle_from_counts_psi(self->measured.psi_counts);
     self->input.phi_rad = law_angle_from_counts_phi(self->measured.phi_counts);
-    return true;
+    return PATH_STEP;
 }
 
 void path_law(path_state *self)

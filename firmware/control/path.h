@@ -12,12 +12,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "encoder_watch.h"
 #include "law.h"
 #include "link.h"
 #include "protocol.h"
 #include "supervisor.h"
 
-#define PATH_FIRMWARE_VERSION 0x0001u /* major * 256 + minor */
+#define PATH_FIRMWARE_VERSION 0x0002u /* major * 256 + minor */
 #define PATH_SAMPLE_PERIOD_US 10000u
 _Static_assert(LAW_SAMPLE_PERIOD_US == PATH_SAMPLE_PERIOD_US, "the table was designed for another sample period");
 _Static_assert(LAW_U_M_SAFE_V == 0 && LAW_U_T_SAFE_V == 0, "the safe state of this board is an open power stage, 0 V");
@@ -41,21 +42,20 @@ typedef struct {
     uint32_t tick_overruns;
 } board_faults;
 
-/* Encoder positions in counts. */
-typedef struct {
-    int32_t psi_counts;
-    int32_t phi_counts;
-} encoder_counts;
-
-/* What a byte off the line asks the main loop to do. */
+/* What a byte off the line, or a control tick, asks the main loop to do. */
 typedef enum {
     PATH_NOTHING,
-    PATH_REPLY, /* send path_reply() */
-    PATH_STEP,  /* run the law once, then send path_reply() */
+    PATH_REPLY,  /* send path_reply() */
+    PATH_STEP,   /* run the law once, then go on as without */
+    PATH_BROKEN, /* the state is not as it was left: stop safely and start anew */
 } path_demand;
 
+/*
+ * All but the incoming bytes, which have a CRC of their own, lies under `seal` while nothing is worked on: path_receive()
+ * and path_tick() look whether it holds, path_seal() renews it when the work that they asked for is done.
+ */
 typedef struct {
-    link_state link;
+    link_state link; /* first, and in it first the incoming bytes */
     supervisor_state supervisor;
     law_state law;
     law_input input;
@@ -71,9 +71,13 @@ typedef struct {
     uint8_t reply_to;     /* command that a RESULT answers */
     uint8_t reply_reason; /* PROTOCOL_REASON_... of a RESULT */
     bool telemetry_due;
+    encoder_watch watch;
     board_identity identity;
     board_faults faults;
+    uint32_t seal; /* last */
 } path_state;
+_Static_assert(offsetof(path_state, link) == 0 && offsetof(link_state, incoming) == 0, "the incoming bytes come first");
+_Static_assert(sizeof(link_incoming) % 4u == 0 && offsetof(path_state, seal) % 4u == 0, "the seal is over whole words");
 
 /* Disarmed, with the law's self-test run once: it lasts longer than the watchdog waits, so never later. */
 void path_start(path_state *self, const board_identity *identity);
@@ -81,8 +85,11 @@ void path_start(path_state *self, const board_identity *identity);
 /* Take one byte off the line and obey the command that it may complete. */
 path_demand path_receive(path_state *self, uint8_t byte);
 
-/* Begin a control tick with the encoders as read now; true when the law is due (flying). */
-bool path_tick(path_state *self, const encoder_counts *measured);
+/* Begin a control tick with the encoders as read now, `passed` ticks after the last; PATH_STEP when flying. */
+path_demand path_tick(path_state *self, const encoder_counts *measured, uint32_t passed);
+
+/* The work is done: from here on the state must not change by itself. */
+void path_seal(path_state *self);
 
 /* One step of the law on the present input. */
 void path_law(path_state *self);

@@ -67,6 +67,7 @@ static size_t counters(path_state *self, uint32_t now_us, uint8_t *payload)
     message.tx_frames_dropped = self->faults.tx_frames_dropped;
     message.tick_overruns = self->faults.tick_overruns;
     message.host_losses = self->supervisor.host_losses;
+    message.encoder_faults = self->supervisor.encoder_faults;
     message.resets = self->identity.resets;
     protocol_counters_pack(&message, payload);
     return PROTOCOL_COUNTERS_SIZE;

@@ -3,7 +3,7 @@
 #include "protocol.h"
 
 /* RAMP_SAMPLES is a power of two: a Cortex-M0+ has no divide instruction. */
-#define RAMP_SHIFT 3
+#define RAMP_SHIFT 2
 _Static_assert(PROTOCOL_RAMP_SAMPLES == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
 
 void supervisor_start(supervisor_state *self)
@@ -33,6 +33,9 @@ uint8_t supervisor_arm(supervisor_state *self, uint8_t mode, bool table_matches,
     if (!self_test_passed) {
         return PROTOCOL_REASON_SELF_TEST_FAILED;
     }
+    if (mode == PROTOCOL_MODE_FLYING && self->position_lost) {
+        return PROTOCOL_REASON_POSITION_LOST;
+    }
     if (supervisor_is_armed(self)) {
         return self->mode == mode ? PROTOCOL_REASON_DONE : PROTOCOL_REASON_OTHER_MODE;
     }
@@ -52,27 +55,50 @@ void supervisor_host_alive(supervisor_state *self)
     self->missed_samples = 0;
 }
 
-static void lose_host(supervisor_state *self, const duty_pair *applied)
+static void start_ramp(supervisor_state *self, const duty_pair *applied)
 {
     self->state = PROTOCOL_STATE_RAMPING;
     self->ramp_left = PROTOCOL_RAMP_SAMPLES;
     self->ramp_start = *applied;
-    self->host_losses++;
 }
 
-void supervisor_tick(supervisor_state *self, const duty_pair *applied)
+void supervisor_encoder_fault(supervisor_state *self, const duty_pair *applied)
 {
-    if (supervisor_is_armed(self)) {
-        self->missed_samples++;
-        if (self->missed_samples >= PROTOCOL_HOST_LOSS_SAMPLES) {
-            lose_host(self, applied);
-        }
+    self->encoder_faults++;
+    self->position_lost = true;
+    start_ramp(self, applied);
+}
+
+void supervisor_position_known(supervisor_state *self)
+{
+    self->position_lost = false;
+}
+
+/* Ticks of the ramp that belong to this call: the one in which the host is found lost is the first of them. */
+static uint32_t ticks_of_ramp(supervisor_state *self, const duty_pair *applied, uint32_t passed)
+{
+    if (!supervisor_is_armed(self)) {
+        return passed;
     }
-    if (self->state == PROTOCOL_STATE_RAMPING) {
-        self->ramp_left--;
-        if (self->ramp_left == 0u) {
-            self->state = PROTOCOL_STATE_LOST;
-        }
+    self->missed_samples += passed;
+    if (self->missed_samples < PROTOCOL_HOST_LOSS_SAMPLES) {
+        return 0;
+    }
+    self->host_losses++;
+    start_ramp(self, applied);
+    return self->missed_samples - PROTOCOL_HOST_LOSS_SAMPLES + 1u;
+}
+
+void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t passed)
+{
+    const uint32_t due = ticks_of_ramp(self, applied, passed);
+    if (self->state != PROTOCOL_STATE_RAMPING) {
+        return;
+    }
+    if (self->ramp_left > PROTOCOL_RAMP_SAMPLES || due >= self->ramp_left) {
+        self->state = PROTOCOL_STATE_LOST;
+    } else {
+        self->ramp_left -= due;
     }
 }
 

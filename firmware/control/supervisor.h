@@ -1,12 +1,13 @@
 /*
- * Who may drive the rotors, and what happens when the host falls silent.
+ * Who may drive the rotors, and what happens when the host falls silent or an encoder lies.
  *
- *     DISARMED --arm--> FLYING or LOOP --host lost--> RAMPING --ramp done--> LOST
+ *     DISARMED --arm--> FLYING or LOOP --- lost ----> RAMPING --ramp done--> LOST
  *         ^                  ^                           |                    |
  *         |                  +-----------arm-------------+--------arm---------+
  *         +--disarm, from every state
  *
- * Time is counted in control ticks; the safe value of both inputs is 0 V.
+ * Time is counted in control ticks, those included that a late main loop has missed; the safe value of both inputs is
+ * 0 V. After an encoder fault nobody knows where the plant is: FLYING is refused until PRESET has told.
  */
 #ifndef SUPERVISOR_H
 #define SUPERVISOR_H
@@ -26,7 +27,9 @@ typedef struct {
     uint32_t missed_samples; /* ticks since the last setpoint of the host */
     uint32_t ramp_left;      /* ticks to the safe value */
     duty_pair ramp_start;    /* duties at the moment of the loss */
+    bool position_lost;      /* an encoder fault, and no PRESET since */
     uint32_t host_losses;
+    uint32_t encoder_faults;
 } supervisor_state;
 
 void supervisor_start(supervisor_state *self);
@@ -39,8 +42,17 @@ void supervisor_disarm(supervisor_state *self);
 /* The host sent a setpoint for the armed mode. */
 void supervisor_host_alive(supervisor_state *self);
 
-/* One control tick; `applied` are the duties that are on the motors now, from which a ramp would start. */
-void supervisor_tick(supervisor_state *self, const duty_pair *applied);
+/* An encoder is not believable: leave FLYING as for a lost host. `applied` as below. */
+void supervisor_encoder_fault(supervisor_state *self, const duty_pair *applied);
+
+/* The host has told where the encoders are. */
+void supervisor_position_known(supervisor_state *self);
+
+/*
+ * `passed` control ticks (more than one when the main loop was late); `applied` are the duties that are on the motors
+ * now, from which a ramp would start.
+ */
+void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t passed);
 
 /* The duties that may reach the motors in this state: the law's, the ramp's, or zero. */
 duty_pair supervisor_limit(const supervisor_state *self, const duty_pair *wanted);

@@ -28,6 +28,7 @@ void box_start(path_state *path)
 void box_fail_self_test(path_state *path)
 {
     path->self_test_mismatches = 1;
+    path_seal(path);
 }
 
 size_t box_feed(path_state *path, const uint8_t *data, size_t count, uint32_t now_us, uint8_t *out)
@@ -43,18 +44,21 @@ size_t box_feed(path_state *path, const uint8_t *data, size_t count, uint32_t no
         }
         path_limits(path);
         written += path_reply(path, now_us, out + written);
+        path_seal(path);
     }
     return written;
 }
 
-size_t box_tick(path_state *path, int32_t psi_counts, int32_t phi_counts, uint32_t now_us, uint8_t *out)
+size_t box_tick(path_state *path, int32_t psi_counts, int32_t phi_counts, uint32_t passed, uint32_t now_us, uint8_t *out)
 {
     const encoder_counts measured = {.psi_counts = psi_counts, .phi_counts = phi_counts};
-    if (path_tick(path, &measured)) {
+    if (path_tick(path, &measured, passed) == PATH_STEP) {
         path_law(path);
     }
     path_limits(path);
-    return path_telemetry(path, now_us, out);
+    const size_t written = path_telemetry(path, now_us, out);
+    path_seal(path);
+    return written;
 }
 
 void box_look(const path_state *path, box_view *view)

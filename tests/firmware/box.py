@@ -23,7 +23,7 @@ size_t box_size(void);
 void box_start(void *path);
 void box_fail_self_test(void *path);
 size_t box_feed(void *path, const uint8_t *data, size_t count, uint32_t now_us, uint8_t *out);
-size_t box_tick(void *path, int32_t psi_counts, int32_t phi_counts, uint32_t now_us, uint8_t *out);
+size_t box_tick(void *path, int32_t psi_counts, int32_t phi_counts, uint32_t passed, uint32_t now_us, uint8_t *out);
 void box_look(const void *path, box_view *view);
 size_t cobs_encode(const uint8_t *from, size_t length, uint8_t *to);
 size_t cobs_decode(const uint8_t *from, size_t length, uint8_t *to);
@@ -100,11 +100,11 @@ class Box:
         """A reference with azimuth zero."""
         return self.send("REFERENCE", psi_ref_rad=word(psi_ref_rad), phi_ref_rad=word(0.0))
 
-    def tick(self) -> list[Frame]:
-        """One control tick, 10 ms later."""
-        self.now_us += 10_000
+    def tick(self, passed: int = 1) -> list[Frame]:
+        """One control tick, 10 ms later; more where the main loop was late."""
+        self.now_us += 10_000 * passed
         out = self.ffi.new("uint8_t[]", 512)
-        count = self.lib.box_tick(self.path, self.psi_counts, self.phi_counts, self.now_us, out)
+        count = self.lib.box_tick(self.path, self.psi_counts, self.phi_counts, passed, self.now_us, out)
         return self.receiver.feed(bytes(self.ffi.buffer(out, count)))
 
     @property

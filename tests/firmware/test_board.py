@@ -61,21 +61,23 @@ def test_its_clock_and_its_tick_keep_time(desk):
     assert desk.peek("ticks") == later // 10_000
 
 
-def test_flying_follows_the_encoders_over_the_wrap_of_the_16_bit_counter(desk):
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("wrap", [32_768, 65_536])
+def test_flying_follows_the_encoders_over_the_wrap_of_the_16_bit_counter(desk, wrap, direction):
+    for turned in range(0, wrap - 600, 20_000):
+        desk.board.set_encoder(3, direction * turned)
+        desk.run(TICK_S)
+    desk.board.set_encoder(3, direction * (wrap - 600))
+    desk.run(TICK_S)
     desk.arm("FLYING")
     seen = []
-    for turn in range(12):
-        desk.board.set_encoder(2, -500 * turn)
-        desk.board.set_encoder(3, -30_000 * turn)
+    for step in range(1, 8):
+        desk.board.set_encoder(2, -direction * 250 * step)
+        desk.board.set_encoder(3, direction * (wrap - 600 + 200 * step))
         desk.refer(0.0)
         seen += [f for f in desk.run(TICK_S) if f.message.name == "TELEMETRY"]
-    last = seen[-1]
-    assert (last.number("psi_counts"), last.number("phi_counts")) == (-500 * 11, -30_000 * 11)
-    for turn in range(11, -12, -1):
-        desk.board.set_encoder(3, -30_000 * turn)
-        desk.refer(0.0)
-        seen += [f for f in desk.run(TICK_S) if f.message.name == "TELEMETRY"]
-    assert seen[-1].number("phi_counts") == 30_000 * 11
+    counts = [(f.number("psi_counts"), f.number("phi_counts")) for f in seen]
+    assert counts == [(-direction * 250 * k, direction * (wrap - 600 + 200 * k)) for k in range(1, 8)]
 
 
 @pytest.mark.parametrize("psi_ref_rad", [0.5, -0.5])

@@ -1,0 +1,33 @@
+/*
+ * Are the encoders believable? Their counts alone show two faults: a jump farther than the plant can turn in a sample,
+ * and an axis that does not move by one count although its motor is at full drive. An encoder that stands still while
+ * its motor runs below full drive looks like a plant at rest: no count can tell them apart.
+ */
+#ifndef ENCODER_WATCH_H
+#define ENCODER_WATCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "supervisor.h"
+
+/* Encoder positions in counts. */
+typedef struct {
+    int32_t psi_counts;
+    int32_t phi_counts;
+} encoder_counts;
+
+typedef struct {
+    encoder_counts last;
+    uint32_t still_psi; /* ticks at full drive without a count */
+    uint32_t still_phi;
+} encoder_watch;
+
+/* Begin a flight at `now`. */
+void encoder_watch_start(encoder_watch *self, const encoder_counts *now);
+
+/* Whether `now`, `passed` ticks after the last call, can be true; `applied` drove the motors over that time. */
+bool encoder_watch_believes(
+    encoder_watch *self, const encoder_counts *now, const duty_pair *applied, int32_t full_drive, uint32_t passed);
+
+#endif
