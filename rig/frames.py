@@ -2,8 +2,10 @@
 
 import struct
 import zlib
+from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache
 
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 from rig.cobs import cobs_decode, cobs_encode
@@ -35,44 +37,69 @@ class Frame:
 
 @dataclass(frozen=True)
 class Received:
-    """What came off the line, by fate; `noise` counts delimited pieces that are no frame."""
+    """What came off the line, by fate: each delimited piece that is not empty is in exactly one count, named as in COUNTERS."""
 
     bytes: int = 0
     frames: int = 0
-    noise: int = 0
-    foreign: int = 0  # sound frames of another protocol version, type or length
+    cobs_errors: int = 0
+    too_long: int = 0
+    too_short: int = 0
+    crc_errors: int = 0
+    wrong_version: int = 0
+    unknown_type: int = 0
+    wrong_length: int = 0
+
+    @property
+    def noise(self) -> int:
+        """Pieces that are no frame."""
+        return self.cobs_errors + self.too_long + self.too_short + self.crc_errors
+
+    @property
+    def foreign(self) -> int:
+        """Sound frames of another protocol version, type or length."""
+        return self.wrong_version + self.unknown_type + self.wrong_length
 
 
 @dataclass
 class FrameReceiver:
-    """Bytes to frames; a damaged frame costs at most itself, the next delimiter is a new start."""
+    """Bytes to frames; a damaged frame costs at most itself, the next delimiter is a new start.
+
+    `types` are the codes of the messages that are taken, None takes all of the protocol.
+    """
 
     protocol: Protocol
     pending: bytearray = field(default_factory=bytearray)
     received: Received = Received()
+    types: frozenset[int] | None = None
 
     def feed(self, data: bytes) -> list[Frame]:
         """Take bytes off the line; returns the frames that they completed."""
+        longest = longest_line(self.protocol)
         *ended, rest = (bytes(self.pending) + data).split(DELIMITER)
-        self.pending = bytearray(rest[-_LONGEST_ON_LINE:])
-        frames, noise, foreign = [], 0, 0
-        for piece in filter(None, ended):
-            content = _checked(piece)
-            frame = None if content is None else parse_content(self.protocol, content)
-            if frame is not None:
-                frames.append(frame)
-            elif content is None:
-                noise += 1
-            else:
-                foreign += 1
-        was = self.received
-        self.received = Received(
-            was.bytes + len(data), was.frames + len(frames), was.noise + noise, was.foreign + foreign
+        self.pending = bytearray(
+            rest[-longest - 1 :]
+        )  # one more than the longest frame is enough to know it for too long
+        fates = [self._judge(piece, longest) for piece in ended if piece]
+        counts = Counter("frames" if isinstance(fate, Frame) else fate for fate in fates) + Counter(bytes=len(data))
+        self.received = replace(
+            self.received, **{name: getattr(self.received, name) + count for name, count in counts.items()}
         )
-        return frames
+        return [fate for fate in fates if isinstance(fate, Frame)]
 
-
-_LONGEST_ON_LINE = 1024  # more without a delimiter is noise: its head need not be kept
+    def _judge(self, piece: bytes, longest: int) -> Frame | str:
+        """The frame in an encoded piece, or the name of what is wrong with it; in the order of firmware/control/link.c."""
+        if len(piece) > longest:
+            return "too_long"
+        content = cobs_decode(piece)
+        if content is None:
+            return "cobs_errors"
+        if len(content) < HEADER_SIZE + CRC_SIZE:
+            return "too_short"
+        (crc,) = struct.unpack("<I", content[-CRC_SIZE:])
+        content = content[:-CRC_SIZE]
+        if zlib.crc32(content) != crc:
+            return "crc_errors"
+        return foreign(self.protocol, content, self.types) or _unpacked(self.protocol, content)
 
 
 def encode_frame(protocol: Protocol, name: str, sequence: int, values: Mapping[str, Value]) -> bytes:
@@ -88,24 +115,34 @@ def line_length(message: Message) -> int:
     return HEADER_SIZE + message.size + CRC_SIZE + 2
 
 
+@cache
+def longest_line(protocol: Protocol) -> int:
+    """Bytes on the line of the longest message."""
+    return max(line_length(message) for message in protocol.messages)
+
+
 def parse_content(protocol: Protocol, content: bytes) -> Frame | None:
     """The frame in decoded and checked `content`; None for another protocol version, an unknown type or a wrong length."""
-    version, code, sequence = struct.unpack_from("<BBH", content)
-    message = next((message for message in protocol.messages if message.code == code), None)
-    if version != protocol.version or message is None or len(content) != HEADER_SIZE + message.size:
-        return None
+    return None if foreign(protocol, content) else _unpacked(protocol, content)
+
+
+def foreign(protocol: Protocol, content: bytes, types: frozenset[int] | None = None) -> str | None:
+    """The name of what is foreign about checked `content` (header and payload), None for a frame of the protocol."""
+    version, code, _ = struct.unpack_from("<BBH", content)
+    size = next((message.size for message in protocol.messages if message.code == code), None)
+    if version != protocol.version:
+        return "wrong_version"
+    if size is None or (types is not None and code not in types):
+        return "unknown_type"
+    return None if len(content) == HEADER_SIZE + size else "wrong_length"
+
+
+def _unpacked(protocol: Protocol, content: bytes) -> Frame:
+    _, code, sequence = struct.unpack_from("<BBH", content)
+    message = next(message for message in protocol.messages if message.code == code)
     values = struct.unpack_from(_format(message.fields), content, HEADER_SIZE)
     names = [part.name for part in message.fields]
     return Frame(message, sequence, dict(zip(names, values, strict=True)))
-
-
-def _checked(piece: bytes) -> bytes | None:
-    """Header and payload of an encoded piece, or None where COBS, length or CRC are wrong."""
-    content = cobs_decode(piece)
-    if content is None or len(content) < HEADER_SIZE + CRC_SIZE:
-        return None
-    (crc,) = struct.unpack("<I", content[-CRC_SIZE:])
-    return content[:-CRC_SIZE] if zlib.crc32(content[:-CRC_SIZE]) == crc else None
 
 
 def _format(fields: Iterable[Field]) -> str:

@@ -9,7 +9,10 @@ from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
 
-ATTEMPTS = 3
+# Three attempts in time for the board, which counts its host as lost after 70 ms; then with the port's own patience, for
+# a board that is still starting or a computer that is busy.
+QUICK_S = (0.02, 0.04)
+PATIENT_ATTEMPTS = 3
 # A line that is never silent would never time out; so many bytes without the reply are as good as silence.
 PATIENCE_BYTES = 4096
 # Ten seconds of telemetry that came while replies were awaited; the oldest goes first.
@@ -25,6 +28,10 @@ class Line:
     receiver: FrameReceiver
     sequence: int = 0
     backlog: deque[Frame] = field(default_factory=lambda: deque(maxlen=BACKLOG_FRAMES))
+    timeout_s: float | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.timeout_s = self.port.timeout
 
     def send(self, name: str, values: Mapping[str, Value]) -> int:
         """Send message `name` once and return its sequence number."""
@@ -42,10 +49,12 @@ class Line:
         line = encode_frame(PROTOCOL, name, sequence, values)
         self.sequence = (sequence + 1) & 0xFFFF
         before = self.receiver.received
-        for attempt in range(ATTEMPTS):
+        for attempt, wait_s in enumerate(self._waits_s()):
             # A delimiter first ends whatever a disturbance has left in the board's receiver.
             self._write(DELIMITER + line if attempt else line)
+            self.port.timeout = wait_s
             reply = self._await({reply_name, "RESULT"}, sequence, line_length(PROTOCOL.message(reply_name)))
+            self.port.timeout = self.timeout_s
             if reply is not None:
                 return reply
         raise no_reply(self.where, name, before, self.receiver.received)
@@ -60,6 +69,10 @@ class Line:
         self.receiver.pending.clear()
         self.backlog.clear()
         self._write(DELIMITER)
+
+    def _waits_s(self) -> list[float | None]:
+        quick = [wait_s for wait_s in QUICK_S if self.timeout_s is None or wait_s < self.timeout_s]
+        return [*quick, *(self.timeout_s,) * PATIENT_ATTEMPTS]
 
     def _await(self, names: set[str], echo: int | None, expected_bytes: int) -> Frame | None:
         limit = self.receiver.received.bytes + PATIENCE_BYTES

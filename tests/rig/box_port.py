@@ -19,6 +19,7 @@ class BoxPort:
         self.waiting = b""
         self.closed = False
         self.time_outs = 0
+        self.timeout: float | None = 0.25
 
     def write(self, data: bytes) -> int:
         """The board takes the bytes and answers at once."""
