@@ -29,12 +29,12 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """A report: its verdict in one sentence, and whether that is good news."""
+    """A report: its verdict in one sentence, whether that is good news, and named facts under it (digests, files)."""
 
     title: str
     verdict: str
     passed: bool
-    digest: str
+    facts: Sequence[tuple[str, str]]
     sections: Sequence[Section]
 
 

@@ -76,6 +76,45 @@ def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False,
         return _svg(figure)
 
 
+@dataclass(frozen=True)
+class Bars:
+    """Bars between the `edges` of an abscissa, or one per name where `edges` are names."""
+
+    heights: Sequence[float]
+    edges: Sequence[tuple[float, float]] | Sequence[str]
+    ylabel: str
+    xlabel: str = ""
+    colours: Sequence[str] = (ORANGE,)
+    log: bool = False
+
+
+def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
+    """Bar charts side by side, as SVG text."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.0, height_in), layout="constrained")
+        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+            _draw_bars(axes, panel)
+        return _svg(figure)
+
+
+def _draw_bars(axes: Axes, panel: Bars) -> None:
+    colours = [panel.colours[i % len(panel.colours)] for i in range(len(panel.heights))]
+    if all(isinstance(edge, str) for edge in panel.edges):
+        drawn = axes.bar([str(edge) for edge in panel.edges], panel.heights, color=colours, width=0.7)
+        axes.bar_label(drawn, fmt="%.3g", fontsize=8.0)
+        axes.margins(y=0.15)
+    else:
+        left = np.array([float(edge[0]) for edge in panel.edges])
+        right = np.array([float(edge[1]) for edge in panel.edges])
+        axes.bar(left, panel.heights, right - left, align="edge", color=colours, edgecolor="white", linewidth=0.5)
+    axes.set_ylabel(panel.ylabel)
+    axes.set_xlabel(panel.xlabel)
+    axes.set_axisbelow(True)
+    axes.grid(False, axis="x")
+    if panel.log:
+        axes.set_xscale("log")
+
+
 def _draw(axes: Axes, panel: Panel) -> None:
     for curve in panel.curves:
         style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": 4.0}

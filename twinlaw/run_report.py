@@ -34,7 +34,7 @@ def run_page(
         title=f"{plant}: from its equations to a flight of the firmware",
         verdict=verdict,
         passed=not failures,
-        digest=verification.table_digest,
+        facts=(("Controller table", verification.table_digest),),
         sections=(
             _flight(log, tracking, counters),
             _verified(verification, sizes),
