@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from records.errors import BadInput
 from rig.emulator.stops import Stop
 
 
@@ -104,3 +105,14 @@ class StoppedError(RuntimeError):
     def __init__(self, stop: Stop) -> None:
         super().__init__(str(stop))
         self.stop = stop
+
+
+def no_memory(address: int, size: int) -> BadInput:
+    """What is wrong with an access outside flash and SRAM."""
+    return BadInput(
+        "memory access",
+        "emulated board",
+        f"{size} bytes at 0x{address:08x}",
+        "a range inside flash or SRAM",
+        "check the address",
+    )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from rig.emulator import calls
-from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm, ReceivedByte, Reset
+from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm, ReceivedByte, Reset, no_memory
 from rig.emulator.coverage import LineCounts, lines_executed
 from rig.emulator.image import FLASH_BYTES, SRAM_BYTES, Image
 from rig.emulator.native import library
@@ -57,6 +57,11 @@ class EmulatedBoard:
     def set_host_baud(self, baud: int) -> None:
         """Change the speed at which the host's end of the line sends and samples."""
         self._lib.emulator_set_host_bit(self._machine, round(PS_PER_S / baud))
+
+    @property
+    def native(self) -> tuple[Any, Any]:
+        """(lib, machine) for the modules beside this one."""
+        return self._lib, self._machine
 
     def reset(self) -> None:
         """Pull the reset pin; RAM keeps its content."""
@@ -249,13 +254,13 @@ class EmulatedBoard:
         """Bytes of flash or SRAM; raises BadInput elsewhere."""
         out = self._ffi.new("uint8_t[]", size)
         if not self._lib.emulator_read(self._machine, address, out, size):
-            raise _no_memory(address, size)
+            raise no_memory(address, size)
         return bytes(self._ffi.buffer(out))
 
     def write_memory(self, address: int, data: bytes) -> None:
         """Change bytes of flash or SRAM as a debugger would; raises BadInput elsewhere."""
         if not self._lib.emulator_write(self._machine, address, data, len(data)):
-            raise _no_memory(address, len(data))
+            raise no_memory(address, len(data))
 
     def registers(self) -> list[int]:
         """r0-r15, xPSR, PRIMASK, CONTROL, MSP, PSP."""
@@ -286,13 +291,3 @@ class EmulatedBoard:
     ) -> CallsResult:
         """Call a function `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched."""
         return calls.call_many(self, self._machine, name, arguments, inputs, outputs, steps, max_cycles)
-
-
-def _no_memory(address: int, size: int) -> BadInput:
-    return BadInput(
-        "memory access",
-        "emulated board",
-        f"{size} bytes at 0x{address:08x}",
-        "a range inside flash or SRAM",
-        "check the address",
-    )

@@ -137,6 +137,19 @@ uint32_t emulator_resets(machine *m, uint32_t *causes, uint64_t *times_ps) {
     return kept;
 }
 
+static line *line_of(machine *m, uint32_t to_host) { return to_host ? m->device.host.to_host : m->device.host.to_board; }
+
+/* From now on: noise of this kind and no stuck level; the seed is not 0. */
+void emulator_disturb(machine *m, uint32_t to_host, uint32_t bursts_per_2_32, uint32_t burst_bits, uint32_t seed) {
+    line_of(m, to_host)->disturbed = (disturbance){.bursts_per_2_32 = bursts_per_2_32, .burst_bits = burst_bits, .random = seed};
+}
+
+void emulator_stick(machine *m, uint32_t to_host, uint32_t low) {
+    line_stick(line_of(m, to_host), low, now_ps(m), m->device.host.bit_ps);
+    usart_line_changed(m);
+    host_listen(m);
+}
+
 void emulator_send(machine *m, const uint8_t *bytes, uint32_t count, uint64_t earliest_ps) {
     for (uint32_t i = 0; i < count; i++) host_send(m, bytes[i], earliest_ps);
 }

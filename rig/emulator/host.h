@@ -38,6 +38,8 @@ uint32_t emulator_call_many(machine *m, uint32_t address, const uint32_t *argume
                             const call_block *inputs, uint32_t input_count, const call_block *outputs, uint32_t output_count,
                             uint32_t *results, uint64_t *cycles, call_report *last);
 
+void emulator_disturb(machine *m, uint32_t to_host, uint32_t bursts_per_2_32, uint32_t burst_bits, uint32_t seed);
+void emulator_stick(machine *m, uint32_t to_host, uint32_t low);
 void emulator_send(machine *m, const uint8_t *bytes, uint32_t count, uint64_t earliest_ps);
 uint64_t emulator_line_free_ps(machine *m);
 uint32_t emulator_receive(machine *m, uint8_t *bytes, uint64_t *end_ps, uint8_t *errors, uint32_t most);

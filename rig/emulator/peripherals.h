@@ -62,6 +62,7 @@ void iwdg_bite(machine *m);
 /* The core clock has changed: what was planned in seconds lies at another cycle now. */
 void clock_changed(machine *m);
 void usart_reschedule(machine *m);
+void usart_line_changed(machine *m);
 void iwdg_reschedule(machine *m);
 
 /* The host turns an encoder to an absolute count. */

@@ -92,6 +92,8 @@ void usart_received(machine *m) {
     listen(m);
 }
 
+void usart_line_changed(machine *m) { listen(m); }
+
 void usart_reschedule(machine *m) {
     if (m->device.usart.rx.busy) listen(m);
     host_listen(m);
