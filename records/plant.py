@@ -85,7 +85,7 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
     return Plant(
         name=name,
         model=checks.text(content["model"], f"{where}: model"),
-        parameters={key: _parameter(value, f"{where}: parameters.{key}") for key, value in parameters.items()},
+        parameters={key: parameter_entry(value, f"{where}: parameters.{key}") for key, value in parameters.items()},
         sensors={key: resolution for key, (resolution, _) in steps.items()},
         design=checks.table(content.get("design", {}), f"{where}: design"),
         effects=checks.table(content.get("effects", {}), f"{where}: effects"),
@@ -113,7 +113,8 @@ def _plain(value: Value) -> float | list[float]:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _parameter(entry: Any, where: str) -> Parameter:
+def parameter_entry(entry: Any, where: str) -> Parameter:
+    """One parameter from its section of the file; raises BadInput for what is missing, unknown, negative or no unit."""
     section = checks.table(entry, where)
     checks.keys(section, where, ("value", "sd", "unit", "source"))
     value, sd = section["value"], section["sd"]

@@ -1,6 +1,5 @@
 """The law of records/table.py on any tool's numbers, for peers that compile it together with the plant."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ def law_step(table: ControllerTable, ops: Any, state: Any, reference: Any, y: An
 
 
 def _prefilter(axis: AxisLaw, period_s: float, own: list[Any], reference: Any) -> tuple[Any, Any]:
-    gain = 1.0 if axis.prefilter_time_constant_s == 0.0 else -math.expm1(-period_s / axis.prefilter_time_constant_s)
+    gain = axis.prefilter_gain(period_s)
     x1 = own[0] + gain * (reference - own[0])
     return x1, own[1] + gain * (x1 - own[1])
 

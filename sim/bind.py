@@ -1,6 +1,7 @@
-"""A plant file's parameters bound to the equations that it names."""
+"""A plant file's parameters bound to the equations that it names, with the effects that it adds."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,18 +9,25 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.plant import Parameter, Plant
 from records.units import dimensions
+from sim.effects.build import model_with
+from sim.effects.effect import coefficient
+from sim.effects.table import Entries, read_effects
 from sim.model import Model, ParameterSpec
 from sim.plants import MODELS
 
 
 @dataclass(frozen=True)
 class BoundPlant:
-    """Equations with numbers: `p` and `sd` are the parameter vector and its standard deviations, shape (parameters,), SI."""
+    """Equations with numbers: `p` and `sd` are the parameter vector and its standard deviations, shape (parameters,), SI.
+
+    `model` has the equations of the plant's `effects`, whose parameters follow the plant's own in `p`.
+    """
 
     plant: Plant
     model: Model
     p: NDArray[np.float64]
     sd: NDArray[np.float64]
+    effects: Entries = field(default_factory=dict)
 
     def parameter(self, name: str) -> float:
         """The value of a parameter that is one number."""
@@ -29,7 +37,8 @@ class BoundPlant:
 def bind(plant: Plant) -> BoundPlant:
     """Check a plant's parameters against its model and put them in the model's order.
 
-    Raises BadInput for an unknown model, a missing or unknown parameter, a wrong shape, unit or sign, or a missing sensor.
+    Raises BadInput for an unknown model, a missing or unknown parameter, a wrong shape, unit or sign, a missing sensor, or an
+    effect that the model cannot have.
     """
     where = f"plant {plant.name!r}"
     if plant.model not in MODELS:
@@ -38,11 +47,19 @@ def bind(plant: Plant) -> BoundPlant:
     _check_names(plant, model, where)
     for spec in model.parameters:
         _check_parameter(spec, plant.parameters[spec.name], f"{where}: parameters.{spec.name}")
-    ordered = [plant.parameters[spec.name] for spec in model.parameters]
+    effects = read_effects(plant.effects, model, f"{where}: effects")
+    known = {**plant.parameters, **_named(effects)}
+    model = model_with(plant.model, tuple(effects))
+    ordered = [known[spec.name] for spec in model.parameters]
     p = np.array([value for entry in ordered for value in entry.values])
     sd = np.array([value for entry in ordered for value in entry.sds])
     _check_limits(model, p, where)
-    return BoundPlant(plant, model, p, sd)
+    return BoundPlant(plant, model, p, sd, effects)
+
+
+def _named(effects: Entries) -> Mapping[str, Parameter]:
+    """The effects' parameters by their names in the equations."""
+    return {coefficient(name, symbol): entry for name, entries in effects.items() for symbol, entry in entries.items()}
 
 
 def _check_names(plant: Plant, model: Model, where: str) -> None:

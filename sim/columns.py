@@ -14,7 +14,7 @@ def log_columns(model: Model) -> LogColumns:
         inputs=tuple(str(variable) for variable in model.inputs),
         outputs=outputs,
         optional=(*states, *model.signals, *(reference_name(output) for output in outputs)),
-        axes=tuple(axis.name for axis in model.axes),
+        axes=tuple(axis.name for axis in model.axes if axis.position is not None),
     )
 
 

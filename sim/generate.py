@@ -104,21 +104,22 @@ def _outputs(model: Model, constants: Constants) -> str:
 
 
 def _jacobians(model: Model, constants: Constants) -> str:
-    """A += df/dx, B += df/du, D += df/dp, H += dy/dx where they are not identically zero; rows of held velocities are the caller's."""
+    """A += df/dx, B += df/du, D += df/dp, H += dy/dx, E += dy/dp where not identically zero; held rows are the caller's."""
     rates, outputs = model.state_rates(), sympy.Matrix(list(model.outputs.values()))
     blocks: Mapping[str, tuple[sympy.Matrix, Sequence[sympy.Symbol]]] = {
         "A": (rates, model.states),
         "B": (rates, model.inputs),
         "D": (rates, model.parameter_symbols),
         "H": (outputs, model.states),
+        "E": (outputs, model.parameter_symbols),
     }
     targets = {}
     for name, (functions, variables) in blocks.items():
         jacobian = smooth(functions.jacobian(sympy.Matrix(variables)))
         for (row, column), entry in jacobian.todok().items():
             targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
-    head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H)"
-    return _function(head, [*_locals(model), *assignments(targets, constants)])
+    head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H,"
+    return _function(f"{head} num *E)", [*_locals(model), *assignments(targets, constants)])
 
 
 def _locals(model: Model, *, inputs: bool = True) -> list[str]:

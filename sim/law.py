@@ -1,6 +1,5 @@
 """A controller table in the form that the kernels' own float64 law takes (sim/c/law.h)."""
 
-import math
 from typing import Any
 
 from records.errors import BadInput
@@ -28,8 +27,7 @@ def law_struct(kernel: Kernel, table: ControllerTable) -> Any:
 
 
 def _fill(struct: Any, axis: AxisLaw, sample_period_s: float) -> None:
-    time_constant_s = axis.prefilter_time_constant_s
-    struct.prefilter_gain = 1.0 if time_constant_s == 0.0 else -math.expm1(-sample_period_s / time_constant_s)
+    struct.prefilter_gain = axis.prefilter_gain(sample_period_s)
     for index, value in enumerate(axis.a):
         struct.a[index] = value
     for index, value in enumerate(axis.feedforward_V):

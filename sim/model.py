@@ -6,6 +6,8 @@ from typing import Any
 
 import sympy
 
+from sim.places import Places
+
 TIME = sympy.Symbol("t_s", real=True)
 
 
@@ -54,7 +56,8 @@ class Model:
     """A plant's equations: states x with rates, inputs u clamped to `input_limits`, outputs y, parameters p; argument order (t, x, u, p).
 
     `rates` covers every state but the velocities of `axes`, whose rates follow from the axes. `signals` are further quantities
-    that a log of the plant may carry (the speed of a rotor that has no state), by column name.
+    that a log of the plant may carry (the speed of a rotor that has no state), by column name. `places` says where effects can act,
+    `starts` where the states that effects brought begin, as expressions of the plant's own states and inputs; 0 where none is named.
     """
 
     name: str
@@ -66,6 +69,8 @@ class Model:
     axes: tuple[Axis, ...]
     input_limits: Mapping[sympy.Symbol, tuple[sympy.Expr, sympy.Expr]]
     signals: Mapping[str, sympy.Expr] = field(default_factory=dict)
+    places: Places = field(default_factory=Places)
+    starts: Mapping[sympy.Symbol, sympy.Expr] = field(default_factory=dict)
 
     @property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:

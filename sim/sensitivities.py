@@ -12,7 +12,7 @@ from sim.bind import BoundPlant
 from sim.kernel import kernel
 from sim.model import Model
 
-MAX_COLUMNS = 64
+MAX_COLUMNS = 128
 Array = NDArray[np.float64]
 
 
@@ -48,7 +48,7 @@ def sensitivities(
 
     A gain multiplies and an offset adds to an input before its limits; at a limit their derivative is 0. Sticking, breaking away and
     stops are carried to first order (the instants of events move with the columns). Raises BadInput for an unknown column, or
-    more than 64.
+    more than 128.
     """
     model, compiled = bound.model, kernel(bound.model)
     known = column_names(model)

@@ -9,7 +9,7 @@
 
 #include "sensitivity.h"
 
-#define MAX_COLUMNS 64
+#define MAX_COLUMNS 128
 
 typedef struct {
     double row[N_STATES][MAX_COLUMNS];
@@ -24,15 +24,15 @@ typedef struct {
     int parameters; /* so many columns at the beginning are parameters */
 } context;
 
-/* f's derivatives by state, inputs and parameters, and the outputs' by the state. */
+/* f's derivatives by state, inputs and parameters, and the outputs' by state and parameters. */
 typedef struct {
-    double A[N_STATES * N_STATES], B[N_STATES * N_INPUTS], D[N_STATES * N_PARAMETERS], H[N_OUTPUTS * N_STATES];
+    double A[N_STATES * N_STATES], B[N_STATES * N_INPUTS], D[N_STATES * N_PARAMETERS], H[N_OUTPUTS * N_STATES], E[N_OUTPUTS * N_PARAMETERS];
 } jacobians;
 
 static inline void evaluate(const context *at, double t_s, const double *x, const double *sign, jacobians *j)
 {
-    *j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}};
-    model_jacobians(t_s, x, at->u, at->c, sign, j->A, j->B, j->D, j->H);
+    *j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
+    model_jacobians(t_s, x, at->u, at->c, sign, j->A, j->B, j->D, j->H, j->E);
 }
 
 /* Row i of the derivatives by the columns, apart from the way through the state. */
@@ -200,7 +200,8 @@ static void record(const context *at, const plant_body *body, double t_s, int64_
     for (int i = 0; i < N_OUTPUTS; i++) {
         double *const to = request->dy + (sample * N_OUTPUTS + i) * request->columns;
         for (int column = 0; column < request->columns; column++) {
-            to[column] = 0.0;
+            const int which = request->column[column];
+            to[column] = which < N_PARAMETERS ? j.E[i * N_PARAMETERS + which] : 0.0;
             for (int k = 0; k < N_STATES; k++)
                 to[column] += j.H[i * N_STATES + k] * S->row[k][column];
         }

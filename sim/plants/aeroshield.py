@@ -11,6 +11,7 @@ from functools import cache
 import sympy
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 THETA, THETA_DOT = symbol("theta_rad"), symbol("theta_dot_rad_s")
 U = symbol("u_V")
@@ -40,4 +41,12 @@ def model() -> Model:
         rates={THETA: THETA_DOT},
         axes=(Axis("arm", THETA, THETA_DOT, p["m"] * p["l"] ** 2, torque, sympy.Integer(0), None, None),),
         input_limits={U: (sympy.Integer(0), p["u_max"])},
+        places=Places(
+            inputs={"input": InputPlace(U, "V", 3.7)},
+            rotors={"rotor": RotorPlace(U, "", U, 3.7, {"arm": p["l"] * p["K"] * U}, 3.7, linear=True)},
+            axes={
+                "arm": AxisPlace("theta_rad", "N m", 0.004, gravity=-gravity, gravity_moment=p["m"] * p["g"] * p["l"])
+            },
+            sensors={"theta_sensor": SensorPlace("theta_rad", "rad", 1.0)},
+        ),
     )

@@ -10,6 +10,7 @@ from functools import cache
 import sympy
 
 from sim.model import TIME, Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 THETA, THETA_DOT = symbol("theta_rad"), symbol("theta_dot_rad_s")
 U = symbol("u_V")
@@ -37,4 +38,19 @@ def model() -> Model:
         axes=(Axis("arm", THETA, THETA_DOT, sympy.Integer(1), torque, sympy.Integer(0), None, None),),
         input_limits={U: (sympy.Integer(0), p["u_max"])},
         signals={"t_host_s": TIME},  # ideally the same time
+        places=Places(
+            inputs={"input": InputPlace(U, "V", 3.7)},
+            rotors={"rotor": RotorPlace(U, "", U, 3.7, {"arm": p["b"] * U}, 3.7, linear=True)},
+            axes={
+                "arm": AxisPlace(
+                    "theta_rad",
+                    "rad s^-2",
+                    90.0,
+                    speed_size=3.0,
+                    gravity=-p["w2"] * sympy.sin(THETA),
+                    gravity_moment=p["w2"],
+                )
+            },
+            sensors={"theta_sensor": SensorPlace("theta_rad", "rad", 1.0)},
+        ),
     )

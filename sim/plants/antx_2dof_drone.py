@@ -15,6 +15,7 @@ from functools import cache
 import sympy
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 THETA, Q = symbol("theta_rad"), symbol("q_rad_s")
 FILTERED, FILTERED_RATE = (
@@ -50,4 +51,10 @@ def model() -> Model:
         },
         axes=(Axis("pitch", THETA, Q, sympy.Integer(1), torque, sympy.Integer(0), None, None),),
         input_limits={M: (sympy.Integer(-1), sympy.Integer(1))},
+        places=Places(
+            inputs={"input": InputPlace(M, "-", 1.0)},
+            rotors={"rotor": RotorPlace(M, "", M, 1.0, {"pitch": p["mu"] * delayed}, 1.0, linear=True, two_way=True)},
+            axes={"pitch": AxisPlace("theta_rad", "rad s^-2", 20.0)},
+            sensors={"theta_sensor": SensorPlace("theta_rad", "rad", 1.0)},
+        ),
     )

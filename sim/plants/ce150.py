@@ -15,6 +15,7 @@ from typing import Any
 import sympy
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, odd_polynomial, polynomial, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 OMEGA_M, OMEGA_T = symbol("omega_M_rad_s"), symbol("omega_T_rad_s")
 PSI, PSI_DOT = symbol("psi_rad"), symbol("psi_dot_rad_s")
@@ -60,6 +61,7 @@ Parameters = Mapping[str, Any]
 def model() -> Model:
     """The equations of the CE150 as a Model."""
     p = named_symbols(PARAMETERS)
+    thrust_M_N, thrust_T_N = odd_polynomial(p["p_FM"], OMEGA_M), odd_polynomial(p["p_FT"], OMEGA_T)  # (6), (7)
     return Model(
         name="ce150",
         states=STATES,
@@ -73,10 +75,11 @@ def model() -> Model:
             PHI: PHI_DOT,
         },
         axes=(
-            elevation(p, odd_polynomial(p["p_FM"], OMEGA_M)),  # thrust of (6)
-            azimuth(p, odd_polynomial(p["p_FT"], OMEGA_T), p["J_A"] * sympy.cos(PSI)),  # thrust of (7)
+            elevation(p, thrust_M_N),
+            azimuth(p, thrust_T_N, p["J_A"] * sympy.cos(PSI)),
         ),
         input_limits={U_M: (p["u_min"], p["u_max"]), U_T: (p["uT_min"], p["uT_max"])},
+        places=places(p, thrust_M_N, thrust_T_N),
     )
 
 
@@ -92,3 +95,23 @@ def azimuth(p: Parameters, thrust_N: sympy.Expr, inertia: sympy.Expr) -> Axis:
     """Eq (9) driven by the tail rotor's thrust and the main rotor's reaction."""
     torque = (p["l_T"] * thrust_N - p["K_A"] * OMEGA_M) * sympy.cos(PSI) - p["b_vA"] * PHI_DOT
     return Axis("azimuth", PHI, PHI_DOT, inertia, torque, p["b_cA"], -p["Phi_lim"], p["Phi_lim"])
+
+
+def places(p: Parameters, thrust_M_N: sympy.Expr, thrust_T_N: sympy.Expr) -> Places:
+    """Where effects act: two drivers, two rotors, two axes, two encoders."""
+    lift, push = p["l_M"] * thrust_M_N, p["l_T"] * thrust_T_N * sympy.cos(PSI)
+    gravity = -p["tau_gE"] * sympy.cos(PSI)
+    return Places(
+        inputs={"main_input": InputPlace(U_M, "V", 10.0), "tail_input": InputPlace(U_T, "V", 10.0)},
+        rotors={
+            "main_rotor": RotorPlace(U_M, "M", OMEGA_M, 600.0, {"elevation": lift}, 10.0, p["K_M"] * U_M),
+            "tail_rotor": RotorPlace(U_T, "T", OMEGA_T, 800.0, {"azimuth": push}, 10.0, p["K_T"] * U_T, two_way=True),
+        },
+        axes={
+            "elevation": AxisPlace(
+                "psi_rad", "N m", 0.04, gravity=gravity, gravity_moment=p["tau_gE"], spun_by="tail_rotor"
+            ),
+            "azimuth": AxisPlace("phi_rad", "N m", 0.04, level=True, spun_by="main_rotor"),
+        },
+        sensors={"psi_sensor": SensorPlace("psi_rad", "rad"), "phi_sensor": SensorPlace("phi_rad", "rad")},
+    )

@@ -16,6 +16,7 @@ def model() -> Model:
     """The paper's literal equations (4)-(8) and (15) as a Model."""
     p = named_symbols(PARAMETERS)
     right = ce150.model()
+    thrust_M_N, thrust_T_N = polynomial(p["p_FM"], OMEGA_M), polynomial(p["p_FT"], OMEGA_T)
     return replace(
         right,
         name="ce150_seed_literal",
@@ -25,7 +26,8 @@ def model() -> Model:
             OMEGA_T: p["K_T"] * U_T - polynomial(p["p_bT"], OMEGA_T) * OMEGA_T,
         },
         axes=(
-            ce150.elevation(p, polynomial(p["p_FM"], OMEGA_M)),
-            ce150.azimuth(p, polynomial(p["p_FT"], OMEGA_T), inertia=p["J_A"]),
+            ce150.elevation(p, thrust_M_N),
+            ce150.azimuth(p, thrust_T_N, inertia=p["J_A"]),
         ),
+        places=ce150.places(p, thrust_M_N, thrust_T_N),
     )

@@ -8,6 +8,7 @@ q the position of the carriage, u the motor voltage behind its limits, gtau the 
 from functools import cache
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 Q, Q_DOT = symbol("q_m"), symbol("q_dot_m_s")
 U = symbol("u_V")
@@ -36,4 +37,10 @@ def model() -> Model:
         rates={Q: Q_DOT},
         axes=(Axis("carriage", Q, Q_DOT, p["M"], force, p["F_c"], None, None),),
         input_limits={U: (-p["u_max"], p["u_max"])},
+        places=Places(
+            inputs={"input": InputPlace(U, "V", 10.0)},
+            rotors={"motor": RotorPlace(U, "", U, 10.0, {"carriage": p["gtau"] * U}, 10.0, linear=True, two_way=True)},
+            axes={"carriage": AxisPlace("q_m", "N", 100.0, length_unit="m", speed_size=0.1)},
+            sensors={"q_sensor": SensorPlace("q_m", "m", 0.2)},
+        ),
     )

@@ -10,6 +10,7 @@ from functools import cache
 import sympy
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 THETA, THETA_DOT = symbol("theta_rad"), symbol("theta_dot_rad_s")
 U = symbol("u_V")
@@ -36,4 +37,10 @@ def model() -> Model:
         rates={THETA: THETA_DOT},
         axes=(Axis("arm", THETA, THETA_DOT, sympy.Integer(1), torque, sympy.Integer(0), None, None),),
         input_limits={U: (sympy.Integer(0), p["u_max"])},
+        places=Places(
+            inputs={"input": InputPlace(U, "V", 2.0)},
+            rotors={"rotor": RotorPlace(U, "", U, 2.0, {"arm": p["b"] * U}, 2.0, linear=True)},
+            axes={"arm": AxisPlace("theta_rad", "rad s^-2", 10.0)},
+            sensors={"theta_sensor": SensorPlace("theta_rad", "rad", 1.0)},
+        ),
     )

@@ -17,6 +17,7 @@ from typing import Any
 import sympy
 
 from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
 
 THETA, THETA_DOT = symbol("theta_rad"), symbol("theta_dot_rad_s")
 PSI, PSI_DOT = symbol("psi_rad"), symbol("psi_dot_rad_s")
@@ -59,6 +60,7 @@ def model() -> Model:
         axes=(pitch(p, omega_M, omega_T), yaw(p, omega_M, omega_T)),
         input_limits={U_M: (-p["u_max"], p["u_max"]), U_T: (-p["u_max"], p["u_max"])},
         signals={"omega_M_rad_s": omega_M, "omega_T_rad_s": omega_T},
+        places=places(p, omega_M, omega_T),
     )
 
 
@@ -82,3 +84,23 @@ def yaw(p: Parameters, omega_M: sympy.Expr, omega_T: sympy.Expr) -> Axis:
 def body_inertia(p: Parameters) -> sympy.Expr:
     """I_b of eq (4) [kg m^2]."""
     return 2 * (p["mpa"] + p["me"]) * p["dt"] ** 2 + p["me"] * p["dx"] ** 2 + p["mrod"] * p["lt"] ** 2 / 12
+
+
+def places(p: Parameters, omega_M: sympy.Expr, omega_T: sympy.Expr) -> Places:
+    """Where effects act; both rotors push both axes."""
+    lever = p["dt"] * sympy.cos(THETA)
+    main = {"pitch": p["dt"] * p["Kmt"] * omega_M**2, "yaw": -lever * p["Kmp"] * omega_M**2}
+    tail = {"pitch": p["dt"] * p["Ktt"] * omega_T**2, "yaw": lever * p["Ktp"] * omega_T**2}
+    moment = p["dx"] * p["g"] * p["me"]
+    return Places(
+        inputs={"main_input": InputPlace(U_M, "V", 24.0), "tail_input": InputPlace(U_T, "V", 24.0)},
+        rotors={
+            "main_rotor": RotorPlace(U_M, "M", omega_M, 400.0, main, 24.0, two_way=True),
+            "tail_rotor": RotorPlace(U_T, "T", omega_T, 400.0, tail, 24.0, two_way=True),
+        },
+        axes={
+            "pitch": AxisPlace("theta_rad", "N m", 0.03, gravity=-moment * sympy.sin(THETA), gravity_moment=moment),
+            "yaw": AxisPlace("psi_rad", "N m", 0.03, level=True),
+        },
+        sensors={"theta_sensor": SensorPlace("theta_rad", "rad"), "psi_sensor": SensorPlace("psi_rad", "rad")},
+    )

@@ -1,0 +1,78 @@
+"""The library of effects: physics that a rig may have and its nominal model lacks.
+
+One file for each effect, or for a family of one form; this table is the only place that names them all. Effects are added to a model
+in this order, the innermost first: what changes an input comes last, so that a changed rotor is driven by the changed input.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
+
+from sim.effects import (
+    axial_inflow,
+    cable_spring,
+    coulomb,
+    deadzone,
+    disturbance,
+    downwash,
+    driver_asymmetry,
+    end_stop,
+    flexible_mode,
+    friction_asymmetry,
+    gain_and_offset,
+    gravity,
+    ground_effect,
+    gyroscopic,
+    hysteresis,
+    inertia,
+    level_axis,
+    load_friction,
+    quadratic_drag,
+    reaction,
+    reverse_asymmetry,
+    rotor_dry_friction,
+    saturation,
+    sensor_map,
+    stribeck,
+    supply_sag,
+    thrust_law,
+    warmup,
+)
+from sim.effects.effect import Effect
+from sim.model import Model
+
+FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
+    sensor_map.effects,
+    flexible_mode.effects,
+    coulomb.effects,
+    stribeck.effects,
+    load_friction.effects,
+    friction_asymmetry.effects,
+    hysteresis.effects,
+    quadratic_drag.effects,
+    cable_spring.effects,
+    gravity.effects,
+    level_axis.effects,
+    end_stop.effects,
+    disturbance.effects,
+    inertia.effects,
+    gyroscopic.effects,
+    axial_inflow.effects,
+    ground_effect.effects,
+    reverse_asymmetry.effects,
+    downwash.effects,
+    thrust_law.effects,
+    warmup.effects,
+    rotor_dry_friction.effects,
+    reaction.effects,
+    deadzone.effects,
+    saturation.effects,
+    supply_sag.effects,
+    driver_asymmetry.effects,
+    gain_and_offset.effects,
+)
+
+
+@lru_cache(maxsize=64)
+def effects_for(model: Model) -> Mapping[str, Effect]:
+    """Every effect whose place exists in `model`, the nominal one of a plant, by name; in the order in which they are added."""
+    return {effect.name: effect for family in FAMILIES for effect in family(model)}

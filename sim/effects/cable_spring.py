@@ -1,0 +1,40 @@
+"""A cable that is bent pulls back.
+
+(1)  torque - k (angle - angle_0)
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import axis_of, short, with_torque
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis."""
+    for axis, entry in model.places.axes.items():
+        angle, unit = short(entry.angle), entry.length_unit
+        size = entry.torque_size / (1.0 if unit == "rad" else entry.speed_size)
+        twins = {f"{axis}.cable_hysteresis": "over small angles a cable that does not slip is a spring"}
+        if entry.level:
+            twins |= {
+                f"{axis}.tilt": "within a half turn, sin(angle) is nearly straight",
+                f"{axis}.wind": "within a half turn, a cosine is nearly straight",
+            }
+        elif entry.gravity is not None:
+            twins |= {f"{axis}.centre_of_gravity": "near the horizontal, both are straight in the angle"}
+        yield Effect(
+            name=f"{axis}.cable_spring",
+            depends=f"torque({angle})",
+            parameters=(
+                EffectParameter("k", f"{entry.torque_unit} {unit}^-1", -0.5 * size, 2.0 * size, 0.05 * size, 0.0),
+                EffectParameter("angle_0", unit, -4.0, 4.0, 0.0, starts=(0.0, -0.5, 0.5)),
+            ),
+            equation=f"- k ({angle} - angle_0)",
+            story="The cables to the moving part bend and pull it back to one angle.",
+            source="contract; gap catalogue 32, 34",
+            edit=lambda model, k, angle_0, axis=axis: with_torque(
+                model, axis, -k * (axis_of(model, axis).position - angle_0)
+            ),
+            twins=twins,
+        )

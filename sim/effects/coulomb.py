@@ -1,0 +1,30 @@
+"""Dry friction of an axis.
+
+(1)  torque - b sgn(velocity), any value within +-b at rest
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import axis_of, short, with_friction
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis, above the nominal level."""
+    for axis, entry in model.places.axes.items():
+        size, angle = entry.torque_size, short(entry.angle)
+        level = axis_of(model, axis).coulomb
+        yield Effect(
+            name=f"{axis}.coulomb",
+            depends=f"torque(sgn {angle}_dot)",
+            parameters=(
+                EffectParameter("b", entry.torque_unit, 0.0, size, 0.006 * size, 0.0, (0.006 * size, 0.06 * size)),
+            ),
+            equation=f"- b sgn({angle}')",
+            story="The bearing rubs with a constant force: the axis stops early and sticks until pushed hard enough.",
+            source="contract",
+            edit=lambda model, b, axis=axis: with_friction(model, axis, b),
+            twins={f"{axis}.stribeck": "with little motion at the Stribeck speed only the level shows"},
+            same_as="" if level == 0 else str(level),
+        )

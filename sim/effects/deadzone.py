@@ -1,0 +1,36 @@
+"""Dead band of a driver: a small command moves nothing, and of a large one the band is missing.
+
+(1)  u -> sgn(u) max(|u| - d, 0)
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input."""
+    for place, entry in model.places.inputs.items():
+        u = entry.variable
+        yield Effect(
+            name=f"{place}.deadzone",
+            depends=f"dead band of {u}",
+            parameters=(
+                EffectParameter("d", entry.unit, 0.0, 0.4 * entry.size, 0.02 * entry.size, 0.0, _starts(entry.size)),
+            ),
+            equation=f"{u} -> sgn({u}) max(|{u}| - d, 0)",
+            story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
+            source="contract; gap catalogue 1, 2",
+            applied=lambda d, u=u: {u: sympy.sign(u) * sympy.Max(sympy.Abs(u) - d, 0)},
+            twins={
+                f"{place}.offset": "while the input keeps its sign, both take away a constant",
+                f"{place}.gain": "over a narrow range of inputs, a constant loss looks like a smaller gain",
+            },
+        )
+
+
+def _starts(size: float) -> tuple[float, ...]:
+    return (0.02 * size, 0.1 * size)

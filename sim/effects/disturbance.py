@@ -1,0 +1,32 @@
+"""A push from outside, once.
+
+(1)  torque + torque (t_0 <= t < t_0 + duration), with edges of EDGE_S
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import EDGE_S, step, with_torque
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis."""
+    for axis, entry in model.places.axes.items():
+        size = entry.torque_size
+        yield Effect(
+            name=f"{axis}.disturbance",
+            depends="torque(t)",
+            parameters=(
+                EffectParameter("torque", entry.torque_unit, -size, size, 0.075 * size, 0.0),
+                EffectParameter("t_0", "s", 0.0, 1.0e5, 10.0),
+                EffectParameter("duration", "s", 0.05, 1.0e3, 1.0, starts=(0.3, 1.0, 3.0)),
+            ),
+            equation=f"+ torque for t_0 <= t < t_0 + duration, edges {EDGE_S:g} s",
+            story="Someone or something pushed the arm during the run.",
+            source="contract",
+            edit=lambda model, torque, t_0, duration, axis=axis: with_torque(
+                model, axis, torque * (step(t_0) - step(t_0 + duration))
+            ),
+            smooth=False,
+        )

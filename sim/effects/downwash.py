@@ -1,0 +1,39 @@
+"""The tail rotor works in the air that the main rotor stirs.
+
+(1)  F_T -> F_T (1 - a omega_M / 600 rad/s)
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.edits import with_thrust
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+FULL_SPEED = 600.0  # [rad/s]
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) where there are both rotors."""
+    if not {"main_rotor", "tail_rotor"} <= set(model.places.rotors):
+        return
+    yield Effect(
+        name="tail_rotor.downwash",
+        depends="thrust(omega_M)",
+        parameters=(EffectParameter("a", "-", -1.0, 1.0, 0.05, 0.0),),
+        equation="F_T -> F_T (1 - a omega_M / (600 rad/s))",
+        story="The main rotor's wake hits the tail rotor, which pushes less the faster the main rotor turns.",
+        source="contract; gap catalogue 22",
+        edit=_edit,
+        twins={
+            "azimuth.quadratic_reaction": "at a nearly constant tail speed both are a torque that grows with the main rotor's speed",
+            "tail_input.offset": "at nearly constant speeds both are a constant torque on the azimuth",
+            "tail_input.supply_sag": "both weaken the tail rotor when the main rotor works harder",
+        },
+    )
+
+
+def _edit(model: Model, a: sympy.Symbol) -> Model:
+    factor = 1 - a * model.places.rotors["main_rotor"].speed / FULL_SPEED
+    return with_thrust(model, "tail_rotor", lambda torque: torque * factor)

@@ -1,0 +1,99 @@
+"""Changes of a plant's equations, each a function from model to model."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import sympy
+
+from records.units import unit_suffix
+from sim.model import TIME, Axis, Model
+from sim.places import Edit
+
+Expression = Any
+EDGE_S = 0.02  # how long a step in time takes: a bend is integrated well and has derivatives, a jump has none
+
+
+def axis_of(model: Model, name: str) -> Axis:
+    """The axis of that name."""
+    return next(axis for axis in model.axes if axis.name == name)
+
+
+def sign_of(model: Model, name: str) -> sympy.Symbol:
+    """The symbol of the direction of that axis' dry friction."""
+    return next(sign for axis, sign in zip(model.axes, model.friction_signs, strict=True) if axis.name == name)
+
+
+def with_axis(model: Model, name: str, change: Callable[[Axis], Axis]) -> Model:
+    """One axis changed."""
+    return replace(model, axes=tuple(change(axis) if axis.name == name else axis for axis in model.axes))
+
+
+def with_torque(model: Model, name: str, torque: Expression) -> Model:
+    """A further torque (force) on an axis."""
+    return with_axis(model, name, lambda axis: replace(axis, torque=axis.torque + torque))
+
+
+def with_friction(model: Model, name: str, level: Expression) -> Model:
+    """Further dry friction on an axis; at rest it takes any value within its level."""
+    return with_axis(model, name, lambda axis: replace(axis, coulomb=axis.coulomb + level))
+
+
+def with_thrust(model: Model, rotor: str, edit: Edit) -> Model:
+    """A rotor's torques replaced by `edit` of them, on every axis that it pushes."""
+    place = model.places.rotors[rotor]
+    thrusts = {axis: edit(torque) for axis, torque in place.thrusts.items()}
+    for axis, torque in place.thrusts.items():
+        model = with_torque(model, axis, thrusts[axis] - torque)
+    rotors = {**model.places.rotors, rotor: replace(place, thrusts=thrusts)}
+    return replace(model, places=replace(model.places, rotors=rotors))
+
+
+def with_drive(model: Model, rotor: str, factor: Expression) -> Model:
+    """What drives a rotor times `factor`: the input's part of its rate, or the input itself where the rotor has no lag."""
+    place = model.places.rotors[rotor]
+    if place.drive is None:
+        return with_thrust(model, rotor, lambda torque: torque.xreplace({place.variable: factor * place.variable}))
+    rate = model.rates[place.speed] + (factor - 1) * place.drive
+    rotors = {**model.places.rotors, rotor: replace(place, drive=factor * place.drive)}
+    return replace(model, rates={**model.rates, place.speed: rate}, places=replace(model.places, rotors=rotors))
+
+
+def with_input(model: Model, applied: Mapping[sympy.Symbol, Expression]) -> Model:
+    """Each input replaced by what arrives of it, in every equation."""
+
+    def edit(expression: Expression) -> Expression:
+        return sympy.sympify(expression).xreplace(dict(applied))
+
+    return replace(
+        model,
+        rates={state: edit(rate) for state, rate in model.rates.items()},
+        axes=tuple(
+            replace(axis, inertia=edit(axis.inertia), torque=edit(axis.torque), coulomb=edit(axis.coulomb))
+            for axis in model.axes
+        ),
+        signals={name: edit(signal) for name, signal in model.signals.items()},
+        places=model.places.edited(edit),
+    )
+
+
+def with_output(model: Model, output: str, edit: Edit) -> Model:
+    """One output replaced by `edit` of it."""
+    return replace(model, outputs={**model.outputs, output: edit(model.outputs[output])})
+
+
+def with_state(model: Model, state: sympy.Symbol, rate: Expression, start: Expression | None = None) -> Model:
+    """A further state with its rate and where it starts, by default at 0."""
+    starts = dict(model.starts) if start is None else {**model.starts, state: start}
+    return replace(model, states=(*model.states, state), rates={**model.rates, state: rate}, starts=starts)
+
+
+def step(at_s: Expression) -> Expression:
+    """0 before the time `at_s` and 1 after it, straight in between over EDGE_S, half way up at `at_s`."""
+    return sympy.Max(0, sympy.Min(1, (TIME - at_s) / EDGE_S + sympy.Rational(1, 2)))
+
+
+def short(name: str) -> str:
+    """A column without its unit: psi of psi_rad."""
+    unit = unit_suffix(name)
+    return name.removesuffix(f"_{unit}") if unit else name

@@ -1,0 +1,36 @@
+"""Dry friction that differs by the direction.
+
+(1)  level b_c + (difference / 2) sgn(velocity)
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import sympy
+
+from sim.effects.edits import short, sign_of, with_axis
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis; the level stays at or above 0."""
+    for axis, entry in model.places.axes.items():
+        size, angle = entry.torque_size, short(entry.angle)
+        yield Effect(
+            name=f"{axis}.friction_asymmetry",
+            depends=f"torque(sgn {angle}_dot)",
+            parameters=(EffectParameter("difference", entry.torque_unit, -0.5 * size, 0.5 * size, 0.005 * size, 0.0),),
+            equation=f"- (b_c + difference/2 sgn({angle}')) sgn({angle}')",
+            story="The bearing rubs harder one way than the other.",
+            source="contract; gap catalogue 27, 28",
+            edit=lambda model, difference, axis=axis: _edit(model, difference, axis),
+            twins={f"{axis}.offset_force": "while the axis moves, both are one constant torque"},
+        )
+
+
+def _edit(model: Model, difference: sympy.Symbol, name: str) -> Model:
+    sign = sign_of(model, name)
+    return with_axis(
+        model, name, lambda axis: replace(axis, coulomb=sympy.Max(axis.coulomb + difference / 2 * sign, 0))
+    )

@@ -1,0 +1,48 @@
+"""A driver whose gain or zero is off.
+
+(1)  u -> gain u
+(2)  u -> u + offset
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eqs (1) and (2) on each input."""
+    for place, entry in model.places.inputs.items():
+        u = entry.variable
+        yield Effect(
+            name=f"{place}.gain",
+            depends=f"gain of {u}",
+            parameters=(EffectParameter("gain", "-", 0.2, 3.0, 0.9, 1.0),),
+            equation=f"{u} -> gain {u}",
+            story="The driver gives a constant share more or less than it is told, as with another battery voltage.",
+            source="contract (other plants); gap catalogue 6",
+            applied=lambda gain, u=u: {u: gain * u},
+            twins={f"{_rotor(model, u)}.warmup": "once warm, the drive is down by a constant share"} | _tuned(model, u),
+        )
+        yield Effect(
+            name=f"{place}.offset",
+            depends=f"offset of {u}",
+            parameters=(
+                EffectParameter("offset", entry.unit, -0.2 * entry.size, 0.2 * entry.size, 0.02 * entry.size, 0.0),
+            ),
+            equation=f"{u} -> {u} + offset",
+            story="The driver's zero is off: the rotor is pushed a little even when it is told nothing.",
+            source="gap catalogue 7",
+            applied=lambda offset, u=u: {u: u + offset},
+            twins={f"{place}.deadzone": "while the input keeps its sign, both add or take away a constant"},
+        )
+
+
+def _rotor(model: Model, variable: sympy.Symbol) -> str:
+    return next(name for name, rotor in model.places.rotors.items() if rotor.variable == variable)
+
+
+def _tuned(model: Model, variable: sympy.Symbol) -> dict[str, str]:
+    return {f"parameters of {_rotor(model, variable)}": "identical: the gain from input to torque is one number"}

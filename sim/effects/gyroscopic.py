@@ -1,0 +1,83 @@
+"""What the turning main rotor and the two turning axes do to one another and the model leaves out.
+
+(1)  level axis:   - K Psi' omega_M sin(Psi)          the reciprocal of the gyroscopic torque on the other axis
+(2)  level axis:   + c sin(2 Psi) Psi' Phi'           Coriolis, the reciprocal of the centrifugal torque
+(3)  tilting axis: + c Phi'^2 sin(2 Psi)              centrifugal torque beside the model's
+(4)  tilting axis: + K omega_T Phi'                   gyroscopic torque of the tail rotor
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.edits import axis_of, short, with_torque
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eqs (1) to (4) where one axis sits on the other."""
+    level, tilting = model.places.level, model.places.tilting
+    if not level:
+        return
+    over, base = model.places.axes[tilting], model.places.axes[level]
+    psi, phi, size = short(over.angle), short(base.angle), base.torque_size
+    spin = 0.3 * size / 600.0
+    unit = f"{base.torque_unit} s^2"
+    yield Effect(
+        name=f"{level}.gyroscopic",
+        depends=f"torque({psi}_dot, omega_M, {psi})",
+        parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
+        equation=f"- K {psi}' omega_M sin({psi})",
+        story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
+        source="contract; gap catalogue D4, 40",
+        edit=lambda model, K: with_torque(
+            model, level, -K * _rate(model, tilting) * _speed(model, "main_rotor") * sympy.sin(_angle(model, tilting))
+        ),
+        twins={f"{level}.coriolis": "both show when both axes move"},
+    )
+    yield Effect(
+        name=f"{level}.coriolis",
+        depends=f"torque({psi}, {psi}_dot, {phi}_dot)",
+        parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
+        equation=f"+ c sin(2 {psi}) {psi}' {phi}'",
+        story="Pulling the arm in while it turns makes it turn faster, as a skater does.",
+        source="gap catalogue D4, 38",
+        edit=lambda model, c: with_torque(
+            model, level, c * sympy.sin(2 * _angle(model, tilting)) * _rate(model, tilting) * _rate(model, level)
+        ),
+        twins={f"{level}.inertia_shape": "both make the azimuth's inertia depend on the elevation"},
+    )
+    yield Effect(
+        name=f"{tilting}.centrifugal",
+        depends=f"torque({phi}_dot, {psi})",
+        parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
+        equation=f"+ c {phi}'^2 sin(2 {psi})",
+        story="Turning fast throws the arm towards the horizontal, with another strength than the model says.",
+        source="gap catalogue D2, D3, 41",
+        edit=lambda model, c: with_torque(
+            model, tilting, c * _rate(model, level) ** 2 * sympy.sin(2 * _angle(model, tilting))
+        ),
+    )
+    yield Effect(
+        name=f"{tilting}.tail_gyroscopic",
+        depends=f"torque(omega_T, {phi}_dot)",
+        parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
+        equation=f"+ K omega_T {phi}'",
+        story="Turning the arm with the tail rotor spinning tips it up or down.",
+        source="gap catalogue 16",
+        edit=lambda model, K: with_torque(model, tilting, K * _speed(model, "tail_rotor") * _rate(model, level)),
+        twins={f"{tilting}.tail_coupling": "both carry the tail rotor's speed to the elevation"},
+    )
+
+
+def _angle(model: Model, axis: str) -> sympy.Expr:
+    return axis_of(model, axis).position
+
+
+def _rate(model: Model, axis: str) -> sympy.Expr:
+    return axis_of(model, axis).velocity
+
+
+def _speed(model: Model, rotor: str) -> sympy.Expr:
+    return model.places.rotors[rotor].speed

@@ -1,0 +1,62 @@
+"""A cable or a bearing that gives way elastically and then slips: the torque depends on the way that the axis came.
+
+(1)  z' = v - |v| z / z_0,   torque - k z            (Bouc-Wen's form, Dahl's model: z stays within +-z_0)
+(2)  the same with k = b / z_0 and a small z_0: a bearing before it slides
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.edits import axis_of, short, with_state, with_torque
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model, symbol
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eqs (1) and (2) on each axis."""
+    for axis, entry in model.places.axes.items():
+        angle, unit = short(entry.angle), entry.length_unit
+        length = 1.0 if unit == "rad" else entry.speed_size
+        size = entry.torque_size / length
+        yield Effect(
+            name=f"{axis}.cable_hysteresis",
+            depends=f"torque({angle}, sgn {angle}_dot)",
+            parameters=(
+                EffectParameter("k", f"{entry.torque_unit} {unit}^-1", 0.0, 4.0 * size, 0.1 * size, 0.0),
+                EffectParameter(
+                    "z_0", unit, 0.05 * length, 2.0 * length, 0.2 * length, starts=(0.1 * length, 0.3 * length)
+                ),
+            ),
+            equation=f"- k z, z' = {angle}' - |{angle}'| z/z_0",
+            story="The cable resists a turn, then slips in its clamp; on the way back it resists the other way.",
+            source="gap catalogue 31 (Bouc-Wen)",
+            edit=lambda model, k, z_0, axis=axis: _edit(model, k, z_0, axis, "cable"),
+            twins={
+                f"{axis}.cable_spring": "over small angles a cable that does not slip is a spring",
+                f"{axis}.coulomb": "over large angles a cable that has slipped is dry friction",
+            },
+        )
+        yield Effect(
+            name=f"{axis}.presliding",
+            depends=f"torque({angle}, sgn {angle}_dot)",
+            parameters=(
+                EffectParameter("b", entry.torque_unit, 0.0, entry.torque_size, 0.01 * entry.torque_size, 0.0),
+                EffectParameter("z_0", unit, 0.01 * length, 0.1 * length, 0.02 * length),
+            ),
+            equation=f"- b z/z_0, z' = {angle}' - |{angle}'| z/z_0",
+            story="The bearing gives a little like a brush before it slides.",
+            source="gap catalogue 30 (Dahl, LuGre)",
+            edit=lambda model, b, z_0, axis=axis: _edit(model, b / z_0, z_0, axis, "bearing"),
+            twins={
+                f"{axis}.coulomb": "identical but for the tiny motion before it slides",
+                f"{axis}.cable_hysteresis": "identical by form, with a shorter way",
+            },
+        )
+
+
+def _edit(model: Model, stiffness: sympy.Expr, z_0: sympy.Symbol, axis: str, what: str) -> Model:
+    z = symbol(f"{what}_{axis}_{model.places.axes[axis].length_unit}")
+    velocity = axis_of(model, axis).velocity
+    model = with_state(model, z, velocity - sympy.Abs(velocity) * z / z_0)
+    return with_torque(model, axis, -stiffness * z)

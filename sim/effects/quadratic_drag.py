@@ -1,0 +1,41 @@
+"""Air resistance of the moving arm.
+
+(1)  torque - c |v| v
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.edits import axis_of, short, with_torque
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis."""
+    for axis, entry in model.places.axes.items():
+        size, angle = entry.torque_size / entry.speed_size**2, short(entry.angle)
+        yield Effect(
+            name=f"{axis}.quadratic_drag",
+            depends=f"torque({angle}_dot)",
+            parameters=(
+                EffectParameter(
+                    "c", f"{entry.torque_unit} s^2 {entry.length_unit}^-2", -0.2 * size, 2.0 * size, 0.04 * size, 0.0
+                ),
+            ),
+            equation=f"- c |{angle}'| {angle}'",
+            story="The air resists the moving arm, four times as much at twice the speed.",
+            source="contract; gap catalogue 20, 21",
+            edit=lambda model, c, axis=axis: _edit(model, c, axis),
+            twins={f"{_rotor(model, axis)}.axial_inflow": "both damp fast motion more"},
+        )
+
+
+def _edit(model: Model, c: sympy.Symbol, axis: str) -> Model:
+    velocity = axis_of(model, axis).velocity
+    return with_torque(model, axis, -c * sympy.Abs(velocity) * velocity)
+
+
+def _rotor(model: Model, axis: str) -> str:
+    return next(rotor for rotor in model.places.rotors if model.places.pushed_by(rotor) == axis)

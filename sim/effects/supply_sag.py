@@ -1,0 +1,31 @@
+"""A supply whose voltage gives way under load: what one rotor draws is missing at both.
+
+(1)  u -> u (1 - s (|u_M| + |u_T|) / 10 V)
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+NOMINAL = 10.0  # [V]; scales s to a share
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input; a plant with one input has only that load."""
+    load = sum((sympy.Abs(entry.variable) for entry in model.places.inputs.values()), sympy.Integer(0))
+    for place, entry in model.places.inputs.items():
+        u = entry.variable
+        upper = 0.4 * NOMINAL / entry.size
+        yield Effect(
+            name=f"{place}.supply_sag",
+            depends=f"gain({', '.join(str(i.variable) for i in model.places.inputs.values())}) of {u}",
+            parameters=(EffectParameter("s", "-", -0.5 * upper, upper, 0.1 * upper, 0.0),),
+            equation=f"{u} -> {u} (1 - s (sum of |u|) / 10)",
+            story="The power supply weakens under load: pushing one rotor harder leaves less for this one.",
+            source="contract; gap catalogue 5",
+            applied=lambda s, u=u: {u: u * (1 - s * load / NOMINAL)},
+            twins={f"{place}.gain": "at a nearly constant load, the loss is a constant share"},
+        )

@@ -1,0 +1,30 @@
+"""A motor that weakens as it warms up.
+
+(1)  K -> K (1 - a (1 - exp(-t / T))),   t from the beginning of the log
+"""
+
+from collections.abc import Iterator
+
+import sympy
+
+from sim.effects.edits import with_drive
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import TIME, Model
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on the drive of each rotor."""
+    for place, rotor in model.places.rotors.items():
+        yield Effect(
+            name=f"{place}.warmup",
+            depends=f"gain(t) of {rotor.variable}",
+            parameters=(
+                EffectParameter("a", "-", -0.5, 0.5, 0.03, 0.0),
+                EffectParameter("T", "s", 0.5, 500.0, 20.0, starts=(5.0, 20.0, 60.0)),
+            ),
+            equation="K -> K (1 - a (1 - exp(-t/T)))",
+            story="The motor's winding warms up and its resistance grows, so the same command gives less and less.",
+            source="contract; gap catalogue 10",
+            edit=lambda model, a, T, place=place: with_drive(model, place, 1 - a * (1 - sympy.exp(-TIME / T))),
+            twins={f"{place.replace('rotor', 'input')}.gain": "once warm, the drive is down by a constant share"},
+        )
