@@ -6,14 +6,14 @@ from typing import Any
 import jinja2
 import numpy as np
 
-from codegen.law_constants import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, prefilter_gain, without_vanishing_powers
+from codegen.law_constants import without_vanishing_powers
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import self_test
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable, Polynomial
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 ARITHMETIC_CODES = {"float32": 0}
 
@@ -135,7 +135,7 @@ def _axis(table: ControllerTable, name: str) -> Axis:
         angle=angle,
         voltage=voltage,
         filter="take_reference" if time_constant_s == 0.0 else "prefilter",
-        prefilter_gain=prefilter_gain(time_constant_s, table.sample_period_s),
+        prefilter_gain=law.prefilter_gain(table.sample_period_s),
         prefilter_time_constant_s=time_constant_s,
         feedforward=_value(f"{name}_u_ff_V", law.feedforward_V, "self->elevation.reference_2_rad"),
         terms=tuple(_terms(name, law)),

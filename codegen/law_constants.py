@@ -8,16 +8,11 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable, Polynomial
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 N = TypeVar("N")
 M = TypeVar("M")
 
-# A feedback voltage beyond this is no answer to any reference or angle within reach (checked by `law_constants`): it
-# comes from a broken state, and the axis starts afresh.
-PLAUSIBLE_V = 2.0**20
-# A scheduling angle below this counts as zero: it moves no coefficient, but its products would be subnormal and slow.
-LEAST_SCHEDULE_RAD = 2.0**-30
 # No shaft turns further than this against its reference: the widest error that the check of PLAUSIBLE_V assumes.
 WIDEST_ERROR_RAD = 2.0 * math.pi
 
@@ -69,22 +64,16 @@ def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawCo
     )
 
 
-def prefilter_gain(time_constant_s: float, sample_period_s: float) -> float:
-    """b = 1 - exp(-Ts/T) of the one-pole x += b (r - x), the sampled 1/(T s + 1); 1 for T = 0."""
-    return 1.0 if time_constant_s == 0.0 else -math.expm1(-sample_period_s / time_constant_s)
-
-
 def _axis_constants(axis: AxisLaw, sample_period_s: float, number: Callable[[float], N]) -> AxisConstants[N]:
     def numbers(polynomial: Polynomial) -> tuple[N, ...]:
         return tuple(number(coefficient) for coefficient in without_vanishing_powers(polynomial))
 
-    gain = prefilter_gain(axis.prefilter_time_constant_s, sample_period_s)
     return AxisConstants(
         q_V_rad=tuple(numbers(polynomial) for polynomial in axis.q_V_rad),
         p=tuple(numbers(polynomial) for polynomial in axis.p),
         a=tuple(numbers((coefficient,)) for coefficient in axis.a),
         feedforward_V=numbers(axis.feedforward_V),
-        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(gain),
+        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(axis.prefilter_gain(sample_period_s)),
         u_min_V=number(axis.u_min_V),
         u_max_V=number(axis.u_max_V),
         u_safe_V=number(axis.u_safe_V),

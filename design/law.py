@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from records.table import AxisLaw, ControllerTable
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable
 
 Differences = tuple[float, float, float]
 _ZERO: Differences = (0.0, 0.0, 0.0)
@@ -66,27 +66,33 @@ def law_step(
     """One sample: the new state and the inputs u_M_V and u_T_V; total, also for inputs that are not finite."""
     elevation = _filter(table.elevation, table.sample_period_s, state.elevation, psi_ref_rad, psi_rad)
     azimuth = _filter(table.azimuth, table.sample_period_s, state.azimuth, phi_ref_rad, phi_rad)
-    psi_scheduled_rad = _clamp(elevation.angle_rad, table.psi_min_rad, table.psi_max_rad)
+    psi_scheduled_rad = _scheduling_angle(table, elevation.angle_rad)
     elevation, u_M_V = _control(table.elevation, elevation, psi_scheduled_rad, elevation.x2_rad)
     azimuth, u_T_V = _control(table.azimuth, azimuth, psi_scheduled_rad, elevation.x2_rad)
     return LawState(elevation, azimuth), u_M_V, u_T_V
 
 
+def _scheduling_angle(table: ControllerTable, psi_rad: float) -> float:
+    within = _clamp(psi_rad, table.psi_min_rad, table.psi_max_rad)
+    return 0.0 if abs(within) < LEAST_SCHEDULE_RAD else within
+
+
 def _filter(
     law: AxisLaw, sample_period_s: float, state: AxisState, reference_rad: float, angle_rad: float
 ) -> AxisState:
-    """Accept finite inputs, clamp the reference and pass it through 1/(T s + 1)^2 as two one-poles."""
-    reference = _clamp(_finite(reference_rad, state.reference_rad), law.reference_min_rad, law.reference_max_rad)
-    b = prefilter_gain(law.prefilter_time_constant_s, sample_period_s)
-    x1 = state.x1_rad + b * (reference - state.x1_rad)
-    x2 = state.x2_rad + b * (x1 - state.x2_rad)
+    """Accept finite inputs; the reference, within its range, passes 1/(T s + 1)^2 as two one-poles."""
+    reference = _finite(reference_rad, state.reference_rad)
+    target = _clamp(reference, law.reference_min_rad, law.reference_max_rad)
+    b = law.prefilter_gain(sample_period_s)
+    x1 = _within_reference(law, state.x1_rad + b * (target - state.x1_rad), target)
+    x2 = _within_reference(law, state.x2_rad + b * (x1 - state.x2_rad), target)
     angle = _finite(angle_rad, state.angle_rad)
     return replace(state, reference_rad=reference, angle_rad=angle, x1_rad=x1, x2_rad=x2)
 
 
-def prefilter_gain(time_constant_s: float, sample_period_s: float) -> float:
-    """b = 1 - exp(-Ts/T) of x <- x + b (r - x); 1, which passes r on, where there is no filter."""
-    return 1.0 if time_constant_s == 0.0 else -math.expm1(-sample_period_s / time_constant_s)
+def _within_reference(law: AxisLaw, x_rad: float, target_rad: float) -> float:
+    """x of the prefilter, which lies within the reference's range of itself; a broken one becomes the target."""
+    return target_rad if math.isnan(x_rad) else _clamp(x_rad, law.reference_min_rad, law.reference_max_rad)
 
 
 def _control(
@@ -95,11 +101,11 @@ def _control(
     """Feedback, feed-forward, limits and anti-windup of one axis."""
     e = _differences(state.x2_rad - state.angle_rad, state.e)
     v = _feedback(law, state, e, psi_scheduled_rad)
-    if not math.isfinite(v):  # only a poisoned state gets here: start the feedback afresh
-        state, e, v = replace(state, s=_ZERO, w=_ZERO), (0.0, 0.0, 0.0, 0.0), 0.0
+    if not abs(v) <= PLAUSIBLE_V:  # only a broken state gets here: start the feedback afresh from the present error
+        state, e, v = replace(state, s=_ZERO, w=_ZERO), (e[0], 0.0, 0.0, 0.0), 0.0
     u = v + polynomial(law.feedforward_V, elevation_reference_rad)
     u_limited = saturate(law, u)
-    w = u - u_limited if math.isfinite(u) else 0.0
+    w = u - u_limited
     remembered = replace(state, v_V=v, e=e[:3], s=_differences(v - w, state.s)[:3], w=_differences(w, state.w)[:3])
     return remembered, u_limited
 
@@ -133,8 +139,9 @@ def saturate(law: AxisLaw, u_V: float) -> float:
     return law.u_safe_V if math.isnan(u_V) else _clamp(u_V, law.u_min_V, law.u_max_V)
 
 
-def _finite(value: float, otherwise: float) -> float:
-    return value if math.isfinite(value) else otherwise
+def _finite(value: float, last: float) -> float:
+    """`value` where it is finite, else the last one accepted, else 0."""
+    return value if math.isfinite(value) else last if math.isfinite(last) else 0.0
 
 
 def _clamp(value: float, low: float, high: float) -> float:

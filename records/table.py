@@ -9,11 +9,14 @@ The law of one axis, with delta = 1 - z^-1 and Psi the measured elevation, is (s
     A v = Q e + (A - P) s        e = filtered reference - angle, s = u - u_ff after the limits, v = u_fb before them
     u = v + u_ff(filtered reference)
 
-Each q_i and p_i is a polynomial in Psi [rad], each feed-forward one in the axis' own reference; ascending powers.
+Each q_i and p_i is a polynomial in Psi [rad], each feed-forward one in the filtered elevation reference; ascending powers.
+
+What is no number, and a state that is broken, are answered alike by every form of the law (docs/theory.md, section 4).
 """
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -24,6 +27,12 @@ from records.errors import BadInput
 
 SCHEMA = "controller-table/1"
 Polynomial = tuple[float, ...]
+
+# A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
+# for one): it comes from a broken state, and the axis starts afresh.
+PLAUSIBLE_V = 2.0**20
+# A scheduling angle below this counts as zero: it moves no coefficient, but its products would be subnormal and slow.
+LEAST_SCHEDULE_RAD = 2.0**-30
 
 
 @dataclass(frozen=True)
@@ -41,6 +50,11 @@ class AxisLaw:
     reference_min_rad: float
     reference_max_rad: float
     resolution_rad: float
+
+    def prefilter_gain(self, sample_period_s: float) -> float:
+        """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
+        T_s = self.prefilter_time_constant_s
+        return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
 
 
 @dataclass(frozen=True)

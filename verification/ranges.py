@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_constants import prefilter_gain
 from codegen.law_equations import AxisState, LawInput, LawState, words_from_state
 from records.table import AxisLaw, ControllerTable
 
@@ -69,7 +68,7 @@ def share_within(ranges: LawRanges, states: NDArray[np.uint32]) -> float:
 
 def _axis_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_rad_s: float) -> AxisState[Range]:
     low_rad, high_rad = _reference(axis)
-    gain = prefilter_gain(axis.prefilter_time_constant_s, table.sample_period_s)
+    gain = axis.prefilter_gain(table.sample_period_s)
     measured_move_rad = rate_rad_s * table.sample_period_s + axis.resolution_rad
     move_rad = _SLACK * (measured_move_rad + gain * (high_rad - low_rad))
     psi_ref_rad = np.linspace(*_reference(table.elevation), 201)

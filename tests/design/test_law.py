@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from design.direct_form import to_direct
-from design.law import FloatLaw, law_reset, law_step, polynomial, prefilter_gain, saturate
+from design.law import FloatLaw, law_reset, law_step, polynomial, saturate
 from design.schedule import evaluate, schedule_of
 from tests.design.helicopter import DOM2, equal, settings_for, table_for
 
@@ -82,8 +82,13 @@ def test_an_input_that_is_not_finite_counts_as_the_last_accepted_one(psi_rad, ph
 
 def test_references_are_held_within_their_range():
     state = law_reset(TABLE, 0.0, 0.0)
-    far = law_step(TABLE, state, 3.0, -9.0, 0.0, 0.0)
-    assert far == law_step(TABLE, state, TABLE.elevation.reference_max_rad, TABLE.azimuth.reference_min_rad, 0.0, 0.0)
+    ends = (TABLE.elevation.reference_max_rad, TABLE.azimuth.reference_min_rad)
+    for _ in range(3):
+        far, *u_far_V = law_step(TABLE, state, 3.0, -9.0, 0.0, 0.0)
+        near, *u_near_V = law_step(TABLE, state, *ends, 0.0, 0.0)
+        assert u_far_V == u_near_V
+        assert (far.elevation.x2_rad, far.azimuth.x2_rad) == (near.elevation.x2_rad, near.azimuth.x2_rad)
+        state = far
 
 
 def test_reset_at_the_stop_starts_at_the_end_of_the_reference_range_without_a_kick():
@@ -104,7 +109,7 @@ def test_prefilter_is_two_one_poles_that_answer_a_step_as_continuous_theory_says
     assert state.elevation.x1_rad == pytest.approx(0.3 * (1.0 - math.exp(-t / T)), rel=1e-9)
     # The second one-pole sees the first half a sample early on average: within Ts/T of 1 - (1 + t/T) exp(-t/T).
     assert state.elevation.x2_rad == pytest.approx(0.3 * (1.0 - (1.0 + t / T) * math.exp(-t / T)), rel=1.5 * Ts / T)
-    assert prefilter_gain(0.0, Ts) == 1.0
+    assert unfiltered(TABLE).elevation.prefilter_gain(Ts) == 1.0
 
 
 def test_azimuth_feedforward_follows_the_elevation_reference():

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from design.direct_form import DirectForm, feedback_V, to_direct
-from design.law import polynomial, prefilter_gain, saturate
+from design.law import polynomial, saturate
 from design.schedule import evaluate, schedule_of
 from records.table import AxisLaw, ControllerTable
 
@@ -54,7 +54,7 @@ class DirectLaw:
         references, angles = (psi_ref_rad, phi_ref_rad), (psi_rad, phi_rad)
         laws = (self.table.elevation, self.table.azimuth)
         for law, axis, reference in zip(laws, self.axes, references, strict=True):
-            gain = prefilter_gain(law.prefilter_time_constant_s, self.table.sample_period_s)
+            gain = law.prefilter_gain(self.table.sample_period_s)
             axis.x[0] += gain * (reference - axis.x[0])
             axis.x[1] += gain * (axis.x[0] - axis.x[1])
         feedforward_at = psi_rad if self.measured_feedforward else self.axes[0].x[1]
