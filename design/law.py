@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable
+from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable
 
 Differences = tuple[float, float, float]
 _ZERO: Differences = (0.0, 0.0, 0.0)
@@ -66,15 +66,10 @@ def law_step(
     """One sample: the new state and the inputs u_M_V and u_T_V; total, also for inputs that are not finite."""
     elevation = _filter(table.elevation, table.sample_period_s, state.elevation, psi_ref_rad, psi_rad)
     azimuth = _filter(table.azimuth, table.sample_period_s, state.azimuth, phi_ref_rad, phi_rad)
-    psi_scheduled_rad = _scheduling_angle(table, elevation.angle_rad)
+    psi_scheduled_rad = _clamp(elevation.angle_rad, table.psi_min_rad, table.psi_max_rad)
     elevation, u_M_V = _control(table.elevation, elevation, psi_scheduled_rad, elevation.x2_rad)
     azimuth, u_T_V = _control(table.azimuth, azimuth, psi_scheduled_rad, elevation.x2_rad)
     return LawState(elevation, azimuth), u_M_V, u_T_V
-
-
-def _scheduling_angle(table: ControllerTable, psi_rad: float) -> float:
-    within = _clamp(psi_rad, table.psi_min_rad, table.psi_max_rad)
-    return 0.0 if abs(within) < LEAST_SCHEDULE_RAD else within
 
 
 def _filter(
