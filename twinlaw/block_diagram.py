@@ -1,0 +1,113 @@
+"""A plant as a block diagram (SVG text): commands on the left, sensors on the right, each block lit by its share of a gap."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from sim.places import Places
+
+WIDTH, HEIGHT = 128.0, 44.0  # of a block, px
+COLUMN_GAP, ROW_GAP, EDGE = 46.0, 22.0, 12.0
+PALE, LIT = (245, 247, 249), (230, 125, 40)  # fill without and with the whole share
+LOOP = "loop"
+
+
+@dataclass(frozen=True)
+class Block:
+    """A place drawn at the upper left corner (x, y) [px] with its share of the gap."""
+
+    place: str
+    x: float
+    y: float
+    share: float
+
+
+def block_diagram(places: Places, shares: Mapping[str, float]) -> str:
+    """The diagram: input, rotor, axis and sensor blocks in columns, arrows where one acts on another, the control loop below."""
+    columns = [tuple(group) for group in (places.inputs, places.rotors, places.axes, places.sensors) if group]
+    blocks = _placed(columns, shares)
+    width = 2 * EDGE + len(columns) * WIDTH + (len(columns) - 1) * COLUMN_GAP
+    floor = max(block.y for block in blocks.values()) + HEIGHT
+    parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in _edges(places)]
+    if places.loop:
+        loop = Block(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
+        parts += [_way_back([blocks[name] for name in columns[-1]], [blocks[name] for name in columns[0]], loop)]
+        blocks[LOOP] = loop
+    height = max(block.y for block in blocks.values()) + HEIGHT + EDGE
+    drawn = "\n".join([*parts, *(_box(block) for block in blocks.values())])
+    lit = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares.items() if share >= 0.005)
+    return _SVG.format(
+        width=width, height=height, label=escape(f"block diagram; share of the gap: {lit or 'none'}"), drawn=drawn
+    )
+
+
+def _placed(columns: Sequence[Sequence[str]], shares: Mapping[str, float]) -> dict[str, Block]:
+    rows = max(map(len, columns))
+    blocks = {}
+    for column, names in enumerate(columns):
+        top = EDGE + (rows - len(names)) * (HEIGHT + ROW_GAP) / 2
+        for row, name in enumerate(names):
+            x = EDGE + column * (WIDTH + COLUMN_GAP)
+            blocks[name] = Block(name, x, top + row * (HEIGHT + ROW_GAP), shares.get(name, 0.0))
+    return blocks
+
+
+def _edges(places: Places) -> list[tuple[str, str, bool]]:
+    """(from, to, whether it is what the part is there for) along the signal's way."""
+    edges = [
+        (name, rotor, True)
+        for name, place in places.inputs.items()
+        for rotor, driven in places.rotors.items()
+        if driven.variable == place.variable
+    ]
+    edges += [
+        (rotor, axis, axis == places.pushed_by(rotor))
+        for rotor, place in places.rotors.items()
+        for axis in place.thrusts
+    ]
+    edges += [
+        (axis, sensor, True)
+        for axis, moved in places.axes.items()
+        for sensor, place in places.sensors.items()
+        if place.output == moved.angle
+    ]
+    return edges
+
+
+def _box(block: Block) -> str:
+    share = max(0.0, min(1.0, block.share))
+    fill = "#" + "".join(f"{round(pale + share * (lit - pale)):02x}" for pale, lit in zip(PALE, LIT, strict=True))
+    border = 2.5 if share >= 0.05 else 1.0
+    middle, name = block.x + WIDTH / 2, escape(block.place.replace("_", " "))
+    text = f'<text x="{middle:g}" y="{block.y + (19 if share >= 0.005 else 27):g}">{name}</text>'
+    if share >= 0.005:
+        text += f'<text x="{middle:g}" y="{block.y + 35:g}" font-weight="700">{100 * share:.0f} % of the gap</text>'
+    box = (
+        f'<rect x="{block.x:g}" y="{block.y:g}" width="{WIDTH:g}" height="{HEIGHT:g}" rx="6" fill="{fill}" '
+        f'stroke="#1b1f24" stroke-width="{border}"/>'
+    )
+    return box + text
+
+
+def _arrow(a: Block, b: Block, main: bool) -> str:
+    dash = "" if main else ' stroke-dasharray="4 3"'
+    return _LINE.format(points=f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
+
+
+def _way_back(sensors: Sequence[Block], inputs: Sequence[Block], loop: Block) -> str:
+    """From under the last sensor to the controller, and from there up to the first input."""
+    last, first, height = sensors[-1], inputs[-1], loop.y + HEIGHT / 2
+    down = f"{last.x + WIDTH / 2:g},{last.y + HEIGHT:g} {last.x + WIDTH / 2:g},{height:g} {loop.x + WIDTH + 2:g},{height:g}"
+    up = f"{loop.x:g},{height:g} {first.x + WIDTH / 2:g},{height:g} {first.x + WIDTH / 2:g},{first.y + HEIGHT + 2:g}"
+    return "\n".join(_LINE.format(points=points, dash="") for points in (down, up))
+
+
+_LINE = '<polyline points="{points}" fill="none" stroke="#57606a" stroke-width="1.3" marker-end="url(#tip)"{dash}/>'
+_SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" role="img" aria-label="{label}">
+<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">
+<path d="M0,0 L8,4 L0,8 z" fill="#57606a"/>
+</marker></defs>
+<g font-family="sans-serif" font-size="12.5" text-anchor="middle" fill="#1b1f24">
+{drawn}
+</g>
+</svg>"""
