@@ -53,6 +53,7 @@ class BoardClient:
         try:
             line.restart()
             identity = replies.identity(line.request("IDENTIFY", {}, "IDENTITY"))
+            line.backlog.clear()  # replies to an earlier host, whose numbers would be taken for ours
             check_identity(identity, where, table_digest, numbers.name)
         except BaseException:
             port.close()

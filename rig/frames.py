@@ -5,7 +5,6 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 from rig.cobs import cobs_decode, cobs_encode
@@ -71,24 +70,27 @@ class FrameReceiver:
     pending: bytearray = field(default_factory=bytearray)
     received: Received = Received()
     types: frozenset[int] | None = None
+    _longest: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._longest = max(line_length(message) for message in self.protocol.messages)
 
     def feed(self, data: bytes) -> list[Frame]:
         """Take bytes off the line; returns the frames that they completed."""
-        longest = longest_line(self.protocol)
         *ended, rest = (bytes(self.pending) + data).split(DELIMITER)
         self.pending = bytearray(
-            rest[-longest - 1 :]
+            rest[-self._longest - 1 :]
         )  # one more than the longest frame is enough to know it for too long
-        fates = [self._judge(piece, longest) for piece in ended if piece]
+        fates = [self._judge(piece) for piece in ended if piece]
         counts = Counter("frames" if isinstance(fate, Frame) else fate for fate in fates) + Counter(bytes=len(data))
         self.received = replace(
             self.received, **{name: getattr(self.received, name) + count for name, count in counts.items()}
         )
         return [fate for fate in fates if isinstance(fate, Frame)]
 
-    def _judge(self, piece: bytes, longest: int) -> Frame | str:
+    def _judge(self, piece: bytes) -> Frame | str:
         """The frame in an encoded piece, or the name of what is wrong with it; in the order of firmware/control/link.c."""
-        if len(piece) > longest:
+        if len(piece) > self._longest:
             return "too_long"
         content = cobs_decode(piece)
         if content is None:
@@ -113,12 +115,6 @@ def encode_frame(protocol: Protocol, name: str, sequence: int, values: Mapping[s
 def line_length(message: Message) -> int:
     """Bytes of a message on the line, COBS code byte and delimiter included."""
     return HEADER_SIZE + message.size + CRC_SIZE + 2
-
-
-@cache
-def longest_line(protocol: Protocol) -> int:
-    """Bytes on the line of the longest message."""
-    return max(line_length(message) for message in protocol.messages)
 
 
 def parse_content(protocol: Protocol, content: bytes) -> Frame | None:

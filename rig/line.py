@@ -50,8 +50,9 @@ class Line:
         self.sequence = (sequence + 1) & 0xFFFF
         before = self.receiver.received
         for attempt, wait_s in enumerate(self._waits_s()):
-            # A delimiter first ends whatever a disturbance has left in the board's receiver.
-            self._write(DELIMITER + line if attempt else line)
+            if attempt:  # what a disturbance has left half in the host's receiver would spoil this attempt too
+                self.receiver.pending.clear()
+            self._write(DELIMITER + line if attempt else line)  # and in the board's
             self.port.timeout = wait_s
             reply = self._await({reply_name, "RESULT"}, sequence, line_length(PROTOCOL.message(reply_name)))
             self.port.timeout = self.timeout_s

@@ -1,0 +1,44 @@
+"""Fail at the n-th byte, for n = 0, 1, ... until nothing fails: the session ends complete or in one line, the board is never stuck."""
+
+import pytest
+
+from rig.hostile_line import HostileLine
+from rig.hostile_line_faults import AtByte, Direction
+from tests.rig.hostile_sessions import SOAK, complete_or_one_line, counted_steps, session
+from tests.rig.timed_box import TimedBox
+
+SAMPLES = 200
+# One lost byte costs one frame, which is sent again; only a line that stays dead may end a session.
+SURVIVED = {"drop": True, "spoil": True, "double": True, "cut": False}
+
+
+def attacked(direction: Direction, how: str, n: int, samples: int) -> bool:
+    """One session with its n-th byte attacked, then a fresh one on the healed line; False when there was no n-th byte."""
+    port = TimedBox()
+    line = HostileLine(port, [AtByte(direction=direction, how=how, n=n)])
+    complete = complete_or_one_line(line, samples)
+    struck = line.struck()["AtByte"] > 0
+    assert complete or struck, n
+    assert complete or not SURVIVED[how], n
+    port.time_outs = 0
+    assert session(port, 2) == counted_steps(2), n
+    assert port.time_outs == 0, n
+    assert port.box.state == "DISARMED", n
+    return struck
+
+
+@pytest.mark.parametrize("direction", list(Direction), ids=lambda direction: direction.value)
+@pytest.mark.parametrize("how", SURVIVED)
+def test_a_session_attacked_at_its_nth_byte_ends_well_or_in_one_line_and_the_next_works_at_once(direction, how):
+    samples = SAMPLES if SOAK else 4
+    n = 0
+    while attacked(direction, how, n, samples):
+        n += 1
+    assert n > 20 * samples
+
+
+@pytest.mark.parametrize("direction", list(Direction), ids=lambda direction: direction.value)
+@pytest.mark.parametrize("how", SURVIVED)
+def test_so_does_a_long_session_at_every_397th_byte(direction, how):
+    struck = [attacked(direction, how, n, SAMPLES) for n in range(40, 8_000, 397)]
+    assert sum(struck) > 10
