@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from records.errors import BadInput, VerificationFailed
 from twinlaw import console
-from twinlaw.verbs import VERBS
+from twinlaw.verbs import VERBS, verb_module, verb_text
 
 DESCRIPTION = "From a plant's equations to a verified flight of a microcontroller, and back."
 EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
@@ -19,7 +19,8 @@ EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
-    options = _parser().parse_args(arguments)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    options = _parser(words[:1]).parse_args(words)
     try:
         return int(options.run(options))
     except BadInput as error:
@@ -37,16 +38,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(asked: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser of all verbs, with the options of the one that was `asked` for."""
     parser = argparse.ArgumentParser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
     verbs = parser.add_subparsers(title="verbs, in the order of the work", metavar="VERB", required=True)
-    for name, verb in VERBS.items():
-        sentence = (verb.__doc__ or "").splitlines()[0]
+    for word in VERBS:
+        text = verb_text(word)
         sub = verbs.add_parser(
-            name, help=sentence, description=verb.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+            word,
+            help=text.splitlines()[0],
+            description=text,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        verb.add_arguments(sub)
-        sub.set_defaults(run=verb.run)
+        if word in asked:
+            verb = verb_module(word)
+            verb.add_arguments(sub)
+            sub.set_defaults(run=verb.run)
     return parser
 
 

@@ -1,0 +1,35 @@
+"""Each verb explains itself; asking for one loads no other; every file of the verbs' folder is a verb."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from twinlaw import verbs
+from twinlaw.command import main
+from twinlaw.verbs import VERBS, verb_module, verb_text
+
+
+@pytest.mark.parametrize("word", VERBS)
+def test_a_verb_explains_itself(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main([word, "--help"])
+    assert left.value.code == 0
+    assert verb_text(word) == (verb_module(word).__doc__ or "").strip()
+    assert " ".join(verb_text(word).split()[:6]) in " ".join(capsys.readouterr().out.split())
+
+
+def test_every_file_is_a_verb() -> None:
+    files = {path.stem for path in Path(str(verbs.__file__)).parent.glob("*.py")} - {"__init__"}
+    assert files == set(VERBS.values())
+
+
+def test_the_list_of_verbs_loads_none_of_their_tools() -> None:
+    program = (
+        "import sys\nfrom twinlaw.command import main\n"
+        "try: main(['--help'])\nexcept SystemExit: pass\n"
+        "print(sorted({'scipy', 'sympy', 'matplotlib', 'control'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
