@@ -6,8 +6,7 @@ import serial
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-
-_HANDLER_PACKAGE = "rig.emulator"
+from rig.emulator.serial_port import register_emulated_ports
 
 
 def open_port(url: str, *, timeout_s: float) -> Any:
@@ -15,8 +14,7 @@ def open_port(url: str, *, timeout_s: float) -> Any:
 
     Raises BadInput when it is not there or cannot be opened.
     """
-    if _HANDLER_PACKAGE not in serial.protocol_handler_packages:
-        serial.protocol_handler_packages.append(_HANDLER_PACKAGE)
+    register_emulated_ports()
     try:
         return serial.serial_for_url(url, baudrate=PROTOCOL.constant("BAUD_RATE"), timeout=timeout_s)
     except (OSError, ValueError) as error:

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from codegen.law_equations import STATE_WORDS
 from rig.emulator.answers import CallsResult
+from rig.emulator.bench import Speed, measure
 from rig.emulator.board import EmulatedBoard
 
 Bits = NDArray[np.uint32]
@@ -44,6 +45,12 @@ class TargetLaw:
     def self_test(self) -> int:
         """Mismatches that the emitted self-test finds on the target."""
         return self._board.call("law_self_test").result
+
+    def speed(self, steps: int) -> Speed:
+        """How fast the board steps the law, both axes on their way to a reference; its memory goes on from call to call."""
+        self._start_lane(*(int(angle) for angle in np.array([0.1, -0.2], np.float32).view(np.uint32)))
+        self._board.write_memory(self._input, np.array([0.3, 0.4, 0.1, -0.2], np.float32).tobytes())
+        return measure(self._board, "law_step", (self._state, self._input, self._output), steps)
 
     def table_digest(self) -> str:
         """The digest in the image's flash."""

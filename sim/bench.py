@@ -3,34 +3,55 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from records.table import ControllerTable
 from sim import bench_compiled, bench_peers
+from sim.bench_peers import Peer, Task
 from sim.bind import BoundPlant
+from sim.halving import step_error
 from sim.loop import Controller
 from sim.manoeuvres import Manoeuvre, flight
-from sim.simulate import simulate
+from sim.simulate import Runs, simulate
+
+Array = NDArray[np.float64]
 
 BATCH = 256
 SHORT_S = 4.0  # of the flight, for tools that need a second of computing for some seconds of flight
 SECONDS_PER_TOOL = 1.0
+SHORTEST_S = 0.2  # of one measurement, so that a coarse clock (16 ms on some systems) can tell
+FINE_SUBSTEPS = 100
 
 
 @dataclass(frozen=True)
 class BenchRow:
-    """One tool: simulated seconds per second of CPU time on one core, and how many times slower than the kernel that is.
+    """One tool: simulated seconds per second of CPU time on one core, and how many times faster the kernel is.
 
-    `single` tells whether one run is simulated at a time or many; the ratio is to the kernel's row of the same kind. `note` says what
-    was left out or done differently; `simulated_s_per_cpu_s` is None for a tool that is not installed.
+    `kernel_ratio` is that of the kernel flying one run at a time, None for a tool that flies many at once; `batch_ratio` that of the
+    kernel flying many. `apart_rad` is how far the tool's angles at the end are from the kernel's, which tells that it flew the same.
+    `note` says what was done differently. A tool that is not installed has None everywhere.
     """
 
     tool: str
-    single: bool
     simulated_s_per_cpu_s: float | None
-    ratio: float | None
+    kernel_ratio: float | None
+    batch_ratio: float | None
+    apart_rad: float | None
     note: str
+
+
+@dataclass(frozen=True)
+class StepAccuracy:
+    """Error of one step a sample over the whole flight, in rad for each output: as step halving reports it, and as it is.
+
+    `halving_rad` is Richardson's estimate from one and two steps, `true_rad` the largest difference to FINE_SUBSTEPS steps.
+    """
+
+    halving_rad: tuple[float, ...]
+    true_rad: tuple[float, ...]
 
 
 def run(bound: BoundPlant, table: ControllerTable, controller: Callable[[], Controller]) -> tuple[BenchRow, ...]:
@@ -39,39 +60,82 @@ def run(bound: BoundPlant, table: ControllerTable, controller: Callable[[], Cont
     The kernel runs with dry friction, stops and quantisation; peers have neither sticking nor stops: their friction is
     b_c tanh(v / 0.005 rad/s), and they fly the piece of the flight after take-off.
     """
-    whole = flight(bound)
+    whole = flight(bound, table.sample_period_s)
     p = bound.p + bound.sd * np.random.default_rng(0).normal(size=(BATCH, bound.p.size))
-
-    def kernel(runs: np.ndarray) -> Callable[[], float]:
-        def fly() -> float:
-            simulate(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad, p=runs, keep="uy")
-            return float(whole.t_s[-1]) * (1 if runs.ndim == 1 else len(runs))
-
-        return fly
-
-    single, batch = speed(kernel(bound.p)), speed(kernel(p))
+    task = Task(bound, table, controller, after_take_off(bound, table, whole), p)
+    single, batch = (
+        speed(partial(_fly, bound, table, whole, sets, "uy"), _simulated_s(whole, sets)) for sets in (bound.p, p)
+    )
     rows = [
-        BenchRow("twinlaw kernel", True, single, 1.0, "one RK4 step a sample, sticking, stops, quantisation"),
-        BenchRow(f"twinlaw kernel, {BATCH} parameter sets", False, batch, 1.0, "the same bits as one by one"),
+        BenchRow(
+            "twinlaw kernel", single, 1.0, batch / single, 0.0, "one RK4 step a sample, sticking, stops, encoders"
+        ),
+        BenchRow(f"twinlaw kernel, {BATCH} sets", batch, None, 1.0, 0.0, "the same, parameter sets side by side"),
     ]
-    piece = after_take_off(bound, table, whole)
-    for name, peer in (*bench_peers.PEERS.items(), *bench_compiled.PEERS.items()):
-        prepared = peer.prepare(bound, table, controller, piece)
-        found = None if prepared is None else speed(prepared)
-        rows.append(BenchRow(name, True, found, None if found is None else single / found, peer.note))
-    return tuple(rows)
+    peers = {**bench_peers.PEERS, **bench_compiled.PEERS}
+    return (*rows, *(_row(name, peer, task, single, batch) for name, peer in peers.items()))
 
 
-def speed(work: Callable[[], float]) -> float:
-    """Simulated seconds per CPU second of `work`, which returns what it simulated: the best of as many goes as fit into a second."""
+def _fly(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, p: Array, keep: str) -> Runs:
+    return simulate(bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, p=p, keep=keep)
+
+
+def _simulated_s(manoeuvre: Manoeuvre, p: Array) -> float:
+    return float(manoeuvre.t_s[-1] - manoeuvre.t_s[0]) * (1 if p.ndim == 1 else len(p))
+
+
+def _row(name: str, peer: Peer, task: Task, single: float, batch: float) -> BenchRow:
+    work = peer.prepare(task)
+    if work is None:
+        return BenchRow(name, None, None, None, None, peer.note)
+    sets = task.p if peer.batched else task.bound.p
+    x = _fly(task.bound, task.table, task.piece, sets, "x").x
+    assert x is not None
+    apart_rad = float(np.max(np.abs(np.asarray(work()) - x[..., -1, task.output_rows])))
+    found = speed(work, _simulated_s(task.piece, sets))
+    return BenchRow(name, found, None if peer.batched else single / found, batch / found, apart_rad, peer.note)
+
+
+def speed(work: Callable[[], object], simulated_s: float, clock: Callable[[], float] = time.process_time) -> float:
+    """Simulated seconds per CPU second of `work`, which simulates `simulated_s`: the best of what fits into SECONDS_PER_TOOL.
+
+    The work is repeated until one measurement lasts longer than SHORTEST_S.
+    """
     work()
-    best, spent = np.inf, 0.0
-    while np.isinf(best) or spent < SECONDS_PER_TOOL:
-        begin = time.process_time()
-        simulated_s = work()
-        took = max(time.process_time() - begin, 1e-6)  # the clock's own step
-        best, spent = min(best, took / simulated_s), spent + took
-    return float(1.0 / best)
+    repeats, best, spent = 1, 0.0, 0.0
+    while best == 0.0 or spent < SECONDS_PER_TOOL:
+        begin = clock()
+        for _ in range(repeats):
+            work()
+        took = clock() - begin
+        spent += took
+        if took > SHORTEST_S:
+            best = max(best, repeats * simulated_s / took)
+        else:
+            repeats *= 2
+    return best
+
+
+def step_accuracy(bound: BoundPlant, table: ControllerTable) -> StepAccuracy:
+    """The step-halving check of the whole flight, next to the error against FINE_SUBSTEPS times finer steps."""
+    whole = flight(bound, table.sample_period_s)
+    halved = step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
+    coarse, fine = (
+        simulate(
+            bound,
+            whole.t_s,
+            whole.x0,
+            table,
+            reference=whole.reference_rad,
+            resolution=np.zeros(len(bound.model.outputs)),
+            substeps=count,
+            keep="y",
+        ).y
+        for count in (1, FINE_SUBSTEPS)
+    )
+    assert coarse is not None
+    assert fine is not None
+    return StepAccuracy(tuple(halved.estimate.tolist()), tuple(np.max(np.abs(coarse - fine), axis=0).tolist()))
 
 
 def after_take_off(bound: BoundPlant, table: ControllerTable, whole: Manoeuvre) -> Manoeuvre:

@@ -7,12 +7,8 @@ from typing import Any
 import numpy as np
 import sympy
 
-from records.table import ControllerTable
 from sim.bench_law import LAW_STATES, law_start, law_step
-from sim.bench_peers import Peer, Work, smooth_rates
-from sim.bind import BoundPlant
-from sim.loop import Controller
-from sim.manoeuvres import Manoeuvre
+from sim.bench_peers import Peer, Task, Work, smooth_rates, symbolic_rates
 from toolchain.host import FAST_FLAGS, CText, build_shared
 
 
@@ -24,29 +20,21 @@ def _module(name: str) -> Any:
         return None
 
 
-def _rates(bound: BoundPlant, modules: Any) -> Any:
-    arguments = [*bound.model.states, *bound.model.inputs]
-    return sympy.lambdify(arguments, tuple(smooth_rates(bound)), modules=modules, cse=True)
-
-
-def _readings(bound: BoundPlant) -> list[tuple[int, float]]:
-    """State and encoder step of each output."""
-    model = bound.model
-    return [(model.states.index(state), bound.plant.sensors[output]) for output, state in model.outputs.items()]
+def _measured(task: Task, floor: Callable[[Any], Any], x: Any) -> list[Any]:
+    """What the encoders read."""
+    return [floor(x[row] / step + 0.5) * step for row, step in zip(task.output_rows, task.resolution, strict=True)]
 
 
 def _moved(x: Any, k: Any, h_s: float) -> list[Any]:
     return [x[i] + h_s * k[i] for i in range(len(k))]
 
 
-def _sample(
-    bound: BoundPlant, table: ControllerTable, ops: Any, rates: Callable[..., Any], h_s: float
-) -> Callable[..., Any]:
+def _sample(task: Task, ops: Any, rates: Callable[..., Any]) -> Callable[..., Any]:
     """One sample, quantise, law, RK4: (x, law state, reference) -> (x, law state) on any tool's scalars."""
+    h_s = task.period_s
 
     def step(x: Any, state: Any, reference: Any) -> tuple[list[Any], list[Any]]:
-        y = [ops.floor(x[row] / width + 0.5) * width for row, width in _readings(bound)]
-        state, u = law_step(table, ops, state, reference, y)
+        state, u = law_step(task.table, ops, state, reference, _measured(task, ops.floor, x))
         k1 = rates(*x, *u)
         k2 = rates(*_moved(x, k1, h_s / 2), *u)
         k3 = rates(*_moved(x, k2, h_s / 2), *u)
@@ -56,7 +44,7 @@ def _sample(
     return step
 
 
-def _casadi(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controller], piece: Manoeuvre) -> Work | None:
+def _casadi(task: Task) -> Work | None:
     """The sample as a CasADi function, accumulated over the run, as the C that CasADi generates."""
     casadi = _module("casadi")
     if casadi is None:
@@ -66,25 +54,28 @@ def _casadi(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controlle
         minimum, maximum, floor = casadi.fmin, casadi.fmax, casadi.floor
 
     names = {name: getattr(casadi, name) for name in ("sin", "cos", "tanh", "sign")} | {"Abs": casadi.fabs}
-    size, samples = len(bound.model.states), piece.t_s.size - 1
+    model, piece = task.bound.model, task.piece
+    size, samples = len(model.states), piece.t_s.size - 1
     both, reference = casadi.SX.sym("both", size + 2 * LAW_STATES), casadi.SX.sym("r", 2)
-    step = _sample(bound, table, Ops, _rates(bound, [names]), float(piece.t_s[1] - piece.t_s[0]))
+    arguments = [*model.states, *model.inputs]
+    rates = sympy.lambdify(arguments, tuple(smooth_rates(task.bound)), modules=[names], cse=True)
+    step = _sample(task, Ops, rates)
     x, state = step(casadi.vertsplit(both[:size]), casadi.vertsplit(both[size:]), casadi.vertsplit(reference))
     loop = casadi.Function("sample", [both, reference], [casadi.vertcat(*x, *state)]).mapaccum("loop", samples)
     generated = casadi.CodeGenerator("loop.c")
     generated.add(loop)
     path = build_shared("casadi-loop", [CText("loop.c", generated.dump())], flags=FAST_FLAGS)
     compiled = casadi.external("loop", str(path))
-    start, references = np.concatenate([piece.x0, law_start(bound, piece)]), piece.reference_rad[:-1].T.copy()
+    start, references = np.concatenate([piece.x0, law_start(task.bound, piece)]), piece.reference_rad[:-1].T.copy()
 
-    def work() -> float:
-        compiled(start, references)
-        return float(piece.t_s[-1])
+    def work() -> list[float]:
+        every = compiled(start, references)
+        return [float(every[row, -1]) for row in task.output_rows]
 
     return work
 
 
-def _numba(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controller], piece: Manoeuvre) -> Work | None:
+def _numba(task: Task) -> Work | None:
     """Plant and law as scalar functions that numba compiles; states travel as tuples."""
     numba = _module("numba")
     if numba is None:
@@ -96,17 +87,17 @@ def _numba(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controller
     def compiled(arguments: Any, results: Any) -> Any:
         return numba.njit(sympy.lambdify(arguments, tuple(results), modules="math", cse=True))
 
+    bound, piece = task.bound, task.piece
     x, own, k = bound.model.states, sympy.symbols(f"l:{2 * LAW_STATES}"), sympy.symbols(f"k:{len(bound.model.states)}")
     r, y, h = sympy.symbols("r:2"), sympy.symbols("y:2"), sympy.Symbol("h")
-    state, u = law_step(table, Ops, own, r, y)
+    state, u = law_step(task.table, Ops, own, r, y)
     law, moved = compiled([*r, *y, *own], [*u, *state]), compiled([h, *x, *k], _moved(x, k, h))
     rates = compiled([*x, *bound.model.inputs], smooth_rates(bound))
-    measured = compiled(x, [sympy.floor(x[row] / width + 0.5) * width for row, width in _readings(bound)])
-    h_s = float(piece.t_s[1] - piece.t_s[0])
+    measured, h_s = compiled(x, _measured(task, sympy.floor, x)), task.period_s
 
     @numba.njit
     def fly(x, own, references):  # type: ignore[no-untyped-def]
-        for k in range(len(references)):
+        for k in range(len(references) - 1):
             result = law(references[k, 0], references[k, 1], *(measured(*x) + own))
             u, own = result[:2], result[2:]
             k1 = rates(*(x + u))
@@ -119,44 +110,61 @@ def _numba(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controller
 
     start, law_state = tuple(piece.x0.tolist()), tuple(law_start(bound, piece).tolist())
 
-    def work() -> float:
-        fly(start, law_state, piece.reference_rad)
-        return float(piece.t_s[-1])
+    def work() -> list[float]:
+        end = fly(start, law_state, piece.reference_rad)
+        return [end[row] for row in task.output_rows]
 
     return work
 
 
-def _diffrax(bound: BoundPlant, table: ControllerTable, _: Callable[[], Controller], piece: Manoeuvre) -> Work | None:
+def _diffrax(task: Task) -> Work | None:
     """Tsit5 with adaptive steps within each sample, the samples in a compiled scan."""
+    fly = _diffrax_flight(task)
+    return None if fly is None else lambda: fly(task.bound.p)
+
+
+def _diffrax_batch(task: Task) -> Work | None:
+    """The same for all parameter sets at once, by JAX's vectorising map."""
+    jax, fly = _module("jax"), _diffrax_flight(task)
+    if fly is None:
+        return None
+    together = jax.jit(jax.vmap(fly))
+    return lambda: together(task.p)
+
+
+def _diffrax_flight(task: Task) -> Callable[[Any], Any] | None:
+    """The outputs at the end of the task as a compiled function of the parameters."""
     jax, diffrax = _module("jax"), _module("diffrax")
     if jax is None or diffrax is None:
         return None
     jax.config.update("jax_enable_x64", True)
-    jnp, h_s = jax.numpy, float(piece.t_s[1] - piece.t_s[0])
-    rates = _rates(bound, "jax")
-    term = diffrax.ODETerm(lambda t, x, u: jnp.stack(rates(*x, *u)))
+    jnp, model, h_s = jax.numpy, task.bound.model, task.period_s
+    arguments = [*model.states, *model.inputs, *model.parameter_symbols]
+    rates = sympy.lambdify(arguments, tuple(symbolic_rates(model)), modules="jax", cse=True)
+    term = diffrax.ODETerm(lambda t, x, given: jnp.stack(rates(*x, *given[0], *given[1])))
     control = diffrax.PIDController(rtol=1e-6, atol=1e-8)
+    start = jnp.array(task.piece.x0), jnp.array(law_start(task.bound, task.piece))
+    references = jnp.array(task.piece.reference_rad[:-1])
 
-    def sample(carry: Any, reference: Any) -> Any:
-        x, own = carry
-        y = [jnp.floor(x[row] / width + 0.5) * width for row, width in _readings(bound)]
-        own, u = law_step(table, jnp, own, reference, y)
-        ends = {"t0": 0.0, "t1": h_s, "dt0": h_s}
-        x = diffrax.diffeqsolve(term, diffrax.Tsit5(), y0=x, args=u, stepsize_controller=control, **ends).ys[-1]
-        return (x, jnp.stack(own)), None
+    def fly(p: Any) -> Any:
+        def sample(carry: Any, reference: Any) -> Any:
+            x, own = carry
+            own, u = law_step(task.table, jnp, own, reference, _measured(task, jnp.floor, x))
+            ends = {"t0": 0.0, "t1": h_s, "dt0": h_s}
+            x = diffrax.diffeqsolve(term, diffrax.Tsit5(), y0=x, args=(u, p), stepsize_controller=control, **ends).ys[
+                -1
+            ]
+            return (x, jnp.stack(own)), None
 
-    fly = jax.jit(lambda carry, references: jax.lax.scan(sample, carry, references)[0])
-    carry = jnp.array(piece.x0), jnp.array(law_start(bound, piece))
+        (x, _), _ = jax.lax.scan(sample, start, references)
+        return x[jnp.array(task.output_rows)]
 
-    def work() -> float:
-        jax.block_until_ready(fly(carry, piece.reference_rad))
-        return float(piece.t_s[-1])
-
-    return work
+    return jax.jit(fly)  # type: ignore[no-any-return]
 
 
 PEERS: Mapping[str, Peer] = {
     "CasADi generated C": Peer(_casadi, "one RK4 step a sample, compiled with the kernel's flags"),
     "numba": Peer(_numba, "one RK4 step a sample"),
     "diffrax": Peer(_diffrax, "Tsit5, relative tolerance 1e-6"),
+    "diffrax vmap": Peer(_diffrax_batch, "the same, all parameter sets at once", batched=True),
 }

@@ -11,6 +11,12 @@ from sim.manoeuvres import Manoeuvre
 LAW_STATES = 12  # per axis: two prefilter states, v, and three differences each of e, s, w
 
 
+class PlainNumbers:
+    """What the law asks of Python's own numbers."""
+
+    minimum, maximum = min, max
+
+
 def law_step(table: ControllerTable, ops: Any, state: Any, reference: Any, y: Any) -> tuple[list[Any], list[Any]]:
     """One sample of the law: `ops` has `minimum` and `maximum`; returns the new state and the inputs."""
     new: list[Any] = []

@@ -6,35 +6,74 @@ from typing import Any
 
 import numpy as np
 import sympy
+from numpy.typing import NDArray
 
 from records.table import ControllerTable
+from sim.bench_law import LAW_STATES, PlainNumbers, law_start, law_step
 from sim.bind import BoundPlant
 from sim.loop import Controller
 from sim.manoeuvres import Manoeuvre
+from sim.model import Model
 
 SLIP_RAD_S = 0.005
-Work = Callable[[], float]
-Prepare = Callable[[BoundPlant, ControllerTable, Callable[[], Controller], Manoeuvre], Work | None]
+Array = NDArray[np.float64]
 Rates = Callable[..., Sequence[float]]
+Work = Callable[
+    [], Any
+]  # flies the task once; the outputs' true values at its end, shape (outputs,) or (runs, outputs)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What every tool flies: `piece` under the law of `table`, which `controller` makes for tools that call Python.
+
+    A tool that flies many runs at once takes the parameter sets `p` (runs, k), any other the plant's own.
+    """
+
+    bound: BoundPlant
+    table: ControllerTable
+    controller: Callable[[], Controller]
+    piece: Manoeuvre
+    p: Array
+
+    @property
+    def output_rows(self) -> list[int]:
+        """Place of each output among the states."""
+        return [self.bound.model.states.index(output) for output in self.bound.model.outputs.values()]
+
+    @property
+    def resolution(self) -> list[float]:
+        """Encoder step of each output."""
+        return [self.bound.plant.sensors[output] for output in self.bound.model.outputs]
+
+    @property
+    def period_s(self) -> float:
+        """Time from sample to sample."""
+        return float(self.piece.t_s[1] - self.piece.t_s[0])
 
 
 @dataclass(frozen=True)
 class Peer:
-    """A tool: what makes its run ready (None when it is not installed), and what it does differently."""
+    """A tool: what makes its run ready (None when it is not installed), what it does differently, whether it flies all runs at once."""
 
-    prepare: Prepare
+    prepare: Callable[[Task], Work | None]
     note: str
+    batched: bool = False
 
 
-def smooth_rates(bound: BoundPlant) -> list[sympy.Expr]:
-    """dx/dt with the parameters' numbers put in and dry friction b_c tanh(v / SLIP_RAD_S), for tools without events."""
-    model = bound.model
-    values = dict(zip(model.parameter_symbols, bound.p.tolist(), strict=True))
+def symbolic_rates(model: Model) -> list[sympy.Expr]:
+    """dx/dt with dry friction b_c tanh(v / SLIP_RAD_S), for tools without events."""
     slips = {
         sign: sympy.tanh(axis.velocity / SLIP_RAD_S)
         for sign, axis in zip(model.friction_signs, model.axes, strict=True)
     }
-    return [rate.subs(slips).subs(values) for rate in model.state_rates()]
+    return [rate.subs(slips) for rate in model.state_rates()]
+
+
+def smooth_rates(bound: BoundPlant) -> list[sympy.Expr]:
+    """The same with the parameters' numbers put in."""
+    values = dict(zip(bound.model.parameter_symbols, bound.p.tolist(), strict=True))
+    return [rate.subs(values) for rate in symbolic_rates(bound.model)]
 
 
 def scalar_rates(bound: BoundPlant) -> Rates:
@@ -43,54 +82,48 @@ def scalar_rates(bound: BoundPlant) -> Rates:
     return sympy.lambdify(arguments, smooth_rates(bound), modules="math", cse=True)  # type: ignore[no-any-return]
 
 
-def _sampled(
-    bound: BoundPlant,
-    controller: Callable[[], Controller],
-    manoeuvre: Manoeuvre,
-    hold: Callable[[Any, Any, float], Any],
-) -> Work:
+def _sampled(task: Task, hold: Callable[[Any, Any, float], Any]) -> Work:
     """A loop over the samples in Python; `hold` advances x under constant u by a time."""
-    rows = [bound.model.states.index(output) for output in bound.model.outputs.values()]
-    steps = [bound.plant.sensors[output] for output in bound.model.outputs]
-    references, times = manoeuvre.reference_rad.tolist(), manoeuvre.t_s.tolist()
+    rows, steps = task.output_rows, task.resolution
+    references, times = task.piece.reference_rad.tolist(), task.piece.t_s.tolist()
 
     def measured(x: Any) -> list[float]:
         return [round(x[row] / step) * step for row, step in zip(rows, steps, strict=True)]
 
-    def work() -> float:
-        law, x = controller(), manoeuvre.x0
+    def work() -> list[float]:
+        law, x = task.controller(), task.piece.x0
         law.reset(*measured(x))
         for k in range(len(times) - 1):
             x = hold(x, law.step(*references[k], *measured(x)), times[k + 1] - times[k])
-        return float(times[-1] - times[0])
+        return [x[row] for row in rows]
 
     return work
 
 
-def _solve_ivp(bound: BoundPlant, _: ControllerTable, controller: Callable[[], Controller], piece: Manoeuvre) -> Work:
+def _solve_ivp(task: Task) -> Work:
     from scipy.integrate import solve_ivp
 
-    rates = scalar_rates(bound)
+    rates = scalar_rates(task.bound)
 
     def hold(x: Any, u: Any, h_s: float) -> Any:
         return solve_ivp(lambda t, x: rates(*x, *u), (0.0, h_s), x, rtol=1e-6, atol=1e-8).y[:, -1]
 
-    return _sampled(bound, controller, piece, hold)
+    return _sampled(task, hold)
 
 
-def _odeint(bound: BoundPlant, _: ControllerTable, controller: Callable[[], Controller], piece: Manoeuvre) -> Work:
+def _odeint(task: Task) -> Work:
     from scipy.integrate import odeint
 
-    rates = scalar_rates(bound)
+    rates = scalar_rates(task.bound)
 
     def hold(x: Any, u: Any, h_s: float) -> Any:
         return odeint(lambda x, t: rates(*x, *u), x, [0.0, h_s], rtol=1e-6, atol=1e-8)[-1]
 
-    return _sampled(bound, controller, piece, hold)
+    return _sampled(task, hold)
 
 
-def _python_rk4(bound: BoundPlant, _: ControllerTable, controller: Callable[[], Controller], piece: Manoeuvre) -> Work:
-    return _sampled(bound, controller, piece, rk4_hold(scalar_rates(bound)))
+def _python_rk4(task: Task) -> Work:
+    return _sampled(task, rk4_hold(scalar_rates(task.bound)))
 
 
 def rk4_hold(rates: Rates) -> Callable[[Any, Any, float], list[float]]:
@@ -106,41 +139,39 @@ def rk4_hold(rates: Rates) -> Callable[[Any, Any, float], list[float]]:
     return hold
 
 
-def _python_control(
-    bound: BoundPlant, _: ControllerTable, controller: Callable[[], Controller], piece: Manoeuvre
-) -> Work:
-    """Plant and law as two systems at the sample period, interconnected; the law, which has memory of its own, as an output map."""
+def _python_control(task: Task) -> Work:
+    """Plant and law as two systems at the sample period, interconnected; the solver asks for the law's outputs as often as it likes."""
     import control
 
-    hold, model = rk4_hold(scalar_rates(bound)), bound.model
-    period_s = float(piece.t_s[1] - piece.t_s[0])
-    rows = [model.states.index(output) for output in model.outputs.values()]
+    hold, model, piece = rk4_hold(scalar_rates(task.bound)), task.bound.model, task.piece
+    rows, steps = task.output_rows, np.array(task.resolution)
     inputs, outputs = [str(variable) for variable in model.inputs], list(model.outputs)
-    plant = control.nlsys(
-        lambda t, x, u, params: np.array(hold(x.tolist(), u.tolist(), period_s)),
-        lambda t, x, u, params: x[rows],
-        inputs=inputs, outputs=outputs, states=len(model.states), dt=period_s, name="plant",
-    )  # fmt: skip
     references = [f"{output}_wanted" for output in outputs]
-    steps = np.array([bound.plant.sensors[output] for output in outputs])
 
-    def work() -> float:
-        law = controller()
-        law.reset(*(np.round(piece.x0[rows] / steps) * steps).tolist())
-        memory: dict[float, tuple[float, float]] = {}  # the solver asks for the outputs of one instant more than once
+    def advance(t: float, x: Any, u: Any, params: Any) -> Any:
+        return np.array(hold(x.tolist(), u.tolist(), task.period_s))
 
-        def command(t: float, _x: Any, u: Any, _params: Any) -> np.ndarray:
-            if t not in memory:
-                y = np.round(u[len(outputs) :] / steps) * steps
-                memory[t] = law.step(*u[: len(outputs)].tolist(), *y.tolist())
-            return np.array(memory[t])
+    def law(x: Any, u: Any) -> tuple[list[float], list[float]]:
+        y = np.round(u[len(outputs) :] / steps) * steps
+        return law_step(task.table, PlainNumbers, x.tolist(), u[: len(outputs)].tolist(), y.tolist())
 
-        system = control.nlsys(None, command, inputs=[*references, *outputs], outputs=inputs, dt=period_s, name="law")
-        loop = control.interconnect([plant, system], inputs=references, outputs=outputs)
-        control.input_output_response(loop, piece.t_s, piece.reference_rad.T, piece.x0)
-        return float(piece.t_s[-1])
+    def remember(t: float, x: Any, u: Any, params: Any) -> Any:
+        return np.array(law(x, u)[0])
 
-    return work
+    def command(t: float, x: Any, u: Any, params: Any) -> Any:
+        return np.array(law(x, u)[1])
+
+    clock = {"dt": task.period_s}
+    plant = control.nlsys(
+        advance, lambda t, x, u, params: x[rows],
+        inputs=inputs, outputs=outputs, states=len(model.states), name="plant", **clock,
+    )  # fmt: skip
+    controller = control.nlsys(
+        remember, command, inputs=[*references, *outputs], outputs=inputs, states=2 * LAW_STATES, name="law", **clock
+    )
+    loop = control.interconnect([plant, controller], inputs=references, outputs=outputs)
+    start = [piece.x0, law_start(task.bound, piece)]
+    return lambda: control.input_output_response(loop, piece.t_s, piece.reference_rad.T, start).outputs[:, -1]
 
 
 PEERS: Mapping[str, Peer] = {

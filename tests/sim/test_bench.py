@@ -1,5 +1,7 @@
 """The comparison with other tools: that all fly the same flight, never how fast."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,56 +11,82 @@ from sim.manoeuvres import hop
 from sim.simulate import simulate
 
 
-class Plain:
-    """Numbers as they are."""
-
-    minimum, maximum = min, max
-
-
 def test_the_peers_law_is_the_law(table):
     """On random references and angles that saturate both inputs; the order of sums differs, so not to the last bit."""
     random, law = np.random.default_rng(5), FloatLaw(table)
     law.reset(0.0, 0.0)
     state = [0.0] * (2 * bench_law.LAW_STATES)
     for reference, angle in zip(random.uniform(-0.5, 0.5, (200, 2)), random.uniform(-0.2, 0.2, (200, 2)), strict=True):
-        state, u = bench_law.law_step(table, Plain, state, reference.tolist(), angle.tolist())
+        state, u = bench_law.law_step(table, bench_law.PlainNumbers, state, reference.tolist(), angle.tolist())
         np.testing.assert_allclose(u, law.step(*reference, *angle), atol=1e-9)
 
 
-def test_a_peer_in_python_ends_where_the_kernel_ends(bound, table):
-    """Without friction, on which they differ, the readings of a second of flight agree to one encoder step."""
+def slippery(bound):
+    """The plant without dry friction, on which the tools differ."""
     names = [str(symbol) for symbol in bound.model.parameter_symbols]
     p = bound.p.copy()
     p[[names.index("b_cE"), names.index("b_cA")]] = 0.0
-    slippery = type(bound)(bound.plant, bound.model, p, bound.sd)
-    piece, law, x = hop(bound), FloatLaw(table), hop(bound).x0.tolist()
-    hold = bench_peers.rk4_hold(bench_peers.scalar_rates(slippery))
-    steps = [bound.plant.sensors[output] for output in ("psi_rad", "phi_rad")]
-    y = [round(angle / step) * step for angle, step in zip((x[1], x[4]), steps, strict=True)]
-    law.reset(*y)
-    for reference in piece.reference_rad[:200].tolist():
-        y = [round(angle / step) * step for angle, step in zip((x[1], x[4]), steps, strict=True)]
-        x = hold(x, law.step(*reference, *y), 0.01)
-    ours = simulate(slippery, piece.t_s, piece.x0, table, reference=piece.reference_rad).x[200]
-    np.testing.assert_allclose([x[1], x[4]], ours[[1, 4]], atol=steps[0])
+    return type(bound)(bound.plant, bound.model, p, bound.sd)
+
+
+@pytest.mark.parametrize("name", [*bench_peers.PEERS, *bench_compiled.PEERS])
+def test_every_tool_ends_where_the_kernel_ends(bound, table, name):
+    """A second of flight without friction, on which they differ: to a tenth of an encoder step; a reading that flips would be more."""
+    plant = slippery(bound)
+    piece = hop(plant)
+    piece = replace(piece, t_s=piece.t_s[:201], reference_rad=piece.reference_rad[:201])
+    peer = {**bench_peers.PEERS, **bench_compiled.PEERS}[name]
+    task = bench_peers.Task(plant, table, lambda: FloatLaw(table), piece, np.array([plant.p, plant.p * 1.001]))
+    work = peer.prepare(task)
+    if work is None:
+        pytest.skip(f"{name} is not installed: see `twinlaw bench`")
+    p = task.p if peer.batched else plant.p
+    ours = simulate(plant, piece.t_s, piece.x0, table, reference=piece.reference_rad, p=p).x[..., -1, [1, 4]]
+    np.testing.assert_allclose(np.asarray(work()), ours, atol=plant.plant.sensors["psi_rad"] / 10)
+
+
+def quick(monkeypatch):
+    for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
+        monkeypatch.setattr(bench, name, value)
 
 
 def test_every_tool_has_a_row_and_those_not_installed_say_so(bound, table, monkeypatch):
-    monkeypatch.setattr(bench, "SECONDS_PER_TOOL", 0.0)
-    monkeypatch.setattr(bench, "SHORT_S", 0.2)
-    monkeypatch.setattr(bench, "BATCH", 8)
+    quick(monkeypatch)
     rows = bench.run(bound, table, lambda: FloatLaw(table))
     tools = [row.tool for row in rows]
     assert tools[0] == "twinlaw kernel"
     assert set(bench_peers.PEERS) | set(bench_compiled.PEERS) < set(tools)
     for row in rows:
         assert row.note
-        assert (row.ratio is None) == (row.simulated_s_per_cpu_s is None)
+        assert (row.batch_ratio is None) == (row.simulated_s_per_cpu_s is None) == (row.apart_rad is None)
     for peer in bench_peers.PEERS:
-        assert rows[tools.index(peer)].ratio is not None
+        row = rows[tools.index(peer)]
+        assert row.kernel_ratio == pytest.approx(rows[0].simulated_s_per_cpu_s / row.simulated_s_per_cpu_s)
+        assert row.batch_ratio == pytest.approx(rows[1].simulated_s_per_cpu_s / row.simulated_s_per_cpu_s)
+        assert row.apart_rad < 0.01
 
 
-@pytest.mark.parametrize("peer", ["CasADi generated C", "numba", "diffrax"])
+@pytest.mark.parametrize("peer", bench_compiled.PEERS)
 def test_a_tool_that_is_not_installed_is_left_out(bound, table, monkeypatch, peer):
     monkeypatch.setattr(bench_compiled, "_module", lambda name: None)
-    assert bench_compiled.PEERS[peer].prepare(bound, table, lambda: FloatLaw(table), hop(bound)) is None
+    task = bench_peers.Task(bound, table, lambda: FloatLaw(table), hop(bound), bound.p[np.newaxis])
+    assert bench_compiled.PEERS[peer].prepare(task) is None
+
+
+@pytest.mark.parametrize("tick_s", [1e-9, 1e-3, 1.0 / 64.0])
+def test_a_coarse_clock_tells_the_same_speed(tick_s):
+    """Work of 0.3 ms that simulates 0.6 s: 2000, read from a clock that moves in ticks; as exactly as a tick can tell."""
+    now_s = 0.0
+
+    def work():
+        nonlocal now_s
+        now_s += 3e-4
+
+    found = bench.speed(work, 0.6, clock=lambda: np.floor(now_s / tick_s) * tick_s)
+    assert found == pytest.approx(2000.0, rel=max(0.01, 1.1 * tick_s / bench.SHORTEST_S))
+
+
+def test_step_halving_reports_the_error_that_finer_steps_show(bound, table):
+    found = bench.step_accuracy(bound, table)
+    assert max(found.true_rad) < 1e-7
+    np.testing.assert_allclose(found.halving_rad, found.true_rad, rtol=0.2)

@@ -1,18 +1,32 @@
-"""Measure speed: the simulation against other tools on the same equations in the same run, the emulated board, the whole chain.
+"""Measure speed: the simulation next to other tools on the same equations in the same run, and the emulated board.
 
-Simulated seconds per CPU second of one core and the kernel's ratio to each tool. A peer that is not installed is named as such;
-`pip install '.[peers]'` brings those that are optional.
+Simulated seconds per CPU second of one core, and how many times faster the kernel is, flying one run at a time and many side by
+side. Tools that are not installed are named, with the command that installs them; `apart` tells how far a tool's flight ends from
+the kernel's.
 """
 
 import argparse
 import json
+import math
+from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
+from codegen.law import generate_law
 from design.law import FloatLaw
+from records.table import ControllerTable
+from rig.emulator.bench import Speed
+from rig.emulator.board import EmulatedBoard
+from rig.image import build_firmware
+from rig.target_law import TargetLaw
 from sim import bench
-from sim.bench import BenchRow
+from sim.bench import BenchRow, StepAccuracy
 from twinlaw import console, options
 from twinlaw.stages import design_controller
+
+BOARD_STEPS = 20_000
+INSTALL = ".venv/bin/python -m pip install --editable '.[peers]'"
+HEADING = ("closed loop, one core", "simulated s / CPU s", "kernel is faster by", "side by side by", "apart", "")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,15 +40,52 @@ def run(chosen: argparse.Namespace) -> int:
     designed = design_controller(chosen.plant)
     with console.stage("flying by every tool"):
         rows = bench.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
+    with console.stage("flying with finer steps"):
+        accuracy = bench.step_accuracy(designed.bound, designed.table)
+    with console.stage("stepping the law on the emulated board"):
+        board = _board_speed(designed.table)
     if chosen.json:
-        print(json.dumps([asdict(row) for row in rows]))
+        print(json.dumps(_facts(rows, accuracy, board)))
     else:
-        heading = ("closed loop, one core", "simulated s / CPU s", "kernel is faster by", "")
-        print(console.table([_shown(row) for row in rows], heading))
+        print(console.table([_shown(row) for row in rows], HEADING))
+        print("\n" + "\n".join(_told(rows, accuracy, board)))
     return 0
 
 
+def _board_speed(table: ControllerTable) -> Speed:
+    image = build_firmware(generate_law(table))
+    return TargetLaw(EmulatedBoard(image.elf)).speed(BOARD_STEPS)
+
+
 def _shown(row: BenchRow) -> tuple[str, ...]:
-    if row.simulated_s_per_cpu_s is None or row.ratio is None:
-        return row.tool, "not installed", "", row.note
-    return row.tool, f"{row.simulated_s_per_cpu_s:,.0f}", f"{row.ratio:,.1f}", row.note
+    if row.simulated_s_per_cpu_s is None or row.apart_rad is None:
+        return row.tool, "not installed", "", "", "", row.note
+    ratios = ("" if ratio is None else f"{ratio:,.1f}" for ratio in (row.kernel_ratio, row.batch_ratio))
+    apart = f"{math.degrees(row.apart_rad):.2f} deg" if row.apart_rad else ""
+    return row.tool, f"{row.simulated_s_per_cpu_s:,.0f}", *ratios, apart, row.note
+
+
+def _told(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> list[str]:
+    halving, true = (max(error) for error in (accuracy.halving_rad, accuracy.true_rad))
+    lines = [
+        f"error of one RK4 step a sample over the whole flight: {halving:.1e} rad by step halving, "
+        f"{true:.1e} rad against {bench.FINE_SUBSTEPS} times finer steps",
+        f"emulated board: {board.instructions_per_s / 1e6:.0f} million instructions / CPU s, all counted; "
+        f"{board.cycles / BOARD_STEPS:,.0f} cycles a control step",
+    ]
+    absent = _absent(rows)
+    return [*lines, f"not installed: {', '.join(absent)}; to compare with them: {INSTALL}"] if absent else lines
+
+
+def _absent(rows: Sequence[BenchRow]) -> list[str]:
+    return [row.tool for row in rows if row.simulated_s_per_cpu_s is None]
+
+
+def _facts(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> dict[str, Any]:
+    return {
+        "closed_loop": [asdict(row) for row in rows],
+        "step_accuracy": asdict(accuracy),
+        "emulated_board": {**asdict(board), "instructions_per_s": board.instructions_per_s},
+        "not_installed": _absent(rows),
+        "install": INSTALL,
+    }
