@@ -22,6 +22,7 @@ VERBS: Mapping[str, str] = {
     "import": "import_record",
     "blind": "blind",
     "bench": "bench",
+    "doctor": "doctor",
 }
 
 

@@ -1,0 +1,97 @@
+"""Tell what is installed, what is missing, and which verb misses it.
+
+Exit status 1 where something is missing that every verb needs.
+"""
+
+import argparse
+import json
+import platform
+import re
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
+
+from serial.tools import list_ports
+
+from records.errors import BadInput, VerificationFailed
+from toolchain.host import CACHE_DIR, CText, build_shared, load_shared
+from twinlaw import console, options
+
+# What an extra of pyproject.toml and a program of the system are for.
+EXTRAS: Mapping[str, str] = {
+    "peers": "bench: the tools it compares with",
+    "test": "make test",
+    "mdf4": "import: logs in MDF4",
+    "proofs": "verify --proofs",
+}
+PROGRAMS: Mapping[str, tuple[str, str]] = {
+    "openocd": ("flash: through an ST-LINK", "apt install openocd"),
+    "stm32flash": ("flash --port: through the serial boot loader", "apt install stm32flash"),
+}
+NEEDED = "every verb"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that a verb needs: what was found of it (None: nothing), and how to get it."""
+
+    name: str
+    needed_for: str
+    found: str | None
+    remedy: str
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--json."""
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Look, print, and fail where nothing would work."""
+    findings = list(examine())
+    if chosen.json:
+        print(json.dumps([asdict(finding) for finding in findings]))
+    else:
+        rows = [(f.name, f.found or "missing", f.needed_for, "" if f.found else f.remedy) for f in findings]
+        print(console.table(rows, ("what", "found", "needed for", "how to get it")))
+    lacking = [finding for finding in findings if finding.needed_for == NEEDED and not finding.found]
+    if lacking:
+        raise VerificationFailed("; ".join(f"{finding.name} is missing: {finding.remedy}" for finding in lacking))
+    return 0
+
+
+def examine() -> Iterator[Finding]:
+    """Every finding, what all verbs need first."""
+    yield Finding("Python", NEEDED, platform.python_version(), "")
+    yield from packages(requires("twinlaw") or ())
+    yield Finding("C compiler", NEEDED, _compiler(), "make run: installs the ziglang package")
+    for program, (purpose, remedy) in PROGRAMS.items():
+        yield Finding(program, purpose, shutil.which(program), remedy)
+    ports = ", ".join(port.device for port in list_ports.comports())
+    yield Finding("a serial port", "validate, watch: a board of your own", ports or None, "plug the board in")
+
+
+def packages(requirements: Sequence[str]) -> Iterator[Finding]:
+    """A finding for each package that the project's metadata names, by the extra that asks for it."""
+    for requirement in requirements:
+        name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
+        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)", requirement)
+        purpose = EXTRAS.get(extra[1], extra[1]) if extra else NEEDED
+        remedy = f"pip install --editable '.[{extra[1]}]'" if extra else "make run"
+        try:
+            yield Finding(name, purpose, version(name), remedy)
+        except PackageNotFoundError:
+            yield Finding(name, purpose, None, remedy)
+
+
+def _compiler() -> str | None:
+    """Where a compiled function of one line lies, if it can be compiled, loaded and called."""
+    try:
+        _, lib = load_shared(
+            "int doctor_sum(int a, int b);",
+            build_shared("doctor", [CText("doctor.c", "int doctor_sum(int a, int b) { return a + b; }\n")], flags=()),
+        )
+    except (BadInput, OSError):
+        return None
+    return f"works, keeps its output in {CACHE_DIR}" if lib.doctor_sum(2, 3) == 5 else None
