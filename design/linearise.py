@@ -42,7 +42,7 @@ def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
     model = reference(bound.model)
     no_friction = np.zeros(len(bound.model.axes))
     arguments = (0.0, point.x0, point.u0, bound.p, no_friction)
-    return LinearPlant(model.A(*arguments), model.B(*arguments), model.C)
+    return LinearPlant(model.A(*arguments), model.B(*arguments), model.C(*arguments))
 
 
 def subsystem(bound: BoundPlant, linear: LinearPlant, axis: str) -> LinearPlant:

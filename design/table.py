@@ -12,9 +12,11 @@ from design.operating_points import DesignPoints, design_points
 from design.report import DesignReport, make_report
 from design.schedule import fit, fit_error, fit_schedule
 from design.settings import AXES, DesignSettings
+from records.errors import BadInput
 from records.plant import plant_text
 from records.table import AxisLaw, ControllerTable
 from sim.bind import BoundPlant
+from sim.effects.api import linear_part, without_effects
 
 LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
 SENSORS = {"elevation": "psi_rad", "azimuth": "phi_rad"}
@@ -24,11 +26,34 @@ def design(bound: BoundPlant, settings: DesignSettings) -> tuple[ControllerTable
     """The table for `settings` and what is known of it.
 
     Raises BadInput where an operating point cannot be reached or designed for, and when the table is unstable or below a
-    margin of `settings.margins` anywhere in the range, naming axis, angle, and pole or margin.
+    margin of `settings.margins` anywhere in the range, naming axis, angle, and pole or margin. Of a plant's effects, it sees those on
+    the equations that add no states; where these leave nothing to design on, it sees the nominal plant.
     """
-    points = design_points(bound, settings)
+    if not bound.effects:
+        return _designed_on(bound, bound, settings)
+    try:
+        return _designed_on(linear_part(bound), bound, settings)
+    except BadInput:
+        return _designed_on(without_effects(bound), bound, settings)
+
+
+def report_on(bound: BoundPlant, settings: DesignSettings, table: ControllerTable) -> DesignReport:
+    """What is known of a table that exists already, on this plant; raises BadInput where the plant cannot be designed for."""
+    try:
+        seen = linear_part(bound)
+        return make_report(seen, settings, table, design_points(seen, settings))
+    except BadInput:
+        if not bound.effects:
+            raise
+        seen = without_effects(bound)
+        return make_report(seen, settings, table, design_points(seen, settings))
+
+
+def _designed_on(seen: BoundPlant, bound: BoundPlant, settings: DesignSettings) -> tuple[ControllerTable, DesignReport]:
+    """Table and report of `bound` from the linearisation of `seen`, the plant with fewer effects."""
+    points = design_points(seen, settings)
     table = make_table(bound, settings, points)
-    report = make_report(bound, settings, table, points)
+    report = make_report(seen, settings, table, points)
     check(report, settings)
     return table, report
 

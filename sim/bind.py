@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.plant import Parameter, Plant
 from records.units import dimensions
-from sim.effects.build import model_with
+from sim.effects.build import model_with, paths_with
 from sim.effects.effect import coefficient
-from sim.effects.table import Entries, read_effects
+from sim.effects.table import Entries, plain_values, read_effects
 from sim.model import Model, ParameterSpec
+from sim.paths import InputStage, OutputStage
 from sim.plants import MODELS
 
 
@@ -20,7 +21,8 @@ from sim.plants import MODELS
 class BoundPlant:
     """Equations with numbers: `p` and `sd` are the parameter vector and its standard deviations, shape (parameters,), SI.
 
-    `model` has the equations of the plant's `effects`, whose parameters follow the plant's own in `p`.
+    `model` has the equations of the plant's `effects`, whose parameters follow the plant's own in `p`; `input_path` and `output_path`
+    are the stages that its inputs and outputs pass for those effects that are no equations.
     """
 
     plant: Plant
@@ -28,6 +30,8 @@ class BoundPlant:
     p: NDArray[np.float64]
     sd: NDArray[np.float64]
     effects: Entries = field(default_factory=dict)
+    input_path: tuple[InputStage, ...] = ()
+    output_path: tuple[OutputStage, ...] = ()
 
     def parameter(self, name: str) -> float:
         """The value of a parameter that is one number."""
@@ -48,13 +52,14 @@ def bind(plant: Plant) -> BoundPlant:
     for spec in model.parameters:
         _check_parameter(spec, plant.parameters[spec.name], f"{where}: parameters.{spec.name}")
     effects = read_effects(plant.effects, model, f"{where}: effects")
+    paths = paths_with(model, plain_values(effects))
     known = {**plant.parameters, **_named(effects)}
     model = model_with(plant.model, tuple(effects))
     ordered = [known[spec.name] for spec in model.parameters]
     p = np.array([value for entry in ordered for value in entry.values])
     sd = np.array([value for entry in ordered for value in entry.sds])
     _check_limits(model, p, where)
-    return BoundPlant(plant, model, p, sd, effects)
+    return BoundPlant(plant, model, p, sd, effects, *paths)
 
 
 def _named(effects: Entries) -> Mapping[str, Parameter]:

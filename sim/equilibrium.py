@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from sim.bind import BoundPlant
+from sim.effects.api import without_effects
 from sim.model import Axis
 from sim.reference import reference
+from sim.start import start_state
 
 MAX_ITERATIONS = 60
 STEP_TOLERANCE = 1e-14
+RATE_TOLERANCE = 1e-6  # of a rate at a rest point; where there is none, the least rate is far larger
 Array = NDArray[np.float64]
 Values = Mapping[sympy.Symbol, float]
 
@@ -30,7 +33,8 @@ class OperatingPoint:
 def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     """The rest point f(x0, u0) = 0 with the axes at `positions_rad`, in the order of the model; those not given are at 0.
 
-    Solved to rounding for the states that belong to no axis (rotor speeds) and the inputs; needs as many inputs as axes.
+    Solved to rounding for the states that belong to no axis (rotor speeds) and the inputs; needs as many inputs as axes. Effects
+    that act on the equations are part of them, as they are at time 0; what acts on the way of a signal does not move a rest point.
     Raises BadInput naming the angle when it lies beyond a stop or needs an input beyond its limits.
     """
     model = bound.model
@@ -41,13 +45,28 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
         _check_stops(bound, axis, positions.get(axis.position, 0.0), values)
     x = np.array([positions.get(state, 0.0) for state in model.states])
     u = np.array([_middle(model.input_limits[variable], values) for variable in model.inputs])
-    x0, u0 = _solve(bound, x, u, positions_rad)
+    found = _solve(bound, x, u)
+    if found is None and bound.effects:  # a dead band is flat in the middle: begin where the nominal plant rests
+        nominal = equilibrium(without_effects(bound), *positions_rad)
+        found = _solve(bound, start_state(bound, nominal.x0), nominal.u0)
+    if found is None:
+        raise BadInput(
+            "equilibrium",
+            _place(bound, positions_rad),
+            "no solution of f(x, u) = 0",
+            "a rest point",
+            "check the parameters of rotors and gravity",
+        )
+    x0, u0 = found
     _check_inputs(bound, u0, values, positions_rad)
     return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
 
 
-def _solve(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
-    """Newton's method from rest at the middle of the inputs' range: thrust and damping are convex, so it needs no damping."""
+def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:
+    """Newton's method from rest at the middle of the inputs' range: thrust and damping are convex, so it needs no damping.
+
+    A state whose rate is 0 wherever the axes rest (a bent cable) stays where it starts. None where there is no rest point.
+    """
     model = bound.model
     arms = [axis for axis in model.axes if axis.position is not None]
     held = {variable for axis in arms for variable in (axis.position, axis.velocity)}
@@ -56,21 +75,19 @@ def _solve(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ..
     equations, signs = reference(model), np.zeros(len(model.axes))
     for _ in range(MAX_ITERATIONS):
         at = (0.0, x, u, bound.p, signs)
-        jacobian = np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]])
-        try:
-            step = np.linalg.solve(jacobian, equations.rates(*at)[rows])
-        except np.linalg.LinAlgError:
-            break
+        rates = equations.rates(*at)[rows]
+        step = _newton_step(np.hstack([equations.A(*at)[np.ix_(rows, free)], equations.B(*at)[rows]]), rates)
         x[free], u = x[free] - step[: len(free)], u - step[len(free) :]
         if np.all(np.abs(step) <= STEP_TOLERANCE * (1.0 + np.abs(np.concatenate([x[free], u])))):
-            return x, u
-    raise BadInput(
-        "equilibrium",
-        _place(bound, positions_rad),
-        "no solution of f(x, u) = 0",
-        "a rest point",
-        "check the parameters of rotors and gravity",
-    )
+            return (x, u) if np.max(np.abs(rates)) <= RATE_TOLERANCE else None
+    return None
+
+
+def _newton_step(jacobian: Array, rates: Array) -> Array:
+    try:
+        return np.asarray(np.linalg.solve(jacobian, rates))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(jacobian, rates, rcond=None)[0])
 
 
 def _middle(limits: tuple[sympy.Expr, sympy.Expr], values: Values) -> float:

@@ -57,7 +57,7 @@ class Model:
 
     `rates` covers every state but the velocities of `axes`, whose rates follow from the axes. `signals` are further quantities
     that a log of the plant may carry (the speed of a rotor that has no state), by column name. `places` says where effects can act,
-    `starts` where the states that effects brought begin, as expressions of the plant's own states and inputs; 0 where none is named.
+    `starts` where the states that effects brought, the last of `states`, begin: at 0 or where another state is.
     """
 
     name: str

@@ -1,11 +1,88 @@
-"""What happens to a signal on its way: stages with memory between command and rotor, or between axis and reading."""
+"""The way of a signal: stages with memory between command and rotor, or between axis and reading.
 
-from typing import Any, Protocol
+A stage takes a piece of signal and what it remembers, and gives the signal behind it and what it remembers then. So a whole log at once
+and a flight sample by sample go through the same code.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SAME_INSTANT_S = 1e-9
 
 
-class Stage(Protocol):
-    """One stage: a piece of signal and the stage's memory go in, the signal behind it and the new memory come out."""
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Inputs held constant: values[k] (inputs,) from edges_s[k] to edges_s[k + 1]; edges_s (n + 1,), values (n, inputs)."""
 
-    def __call__(self, signal: Any, memory: Any) -> tuple[Any, Any]:
-        """The signal behind the stage; memory None at the beginning."""
+    edges_s: Array
+    values: Array
+
+    def at(self, starts_s: Array) -> Array:
+        """The values that hold from each of `starts_s` on."""
+        place = np.searchsorted(self.edges_s[:-1], starts_s + SAME_INSTANT_S, side="right") - 1
+        return np.asarray(self.values[np.maximum(place, 0)])
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One output over time: y at t_s (n,), and its rate dy/dt; y and rate are (n,), or (n, columns) for derivatives."""
+
+    t_s: Array
+    y: Array
+    rate: Array
+
+
+class InputStage(Protocol):
+    """A stage on the way of the inputs; those of lower `order` come first, from the command on."""
+
+    order: ClassVar[int]
+
+    def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
+        """The inputs behind the stage and its new memory; memory None at the beginning, with the first input held for ever before."""
         ...
+
+
+class OutputStage(Protocol):
+    """A stage on the way of the output number `output`; those of lower `order` come first, from the axis on."""
+
+    order: ClassVar[int]
+    linear: ClassVar[bool]  # derivatives pass it as the output does
+
+    @property
+    def output(self) -> int:
+        """The index of the output that passes it."""
+        ...
+
+    def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
+        """The output behind the stage and its new memory; memory None at the beginning, which is in steady motion."""
+        ...
+
+
+Stage = InputStage | OutputStage
+
+
+def pass_inputs(
+    stages: Sequence[InputStage], signal: Held, memory: Sequence[Any] | None = None
+) -> tuple[Held, tuple[Any, ...]]:
+    """The inputs behind all stages, and what the stages remember."""
+    kept = []
+    for stage, before in zip(stages, memory or [None] * len(stages), strict=True):
+        signal, after = stage(signal, before)
+        kept.append(after)
+    return signal, tuple(kept)
+
+
+def pass_output(
+    stages: Sequence[OutputStage], signal: Trace, memory: Sequence[Any] | None = None
+) -> tuple[Trace, tuple[Any, ...]]:
+    """One output behind all its stages, and what the stages remember."""
+    kept = []
+    for stage, before in zip(stages, memory or [None] * len(stages), strict=True):
+        signal, after = stage(signal, before)
+        kept.append(after)
+    return signal, tuple(kept)

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 class Reference:
     """Rates and Jacobians of a model, each a function of (t_s, x, u, p, signs) with shapes (), (n,), (m,), (k,), (axes,).
 
-    `rates` returns dx/dt (n,); `A` its Jacobian in x (n, n), `B` in u (n, m) and `D_p` in p (n, k); `C` is that of the outputs (r, n).
+    `rates` returns dx/dt (n,); `A` its Jacobian in x (n, n), `B` in u (n, m) and `D_p` in p (n, k), `C` that of the outputs (r, n).
     `signs` holds the direction of dry friction of each axis; 0 leaves it out, as a linearisation must (sgn has no slope at rest).
     """
 
@@ -25,7 +25,7 @@ class Reference:
     A: Callable[..., Array]
     B: Callable[..., Array]
     D_p: Callable[..., Array]
-    C: Array
+    C: Callable[..., Array]
 
 
 @lru_cache(maxsize=64)
@@ -43,7 +43,7 @@ def reference(model: Model) -> Reference:
         A=_function(model, smooth(rates.jacobian(states))),
         B=_function(model, smooth(rates.jacobian(inputs))),
         D_p=_function(model, smooth(rates.jacobian(parameters))),
-        C=np.array(outputs.jacobian(states), dtype=float),
+        C=_function(model, smooth(outputs.jacobian(states))),
     )
 
 

@@ -1,5 +1,6 @@
 """Outputs of a run with given inputs, and their exact derivatives, for identification and diagnosis."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -9,10 +10,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from records.errors import BadInput
 from sim.bind import BoundPlant
+from sim.compiled_run import run_equations
+from sim.effects.api import coefficient, library, with_values
 from sim.kernel import kernel
 from sim.model import Model
+from sim.on_the_way import arriving, readings
+from sim.paths import Trace
+from sim.start import start_state
 
 MAX_COLUMNS = 128
+DIFFERENCE = 0.002  # of a reference size: how far the second run of a difference goes
 Array = NDArray[np.float64]
 
 
@@ -47,18 +54,72 @@ def sensitivities(
     """Integrate dS/dt = A S + D, S = dx/d(columns), with the run itself: t_s (n,), u (n, inputs) held, x0 (states,), p (k,).
 
     A gain multiplies and an offset adds to an input before its limits; at a limit their derivative is 0. Sticking, breaking away and
-    stops are carried to first order (the instants of events move with the columns). Raises BadInput for an unknown column, or
-    more than 128.
+    stops are carried to first order (the instants of events move with the columns). Parameters of effects on the way of a signal
+    (path_columns) are differentiated by a second run each; readings in steps and play are passed over. Raises BadInput for an unknown
+    column, or more than 128.
     """
+    start = start_state(bound, x0)
+    if not bound.input_path and not bound.output_path:
+        return _of_equations(bound, t_s, u, start, columns, p, substeps)
+    way, moved = arriving(bound, t_s, u), path_columns(bound)
+    _check_columns(bound, columns, (*column_names(bound.model), *moved))
+    smooth = tuple(name for name in columns if name not in moved)
+    found = _of_equations(bound, way.t_s, way.u, start, smooth, p, substeps)
+    numbers = np.asarray(bound.p if p is None else p, dtype=float)
+    y, slopes = readings(bound, way.t_s, found.x, numbers)[way.rows], found.dy
+    for stage in bound.output_path:
+        if stage.linear and smooth:
+            one = slopes[:, stage.output]
+            slopes[:, stage.output] = stage(Trace(way.t_s, one, np.gradient(one, way.t_s, axis=0)), None)[0].y
+    dy = np.empty((len(way.rows), y.shape[1], len(columns)))
+    for place, name in enumerate(columns):
+        if name in moved:
+            dy[:, :, place] = _by_difference(bound, moved[name], (t_s, u, start, numbers, substeps), y)
+        else:
+            dy[:, :, place] = slopes[way.rows, :, smooth.index(name)]
+    return Sensitivities(columns, y, dy, found.x[way.rows])
+
+
+def path_columns(bound: BoundPlant) -> Mapping[str, tuple[str, str]]:
+    """The parameters of a plant's effects that no equation carries: effect and symbol by the name of their column."""
+    in_equations = {str(symbol) for symbol in bound.model.parameter_symbols}
+    names = {
+        coefficient(effect, symbol): (effect, symbol) for effect, given in bound.effects.items() for symbol in given
+    }
+    return {column: pair for column, pair in names.items() if column not in in_equations}
+
+
+def _by_difference(
+    bound: BoundPlant, which: tuple[str, str], run: tuple[ArrayLike, ArrayLike, Array, Array, int], y: Array
+) -> Array:
+    """dy/d(parameter) of an effect on the way of a signal, from a second run a little further towards its reference."""
+    effect, symbol = which
+    entry = library(bound)[effect].parameter[symbol]
+    value = bound.effects[effect][symbol].values[0]
+    step = DIFFERENCE * (entry.reference - entry.first)
+    if not entry.lower <= value + step <= entry.upper:
+        step = -step
+    other = with_values(bound, {effect: {symbol: value + step}})
+    t_s, u, x0, p, substeps = run
+    way = arriving(other, t_s, u)
+    moved = run_equations(other, way.t_s, x0, way.u, p=p, substeps=substeps, keep="x").x
+    assert moved is not None
+    return np.asarray((readings(other, way.t_s, moved, p)[way.rows] - y) / step)
+
+
+def _of_equations(
+    bound: BoundPlant,
+    t_s: ArrayLike,
+    u: ArrayLike,
+    x0: Array,
+    columns: tuple[str, ...],
+    p: ArrayLike | None,
+    substeps: int,
+) -> Sensitivities:
+    """The same without what signals pass on their way."""
     model, compiled = bound.model, kernel(bound.model)
     known = column_names(model)
-    for name in columns:
-        if name not in known:
-            raise BadInput(
-                "column", "sensitivities", repr(name), f"one of {', '.join(known)}", "name a coefficient or state"
-            )
-    if len(columns) > MAX_COLUMNS:
-        raise BadInput("columns", "sensitivities", f"{len(columns)}", f"at most {MAX_COLUMNS}", "ask in two calls")
+    _check_columns(bound, columns, known)
     times = np.ascontiguousarray(t_s, dtype=float)
     arrays: dict[str, NDArray[np.float64] | NDArray[np.int32]] = {
         "t_s": times,
@@ -112,3 +173,13 @@ def _stop_derivatives(model: Model, side: int) -> tuple[tuple[int, int, sympy.Ex
         for column, symbol in enumerate(model.parameter_symbols)
         if stop.has(symbol)
     )
+
+
+def _check_columns(bound: BoundPlant, columns: tuple[str, ...], known: tuple[str, ...]) -> None:
+    for name in columns:
+        if name not in known:
+            raise BadInput(
+                "column", "sensitivities", repr(name), f"one of {', '.join(known)}", "name a coefficient or state"
+            )
+    if len(columns) > MAX_COLUMNS:
+        raise BadInput("columns", "sensitivities", f"{len(columns)}", f"at most {MAX_COLUMNS}", "ask in two calls")

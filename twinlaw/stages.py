@@ -7,10 +7,9 @@ from pathlib import Path
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
 from codegen.twin import Float32Twin
-from design.operating_points import design_points
-from design.report import DesignReport, make_report
+from design.report import DesignReport
 from design.settings import read_settings
-from design.table import design
+from design.table import design, report_on
 from records.errors import BadInput, VerificationFailed
 from records.files import write_atomic
 from records.log import RunLog, load_log, plant_of_log
@@ -205,7 +204,7 @@ def table_poles(bound: BoundPlant, table: ControllerTable) -> tuple[PoleMigratio
         )
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)
-        return poles_of(make_report(bound, settings, table, design_points(bound, settings)))
+        return poles_of(report_on(bound, settings, table))
 
 
 def recorded_replay(path: Path, table: ControllerTable) -> Replay:

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "law_table.h"
 #include "request.h"
 
 /* The runs one after another, or side by side. */
@@ -17,5 +18,10 @@ void limit_single(const double *c, double *u);
 void settle_single(const double *c, const double *u, double t_s, double *x, double *sign, double *move);
 void advance_single(const double *c, const double *u, double t_s, double h_s, int32_t substeps, double *x, double *sign, double *move);
 void measure_single(const double *c, const double *resolution, double t_s, const double *x, double *y);
+
+/* The law alone, for a loop that is closed outside; `state` has room for law_state_size() bytes. */
+int32_t law_state_size(void);
+void law_start_single(const law_table *law, void *state, const double *y);
+void law_step_single(const law_table *law, void *state, const double *reference, const double *y, double *u);
 
 #endif

@@ -71,3 +71,18 @@ void measure_single(const double *c, const double *resolution, double t_s, const
     for (int i = 0; i < N_OUTPUTS; i++)
         y[i] = quantised(y[i], resolution[i]);
 }
+
+int32_t law_state_size(void)
+{
+    return sizeof(law_state);
+}
+
+void law_start_single(const law_table *law, void *state, const double *y)
+{
+    law_reset(state, law, y);
+}
+
+void law_step_single(const law_table *law, void *state, const double *reference, const double *y, double *u)
+{
+    law_step(state, law, reference, y, u);
+}

@@ -1,7 +1,8 @@
 """The library of effects: physics that a rig may have and its nominal model lacks.
 
 One file for each effect, or for a family of one form; this table is the only place that names them all. Effects are added to a model
-in this order, the innermost first: what changes an input comes last, so that a changed rotor is driven by the changed input.
+in this order, the innermost first: what changes an input comes last, so that a changed rotor is driven by the changed input. Stages
+on the way of a signal know their own order.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -9,12 +10,15 @@ from functools import lru_cache
 
 from sim.effects import (
     axial_inflow,
+    backlash,
     cable_spring,
     coulomb,
     deadzone,
+    delay,
     disturbance,
     downwash,
     driver_asymmetry,
+    dropped_frames,
     end_stop,
     flexible_mode,
     friction_asymmetry,
@@ -24,14 +28,17 @@ from sim.effects import (
     gyroscopic,
     hysteresis,
     inertia,
+    lag,
     level_axis,
     load_friction,
     quadratic_drag,
+    quantization,
     reaction,
     reverse_asymmetry,
     rotor_dry_friction,
     saturation,
     sensor_map,
+    slew_limit,
     stribeck,
     supply_sag,
     thrust_law,
@@ -69,6 +76,12 @@ FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
     supply_sag.effects,
     driver_asymmetry.effects,
     gain_and_offset.effects,
+    slew_limit.effects,
+    lag.effects,
+    quantization.effects,
+    delay.effects,
+    dropped_frames.effects,
+    backlash.effects,
 )
 
 

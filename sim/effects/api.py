@@ -3,15 +3,16 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from records.errors import BadInput
 from records.plant import Parameter
 from sim.bind import BoundPlant, bind
 from sim.effects import effects_for
+from sim.effects.build import carried, model_with, paths_with
 from sim.effects.effect import Effect, Values, coefficient
-from sim.effects.table import Entries, checked, effects_section, find_effect
+from sim.effects.table import Entries, checked, effects_section, find_effect, plain_values
+from sim.model import Model
 from sim.plants import MODELS
+from sim.start import start_state
 
 Sizes = Mapping[str, Values]  # by effect and symbol
 
@@ -48,6 +49,18 @@ def without_effects(bound: BoundPlant) -> BoundPlant:
     return bind(replace(bound.plant, effects={}))
 
 
+def linear_part(bound: BoundPlant) -> BoundPlant:
+    """The plant that a linear design sees: with the effects on its equations, without those that bring states or act on a signal's way.
+
+    What delays, lags, hysteresis or a springy part cost in margin is left to the flight.
+    """
+    if not bound.effects:
+        return bound
+    nominal = MODELS[bound.plant.model]()
+    kept = {name: entries for name, entries in bound.effects.items() if _is_plain(nominal, name)}
+    return bind(replace(bound.plant, effects=effects_section(kept)))
+
+
 def combined(bound: BoundPlant, names: Iterable[str]) -> BoundPlant:
     """The plant with all these effects present at next to no size: it moves as the nominal one, with derivatives by each size.
 
@@ -67,24 +80,28 @@ def with_values(bound: BoundPlant, values: Sizes) -> BoundPlant:
     Raises BadInput for an effect or symbol that it does not have, and for a value beyond its bounds.
     """
     where = f"plant {bound.plant.name!r}: effects"
+    nominal = MODELS[bound.plant.model]()
     changed = {name: dict(entries) for name, entries in bound.effects.items()}
+    on_equations = carried(nominal, changed)
     p = bound.p.copy()
     for name, given in values.items():
-        effect = find_effect(MODELS[bound.plant.model](), name, where)
+        effect = find_effect(nominal, name, where)
         if name not in changed:
             raise BadInput(f"effect {name!r}", where, "not among those added", ", ".join(changed), "add it first")
         for symbol, value in given.items():
             _check_symbol(effect, symbol, f"{where}.{name}")
             value = checked(effect, symbol, float(value), f"{where}.{name}")
             changed[name][symbol] = replace(changed[name][symbol], value=value)
-            if effect.on_equations:
+            if name in on_equations:
                 p[coefficient_index(bound, name, symbol)] = value
-    return replace(bound, plant=replace(bound.plant, effects=effects_section(changed)), p=p, effects=changed)
+    inputs, outputs = paths_with(nominal, plain_values(changed))
+    plant = replace(bound.plant, effects=effects_section(changed))
+    return replace(bound, plant=plant, p=p, effects=changed, input_path=inputs, output_path=outputs)
 
 
 def effect_values(bound: BoundPlant) -> dict[str, dict[str, float]]:
     """The values of the plant's effects, as with_effects takes them."""
-    return {name: {symbol: entry.values[0] for symbol, entry in given.items()} for name, given in bound.effects.items()}
+    return plain_values(bound.effects)
 
 
 def coefficient_index(bound: BoundPlant, effect: str, symbol: str) -> int:
@@ -93,15 +110,9 @@ def coefficient_index(bound: BoundPlant, effect: str, symbol: str) -> int:
     return names.index(coefficient(effect, symbol))
 
 
-def start_state(bound: BoundPlant, x0: np.ndarray, u0: np.ndarray) -> np.ndarray:
-    """The state (states,) of the plant with effects from the nominal plant's state x0: what the effects brought starts at rest."""
-    model = bound.model
-    count = len(x0)
-    values = dict(
-        zip((*model.states[:count], *model.inputs, *model.parameter_symbols), (*x0, *u0, *bound.p), strict=True)
-    )
-    own = [float(model.starts[state].subs(values)) if state in model.starts else 0.0 for state in model.states[count:]]
-    return np.array([*x0, *own])
+def _is_plain(nominal: Model, name: str) -> bool:
+    on_sensor = name.split(".")[0] in nominal.places.sensors
+    return not on_sensor and bool(carried(nominal, (name,))) and not model_with(nominal.name, (name,)).starts
 
 
 def _entries(effect: Effect, given: Values, sd: Values, source: str, where: str) -> Mapping[str, Parameter]:
@@ -134,6 +145,7 @@ __all__ = [
     "effect_values",
     "effects_for",
     "library",
+    "linear_part",
     "redundant",
     "start_state",
     "with_effects",

@@ -82,9 +82,9 @@ def with_output(model: Model, output: str, edit: Edit) -> Model:
     return replace(model, outputs={**model.outputs, output: edit(model.outputs[output])})
 
 
-def with_state(model: Model, state: sympy.Symbol, rate: Expression, start: Expression | None = None) -> Model:
-    """A further state with its rate and where it starts, by default at 0."""
-    starts = dict(model.starts) if start is None else {**model.starts, state: start}
+def with_state(model: Model, state: sympy.Symbol, rate: Expression, start: sympy.Symbol | None = None) -> Model:
+    """A further state with its rate, which starts at 0 or where another state is."""
+    starts = {**model.starts, state: sympy.Integer(0) if start is None else start}
     return replace(model, states=(*model.states, state), rates={**model.rates, state: rate}, starts=starts)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import sympy
 
 from sim.model import Model, ParameterSpec
-from sim.paths import Stage
+from sim.paths import InputStage, OutputStage
 
 Values = Mapping[str, float]
 TOUCH = 1e-9
@@ -54,8 +54,8 @@ class Effect:
     plant's parameter that does the same where it is not 0.
 
     It acts in one of three ways. `edit` changes the equations: edit(model, *symbols). `applied` says what arrives of the inputs at the
-    equations, without memory: applied(*symbols) -> {input: expression}. `stage` is a stage with memory on the way of the inputs, or
-    of one output: stage(values by symbol) -> stage.
+    equations, without memory: applied(*symbols) -> {input: expression}. `on_input` and `on_output` give a stage with memory on the way
+    of the inputs or of one output from the values by symbol.
     """
 
     name: str
@@ -66,7 +66,8 @@ class Effect:
     source: str
     edit: Callable[..., Model] | None = None
     applied: Callable[..., Mapping[sympy.Symbol, sympy.Expr]] | None = None
-    stage: Callable[[Values], Stage] | None = None
+    on_input: Callable[..., InputStage] | None = None
+    on_output: Callable[..., OutputStage] | None = None
     smooth: bool = True
     twins: Mapping[str, str] = field(default_factory=dict)
     same_as: str = ""
@@ -99,7 +100,7 @@ class Effect:
     @property
     def on_equations(self) -> bool:
         """Whether the model carries it, with derivatives by its parameters; otherwise it is a stage on the way of a signal."""
-        return self.stage is None
+        return self.on_input is None and self.on_output is None
 
     @property
     def specs(self) -> tuple[ParameterSpec, ...]:

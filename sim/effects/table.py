@@ -55,6 +55,11 @@ def effects_section(entries: Entries) -> dict[str, Any]:
     return section
 
 
+def plain_values(entries: Entries) -> dict[str, dict[str, float]]:
+    """The values alone, by effect and symbol."""
+    return {name: {symbol: entry.values[0] for symbol, entry in given.items()} for name, given in entries.items()}
+
+
 def checked(effect: Effect, symbol: str, value: float, where: str) -> float:
     """`value` of one parameter; raises BadInput when it lies beyond its bounds."""
     bounds = effect.parameter[symbol]

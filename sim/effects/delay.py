@@ -1,0 +1,68 @@
+"""Transport delay of a command, of all commands, or of a reading.
+
+(1)  u(t - tau),   y(t - tau)
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import short
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+from sim.paths_input import Delay
+from sim.paths_output import OutputDelay
+
+SECOND = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05))
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input, on all together, and on each sensor."""
+    inputs = model.places.inputs
+    for column, (place, entry) in enumerate(inputs.items()):
+        yield _input_delay(place, f"delay of {entry.variable}", (column,), _twins(model, place))
+    if inputs:
+        names = " and ".join(str(entry.variable) for entry in inputs.values())
+        story = (
+            "identical: the loop's delay is that of all inputs"
+            if len(inputs) == 1
+            else "together they are the loop's delay"
+        )
+        yield _input_delay(
+            "loop", f"delay of {names}", tuple(range(len(inputs))), {f"{place}.delay": story for place in inputs}
+        )
+    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+        yield Effect(
+            name=f"{place}.delay",
+            depends=f"delay of {short(sensor.output)}",
+            parameters=(SECOND,),
+            equation="y(t) = angle(t - tau)",
+            story="The reading is old when it arrives.",
+            source="contract; gap catalogue 52",
+            on_output=lambda values, output=output: OutputDelay(output, values["tau"]),
+            twins={
+                f"{place}.lag": "slow motion shows only the mean time by which both are late",
+                "loop.delay": "in a loop on the angle, being late is the same before and behind the plant",
+            },
+        )
+
+
+def _input_delay(place: str, depends: str, columns: tuple[int, ...], twins: dict[str, str]) -> Effect:
+    return Effect(
+        name=f"{place}.delay",
+        depends=depends,
+        parameters=(SECOND,),
+        equation="u(t - tau)",
+        story="The command takes a while to arrive.",
+        source="contract; gap catalogue 51, 57",
+        on_input=lambda values: Delay(columns, values["tau"]),
+        twins=twins,
+    )
+
+
+def _twins(model: Model, place: str) -> dict[str, str]:
+    one = len(model.places.inputs) == 1
+    return {
+        f"{place}.lag": "slow motion shows only the mean time by which both are late",
+        "loop.delay": "identical: there is only one input"
+        if one
+        else "the loop's delay is that of all inputs together",
+    }

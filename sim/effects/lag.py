@@ -1,0 +1,71 @@
+"""First-order lag of a driver, of a rotor that the model takes as immediate, or of a sensor.
+
+(1)  tau y' = x - y
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import short
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+from sim.paths_input import Lag
+from sim.paths_output import OutputLag
+
+LATE = "slow motion shows only the mean time by which both are late"
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input, on each rotor without a lag of its own, and on each sensor."""
+    for column, (place, entry) in enumerate(model.places.inputs.items()):
+        rotor_place, rotor = next(
+            (name, rotor) for name, rotor in model.places.rotors.items() if rotor.variable == entry.variable
+        )
+        immediate = rotor.drive is None
+        yield _lag(
+            f"{place}.lag",
+            f"lag of {entry.variable}",
+            column,
+            0.02,
+            "The driver or the motor's winding follows its command with a lag.",
+            "contract; gap catalogue 8, 9 (motor inductance)",
+            {f"{place}.delay": LATE} | ({f"{rotor_place}.lag": SAME} if immediate else {}),
+        )
+        if immediate:
+            yield _lag(
+                f"{rotor_place}.lag",
+                f"lag of thrust({entry.variable})",
+                column,
+                0.05,
+                "The rotor takes its time to reach the speed that the command asks for.",
+                "contract (other plants)",
+                {f"{place}.lag": SAME, f"{place}.delay": LATE},
+            )
+    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+        yield Effect(
+            name=f"{place}.lag",
+            depends=f"lag of {short(sensor.output)}",
+            parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15)),),
+            equation="tau y' = angle - y",
+            story="The reading is smoothed and so comes late.",
+            source="contract; gap catalogue 48",
+            on_output=lambda values, output=output: OutputLag(output, values["tau"]),
+            twins={f"{place}.delay": LATE, "loop.delay": LATE},
+        )
+
+
+SAME = "identical: the rotor has no other lag between command and thrust"
+
+
+def _lag(
+    name: str, depends: str, column: int, reference: float, story: str, source: str, twins: dict[str, str]
+) -> Effect:
+    return Effect(
+        name=name,
+        depends=depends,
+        parameters=(EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3)),),
+        equation="tau v' = u - v, v instead of u",
+        story=story,
+        source=source,
+        on_input=lambda values: Lag(column, values["tau"]),
+        twins=twins,
+    )

@@ -1,0 +1,52 @@
+"""Steps: a driver or a sensor that knows only multiples of q.
+
+(1)  q round(x / q)
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.edits import short
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+from sim.paths_input import Quantised
+from sim.paths_output import OutputSteps
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input and each sensor."""
+    for column, (place, entry) in enumerate(model.places.inputs.items()):
+        size = entry.size
+        yield Effect(
+            name=f"{place}.quantization",
+            depends=f"steps of {entry.variable}",
+            parameters=(
+                EffectParameter(
+                    "q", entry.unit, 0.0, 0.3 * size, 0.02 * size, 0.0, tuple(s * size for s in INPUT_STEPS)
+                ),
+            ),
+            equation="q round(u/q)",
+            story="The driver knows only coarse steps of voltage.",
+            source="contract; gap catalogue 4",
+            on_input=lambda values, column=column: Quantised(column, values["q"]),
+            smooth=False,
+        )
+    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+        size = sensor.size
+        yield Effect(
+            name=f"{place}.quantization",
+            depends=f"steps of {short(sensor.output)}",
+            parameters=(
+                EffectParameter(
+                    "q", sensor.unit, 0.0, 0.2 * size, 0.006 * size, 0.0, tuple(s * size for s in OUTPUT_STEPS)
+                ),
+            ),
+            equation="y = q round(angle/q)",
+            story="The encoder's steps are coarser than stated.",
+            source="contract; gap catalogue 49",
+            on_output=lambda values, output=output: OutputSteps(output, values["q"]),
+            smooth=False,
+        )
+
+
+INPUT_STEPS = (0.005, 0.01, 0.02, 0.04, 0.08)
+OUTPUT_STEPS = (0.003, 0.006, 0.012, 0.025)

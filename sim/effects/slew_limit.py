@@ -1,0 +1,30 @@
+"""A driver that can change its output only so fast.
+
+(1)  |du/dt| <= r
+"""
+
+from collections.abc import Iterator
+
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+from sim.paths_input import SlewLimit
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each input."""
+    for column, (place, entry) in enumerate(model.places.inputs.items()):
+        size = entry.size
+        grid = tuple(share * size for share in (0.3, 0.7, 1.5, 3.0, 7.0, 20.0))
+        never = 1.0e7 * size  # faster than any command changes in a sample
+        unit = "s^-1" if entry.unit == "-" else f"{entry.unit} s^-1"
+        yield Effect(
+            name=f"{place}.slew_limit",
+            depends=f"rate limit of {entry.variable}",
+            parameters=(EffectParameter("r", unit, 0.02 * size, never, size, never, grid),),
+            equation="|du/dt| <= r",
+            story="The driver changes its voltage only so fast and trails behind quick commands.",
+            source="contract",
+            on_input=lambda values, column=column: SlewLimit(column, values["r"]),
+            smooth=False,
+            twins={f"{place}.lag": "both trail behind quick commands; only a limit spares small ones"},
+        )
