@@ -44,8 +44,9 @@ WORKING = [
 
 @pytest.mark.parametrize("elevation", WORKING)
 def test_published_sets_follow_steps(elevation):
+    """Published: 0.6 to 1.2 deg, on a manoeuvre of which only the angles are known, so half as much again is allowed."""
     flight = flown(table(elevation))
-    assert flight.mean_error_deg(0) < 1.7
+    assert flight.mean_error_deg(0) < 1.8
     assert np.max(flight.steady_error_deg(0)) < (0.1 if elevation[1] == "integral" else 0.7)
     assert flight.saturated < 0.05
     assert np.max(np.abs(flight.angle_deg[:, 0])) < 44.0
@@ -53,6 +54,7 @@ def test_published_sets_follow_steps(elevation):
 
 @pytest.mark.parametrize("elevation", WORKING)
 def test_published_sets_follow_ramps_of_twenty_degrees_a_second(elevation):
+    """Published: 0.2 deg with integral action, 0.6 to 0.8 deg without."""
     flight = flown(table(elevation), rate_deg_s=20.0)
     assert flight.mean_error_deg(0) < (0.4 if elevation[1] == "integral" else 1.0)
     assert flight.saturated < 0.01
@@ -124,6 +126,17 @@ def test_coefficients_of_past_samples_make_no_difference_that_matters():
     present, past = (flown(DirectLaw(made, delayed_coefficients=late), 45.0) for late in (False, True))
     assert np.max(np.abs(present.angle_deg - past.angle_deg)) < 2.8
     assert past.saturated == present.saturated == 0.0
+
+
+@pytest.mark.parametrize("elevation", [(E8, "q3_zero"), (E12, "q3_zero"), (DOM2, "integral"), (E8, "integral")])
+def test_a_prefilter_of_0_35_s_leaves_two_percent_of_overshoot_and_one_of_0_2_s_far_more(elevation):
+    """Published for steps of one axis: 0 to 2 %, and 3 to 17 %; whole percents."""
+    t_s, both = manoeuvre()
+    both[:, 1] = 0.0
+    slow, fast = (fly(helicopter(), table(elevation, prefilter_s=T_s), t_s, both).overshoot(0) for T_s in (0.35, 0.2))
+    assert np.max(slow) < 0.025
+    assert 0.05 < np.max(fast) < 0.18
+    assert np.max(fast) > 5.0 * np.max(slow)
 
 
 def test_without_prefilter_a_step_saturates_an_integrating_law_and_with_it_not():

@@ -16,7 +16,7 @@ from design.table import design, make_table
 from records.errors import BadInput
 from records.table import load_table, table_text
 from sim.bind import bind
-from tests.design.helicopter import AZ_DOM, DOM2, equal, helicopter, settings_for
+from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for
 
 
 @cache
@@ -118,15 +118,30 @@ USABLE = [
     (equal(-4.0), "integral"),
     (equal(-8.0), "integral"),
     (equal(-12.0), "integral"),
-    ((-2.5 + 1.5j, -2.5 - 1.5j, -7.0, -10.0, -12.0, -15.0), "integral"),
+    (DOM, "q3_zero"),
+    (DOM2, "q3_zero"),
+    (DOM, "integral"),
+    (DOM2, "integral"),
+]
+USABLE_AZIMUTH = [
+    (equal(-2.0), "q3_zero"),
+    (equal(-2.0), "integral"),
+    (equal(-4.0), "q3_zero"),
+    (equal(-6.0), "q3_zero"),
+    (AZ_DOM, "q3_zero"),
+    (AZ_DOM, "integral"),
 ]
 
 
-@pytest.mark.parametrize("elevation", USABLE)
-def test_every_published_set_passes_the_gate(elevation):
-    table, report = designed(elevation, (equal(-4.0), "q3_zero"))
-    assert table.elevation.q_V_rad
+@pytest.mark.parametrize(
+    ("elevation", "azimuth"),
+    [*((wishes, (equal(-4.0), "q3_zero")) for wishes in USABLE), *(((DOM2, "integral"), az) for az in USABLE_AZIMUTH)],
+)
+def test_every_published_set_passes_the_gate(elevation, azimuth):
+    _, report = designed(elevation, azimuth)
+    assert (report.elevation.free_degree, report.azimuth.free_degree) == (elevation[1], azimuth[1])
     assert report.elevation.after_float32.stable
+    assert report.azimuth.after_float32.stable
     assert report.coupled.stable
 
 
