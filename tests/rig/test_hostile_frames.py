@@ -1,0 +1,63 @@
+"""A million frames in changing weather (a sample of them in the suite): nothing false is taken, and every loss has its counter."""
+
+import pytest
+
+from tests.rig.campaign import Campaign
+from tests.rig.hostile_sessions import SOAK
+
+BATCH = 500
+FRAMES = 1_000_000 if SOAK else 100_000
+REFUSALS = (
+    "cobs_errors",
+    "too_long",
+    "too_short",
+    "crc_errors",
+    "wrong_version",
+    "unknown_type",
+    "wrong_length",
+    "stale",
+)
+
+
+@pytest.fixture(scope="module")
+def campaign() -> Campaign:
+    run = Campaign(seed=5)
+    while run.account.sent < FRAMES:
+        run.batch(BATCH)
+    return run
+
+
+@pytest.fixture(scope="module")
+def counted(campaign) -> dict[str, int]:
+    return campaign.counters()
+
+
+def test_no_corrupted_frame_is_taken_at_either_end(campaign, counted):
+    assert (campaign.account.false_at_board, campaign.account.false_at_host) == (0, 0)
+    assert counted["crc_errors"] > FRAMES // 50
+    assert campaign.host.received.crc_errors > FRAMES // 50
+
+
+def test_every_frame_that_was_sent_is_taken_or_counted_as_lost(campaign, counted):
+    account = campaign.account
+    assert account.accepted + counted["frames_lost"] == account.sent
+    assert counted["repeated"] == account.repeated > 0
+    assert counted["frames_accepted"] == account.answers
+    assert 0.3 * FRAMES < account.accepted < 0.95 * FRAMES
+
+
+def test_every_piece_that_the_board_heard_is_in_exactly_one_counter(campaign, counted):
+    refused = {name: counted[name] for name in REFUSALS}
+    assert counted["frames_accepted"] + sum(refused.values()) == campaign.at_board.pieces
+    for name in ("cobs_errors", "too_long", "too_short", "crc_errors", "stale"):
+        assert refused[name] > 0, name
+
+
+def test_every_piece_that_the_host_heard_is_in_exactly_one_counter(campaign):
+    received = campaign.host.received
+    assert received.frames + received.noise + received.foreign == campaign.at_host.pieces
+    assert 0 < len(campaign.heard_answers) < campaign.account.answers
+
+
+def test_after_every_weather_the_first_clear_frame_is_answered(campaign):
+    assert campaign.account.deaf == 0
