@@ -7,7 +7,7 @@ from pathlib import Path
 
 from records import checks
 from records.errors import BadInput
-from records.plant import read_toml
+from records.reading import read_toml
 
 REGISTRY = Path(__file__).with_name("registry.toml")
 

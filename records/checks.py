@@ -23,7 +23,9 @@ def keys(section: Mapping[str, Any], where: str, required: Iterable[str], option
     for key in section:
         if key not in required and key not in optional:
             known = ", ".join(repr(name) for name in (*required, *optional))
-            raise BadInput(f"key {key!r}", where, "an unknown key", f"one of {known}", f"remove or rename {key!r}")
+            raise BadInput(
+                f"key {_shown(key)}", where, "an unknown key", f"one of {known}", f"remove or rename {_shown(key)}"
+            )
 
 
 def text(value: Any, where: str) -> str:
@@ -35,9 +37,13 @@ def text(value: Any, where: str) -> str:
 
 def number(value: Any, where: str) -> float:
     """`value` as a finite float; raises BadInput otherwise."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    try:
+        result = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+    except OverflowError:  # a whole number beyond the largest float
+        result = math.inf
+    if not math.isfinite(result):
         raise BadInput("number", where, _shown(value), "a finite number", "write a plain decimal number in SI units")
-    return float(value)
+    return result
 
 
 def positive(value: Any, where: str) -> float:
@@ -61,9 +67,16 @@ def schema(section: Mapping[str, Any], where: str, expected: str) -> None:
     """Refuse a file of another kind or version; raises BadInput."""
     found = section.get("schema")
     if found != expected:
-        raise BadInput("schema", where, _shown(found), repr(expected), "give a file of this kind and version")
+        got = _shown(found) if "schema" in section else "nothing"
+        raise BadInput("schema", where, got, repr(expected), "give a file of this kind and version")
 
 
 def _shown(value: Any) -> str:
-    shown = repr(value)
+    try:
+        shown = repr(value)
+    except (
+        ValueError,
+        RecursionError,
+    ):  # Python writes no whole number of more than 4300 digits, nor endless lists in lists
+        return "more than can be shown"
     return shown if len(shown) <= 60 else f"{shown[:57]}..."

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from records import checks
 from records.errors import BadInput
 from records.files import write_atomic
+from records.reading import read_json
 
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")
@@ -138,14 +139,7 @@ def save_diagnosis(path: Path, diagnosis: Diagnosis) -> None:
 
 def load_diagnosis(path: Path) -> Diagnosis:
     """Read diagnosis.json; raises BadInput naming file, key and remedy."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInput(
-            "diagnosis", str(path), error.strerror or str(error), "a readable file", "run `twinlaw diagnose`"
-        ) from error
-    except ValueError as error:
-        raise BadInput("diagnosis", str(path), f"no JSON ({error})", "a whole file", "diagnose again") from error
+    content = read_json(path, "diagnosis", "run `twinlaw diagnose`", "diagnose again")
     return parse_diagnosis(checks.table(content, str(path)), str(path))
 
 

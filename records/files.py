@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 from records.errors import BadInput
@@ -26,6 +27,17 @@ def write_atomic(path: Path, content: str | bytes) -> None:
     except OSError as error:
         Path(name).unlink(missing_ok=True)
         raise _unwritable(path, error) from error
+
+
+def remove_all(paths: Iterable[Path]) -> None:
+    """Remove the files that are there; raises BadInput for one that cannot be removed."""
+    for path in paths:
+        try:
+            path.unlink(missing_ok=True)
+        except NotADirectoryError:
+            return  # what stands in the way is named by the first file written
+        except OSError as error:
+            raise _unwritable(path, error) from error
 
 
 def _unwritable(path: Path, error: OSError) -> BadInput:

@@ -13,7 +13,7 @@ from records import checks
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log_csv import read_rows, rows_text
-from records.plant import read_toml
+from records.reading import read_toml
 from records.source import Source, parse_source, source_table
 
 SCHEMA = "run-log/1"

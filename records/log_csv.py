@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.reading import read_text
 
 Array = NDArray[np.float64]
 
@@ -23,16 +24,7 @@ def rows_text(names: Sequence[str], columns: Sequence[Array], seq: NDArray[np.in
 
 def read_rows(path: Path) -> tuple[tuple[str, ...], Array]:
     """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BadInput(
-            "run log", str(path), error.strerror or str(error), "a readable file", "check the path"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise BadInput(
-            "run log", str(path), f"no text ({error.reason})", "a CSV file", "export the log as CSV"
-        ) from error
+    text = read_text(path, "run log")
     header, _, body = text.partition("\n")
     names = tuple(name.strip() for name in header.split(","))
     if not header.strip() or not body.strip():

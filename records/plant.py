@@ -1,6 +1,5 @@
 """The plant file: which equations, with which parameters, known how well, seen by which sensors."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ import tomlkit
 
 from records import checks
 from records.errors import BadInput
+from records.reading import read_toml
 from records.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
@@ -63,16 +63,6 @@ def load_plant(path: Path) -> Plant:
     Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
     """
     return parse_plant(read_toml(path, "plant file"), path.stem, str(path))
-
-
-def read_toml(path: Path, what: str) -> Mapping[str, Any]:
-    """Content of a TOML file; raises BadInput when it is missing, unreadable or no TOML."""
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInput(what, str(path), error.strerror or str(error), "a readable file", "check the path") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise BadInput(what, str(path), f"no TOML ({error})", "a TOML file", "mend that line") from error
 
 
 def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:

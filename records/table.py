@@ -24,6 +24,7 @@ from typing import Any
 
 from records import checks
 from records.errors import BadInput
+from records.reading import read_json
 
 SCHEMA = "controller-table/1"
 Polynomial = tuple[float, ...]
@@ -86,16 +87,7 @@ def table_text(table: ControllerTable) -> str:
 
 def load_table(path: Path) -> ControllerTable:
     """Read a controller table; raises BadInput when it is truncated, foreign, or does not match its own digest."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInput(
-            "controller table", str(path), error.strerror or str(error), "a readable file", "run `twinlaw design`"
-        ) from error
-    except ValueError as error:
-        raise BadInput(
-            "controller table", str(path), f"no JSON ({error})", "a whole table", "design it again"
-        ) from error
+    content = read_json(path, "controller table", "run `twinlaw design`", "design it again")
     return parse_table(checks.table(content, str(path)), str(path))
 
 

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
-from records.verification import Equality
+from records.verification import Equality, equality_table
 
 SCHEMA = "validation/1"
 
@@ -27,11 +27,7 @@ class Validation:
         sentences = []
         if self.self_test_mismatches:
             sentences.append(f"the board's self-test found {self.self_test_mismatches} mismatches")
-        if self.equality.mismatches:
-            sentences.append(
-                f"the board differs from the host in {self.equality.mismatches} of {self.equality.steps} steps"
-            )
-        return tuple(sentences)
+        return (*sentences, *self.equality.failures)
 
     @property
     def passed(self) -> bool:
@@ -42,4 +38,5 @@ class Validation:
 def validation_text(validation: Validation) -> str:
     """The record as JSON text."""
     verdict = {"schema": SCHEMA, "passed": validation.passed, "failures": list(validation.failures)}
-    return json.dumps({**verdict, **asdict(validation)}, indent=1) + "\n"
+    content = {**asdict(validation), "equality": equality_table(validation.equality)}
+    return json.dumps({**verdict, **content}, indent=1) + "\n"

@@ -3,8 +3,30 @@
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 SCHEMA = "verification/1"
+
+
+@dataclass(frozen=True)
+class FirstMismatch:
+    """Where two executions part: stimulus, step and lane, the signal that differs first, and all words in hexadecimal.
+
+    `signal` is u_M_V, u_T_V or a word of the state. `step` is None when all outputs agreed but a state at rest, or at the end, did
+    not. `inputs` are psi_ref_rad, phi_ref_rad, psi_rad, phi_rad; `words` what the first and what the second execution gave.
+    """
+
+    stimulus: str
+    step: int | None
+    lane: int
+    signal: str
+    inputs: tuple[str, ...]
+    words: tuple[str, str]
+
+    def __str__(self) -> str:
+        place = "at rest or at the end" if self.step is None else f"at step {self.step}"
+        given = " ".join(self.inputs)
+        return f"{self.stimulus}, lane {self.lane}, {place}: {self.signal} is {' against '.join(self.words)} on {given}"
 
 
 @dataclass(frozen=True)
@@ -15,6 +37,24 @@ class Equality:
     arithmetic: str
     steps: int
     mismatches: int
+    first_mismatch: FirstMismatch | None = None
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """The sentence that says how they differ and where first; empty when they do not."""
+        if not self.mismatches:
+            return ()
+        one, other = self.between
+        where = f", first in {self.first_mismatch}" if self.first_mismatch else ""
+        return (f"{one} and {other} differ in {self.mismatches} of {self.steps} steps ({self.arithmetic}){where}",)
+
+
+def equality_table(equality: Equality) -> dict[str, Any]:
+    """The comparison as a JSON object; `first_mismatch` is there only where there is one."""
+    content = asdict(equality)
+    if equality.first_mismatch is None:
+        del content["first_mismatch"]
+    return content
 
 
 @dataclass(frozen=True)
@@ -72,12 +112,7 @@ class Verification:
     @property
     def failures(self) -> tuple[str, ...]:
         """One sentence for each check that did not hold; empty when all did."""
-        unequal = (
-            f"{a} and {b} differ in {row.mismatches} of {row.steps} steps ({row.arithmetic})"
-            for row in self.equality
-            for a, b in (row.between,)
-            if row.mismatches
-        )
+        unequal = (sentence for row in self.equality for sentence in row.failures)
         self_tests = (
             f"the self-test on the {row.place} found {row.mismatches} mismatches ({row.arithmetic})"
             for row in self.self_tests
@@ -107,7 +142,7 @@ def verification_text(verification: Verification) -> str:
         "table_digest": verification.table_digest,
         "passed": verification.passed,
         "failures": list(verification.failures),
-        "equality": content["equality"],
+        "equality": [equality_table(row) for row in verification.equality],
         "self_test": content["self_tests"],
         "rounding_bound_V": content["rounding"],
         "poles": content["poles"],

@@ -73,7 +73,7 @@ def closed_loop_log(
     references = zip(bound.model.outputs, manoeuvre.reference_rad.T, strict=True)
     return RunLog(
         columns=log_columns(bound.model),
-        sample_period_s=float(np.median(np.diff(manoeuvre.t_s))),
+        sample_period_s=float(np.ptp(manoeuvre.t_s)) / (manoeuvre.t_s.size - 1),
         loop="closed",
         t_s=manoeuvre.t_s,
         u=u,

@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from records.errors import BadInput, VerificationFailed
 from twinlaw import console
@@ -17,11 +18,20 @@ DESCRIPTION = "From a plant's equations to a verified flight of a microcontrolle
 EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser that tells what is wrong with the command line in one line, as all else is told."""
+
+    def error(self, message: str) -> NoReturn:
+        """Leave with exit status 2."""
+        console.fail(f"{message}; `{self.prog} --help` names what there is")
+        sys.exit(2)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
     words = list(sys.argv[1:] if arguments is None else arguments)
-    options = _parser(words[:1]).parse_args(words)
     try:
+        options = _parser(words[:1]).parse_args(words)
         return int(options.run(options))
     except BadInput as error:
         console.fail(str(error))
@@ -38,9 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
-def _parser(asked: Sequence[str]) -> argparse.ArgumentParser:
+def _parser(asked: Sequence[str]) -> Parser:
     """The parser of all verbs, with the options of the one that was `asked` for."""
-    parser = argparse.ArgumentParser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
+    parser = Parser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
     verbs = parser.add_subparsers(title="verbs, in the order of the work", metavar="VERB", required=True)
     for word in VERBS:
         text = verb_text(word)

@@ -37,11 +37,19 @@ def arithmetic(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--arithmetic", choices=ARITHMETICS, default="float32", help="of the law; default: %(default)s")
 
 
-def port(parser: argparse.ArgumentParser, default: str | None) -> None:
+def count(text: str) -> int:
+    """A whole number from 1 on, as the type of an option."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"got {text[:30]!r}, expected a whole number from 1 on")
+    return value
+
+
+def port(parser: argparse.ArgumentParser) -> None:
     """--port PORT."""
     parser.add_argument(
-        "--port",
-        default=default,
-        required=default is None,
-        help="serial port of the board, or `emulated`; default: %(default)s",
+        "--port", default="emulated", help="serial port of the board, or `emulated`; default: %(default)s"
     )

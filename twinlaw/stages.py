@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import numpy as np
+
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
 from codegen.twin import Float32Twin
@@ -61,7 +63,13 @@ def design_controller(plant: Path) -> Designed:
     """Design at all operating points, fit, and judge; raises BadInput for a plant or a table that cannot be used."""
     with stage("designing at the operating points, fitting, judging"):
         bound = load_bound(plant)
-        table, report = design(bound, read_settings(bound))
+        try:
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                table, report = design(bound, read_settings(bound))
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            got = f"numbers that cannot be computed with ({error})"
+            remedy = "look for a wrong power of ten among the parameters"
+            raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
     return Designed(bound, table, report)
 
 

@@ -7,10 +7,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from records.verification import Equality
+from records.verification import Equality, FirstMismatch
 from verification.stimuli import Stimulus
 
 Bits = NDArray[np.uint32]
+OUTPUTS = ("u_M_V", "u_T_V")
 
 
 class BatchStepper(Protocol):
@@ -24,25 +25,6 @@ class BatchStepper(Protocol):
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
         """Inputs [steps, lanes, 4] give the final states and the outputs [steps, lanes, 2]."""
-
-
-@dataclass(frozen=True)
-class FirstMismatch:
-    """Where two executions part: stimulus, step and lane, the input and both outputs u_M, u_T as bits.
-
-    `step` is None when all outputs agreed but a state at the end, or at rest, did not; then the bits are those of that word.
-    """
-
-    stimulus: str
-    step: int | None
-    lane: int
-    input_bits: tuple[int, ...]
-    bits: tuple[tuple[int, ...], tuple[int, ...]]
-
-    def __str__(self) -> str:
-        place = "in the state" if self.step is None else f"at step {self.step}"
-        given, first, second = (" ".join(f"{word:08X}" for word in words) for words in (self.input_bits, *self.bits))
-        return f"{self.stimulus}, lane {self.lane}, {place}: input {given} gives {first} against {second}"
 
 
 @dataclass(frozen=True)
@@ -67,7 +49,7 @@ def compare(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus])
         mismatches += count
         first = first or mismatch
     steps = sum(stimulus.steps for stimulus in stimuli)
-    return EqualityResult(Equality((one.name, other.name), one.arithmetic, steps, mismatches), first)
+    return EqualityResult(Equality((one.name, other.name), one.arithmetic, steps, mismatches, first), first)
 
 
 def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> tuple[int, FirstMismatch | None]:
@@ -80,10 +62,10 @@ def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> 
         strict=True,
     )
     is_float = one.arithmetic == "float32"
-    unequal: NDArray[np.bool_] = np.any(differing(outputs[0], outputs[1], is_float), axis=-1)
-    mismatches = int(unequal.sum())
+    unequal = differing(outputs[0], outputs[1], is_float)
+    mismatches = int(unequal.any(axis=-1).sum())
     if mismatches:
-        return mismatches, _first_output(stimulus, unequal, outputs)
+        return mismatches, first_output(stimulus, unequal, (outputs[0], outputs[1]))
     for states in (starts, ends):
         unequal_states = differing(states[0], states[1], is_float)
         if unequal_states.any():
@@ -105,19 +87,21 @@ def _is_nan(bits: Bits) -> NDArray[np.bool_]:
     return beyond_infinity
 
 
-def _first_output(stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: Sequence[Bits]) -> FirstMismatch:
-    step, lane = (int(index) for index in np.argwhere(unequal)[0])
-    given = _words(stimulus.inputs[step, lane])
-    return FirstMismatch(
-        stimulus.name, step, lane, given, (_words(outputs[0][step, lane]), _words(outputs[1][step, lane]))
-    )
+def first_output(stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: tuple[Bits, Bits]) -> FirstMismatch:
+    """The first of the `unequal` outputs [steps, lanes, 2] of two executions."""
+    step, lane, word = (int(index) for index in np.argwhere(unequal)[0])
+    words = [bits[step, lane, word] for bits in outputs]
+    return _mismatch(stimulus, step, lane, OUTPUTS[word], words)
 
 
 def _first_state(stimulus: Stimulus, unequal: NDArray[np.bool_], states: Sequence[Bits]) -> FirstMismatch:
     lane, word = (int(index) for index in np.argwhere(unequal)[0])
-    one, other = (int(bits[lane, word]) for bits in states)
-    return FirstMismatch(stimulus.name, None, lane, _words(stimulus.inputs[-1, lane]), ((one,), (other,)))
+    return _mismatch(stimulus, None, lane, f"state word {word}", [bits[lane, word] for bits in states])
 
 
-def _words(bits: Bits) -> tuple[int, ...]:
-    return tuple(int(word) for word in bits)
+def _mismatch(
+    stimulus: Stimulus, step: int | None, lane: int, signal: str, words: Sequence[np.uint32]
+) -> FirstMismatch:
+    given = stimulus.inputs[-1 if step is None else step, lane]
+    one, other = (f"{int(word):08X}" for word in words)
+    return FirstMismatch(stimulus.name, step, lane, signal, tuple(f"{int(word):08X}" for word in given), (one, other))

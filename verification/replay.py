@@ -10,7 +10,7 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from records.verification import Equality
-from verification.equality import BatchStepper
+from verification.equality import BatchStepper, first_output
 from verification.stimuli import Stimulus, replayed
 
 Array = NDArray[np.float64]
@@ -52,8 +52,11 @@ def replayed_equality(replay: Replay, law: BatchStepper) -> Equality | None:
     if replay.u_V is None:
         return None
     _, outputs = law.run(law.start(replay.stimulus.angles), replay.stimulus.inputs)
-    unequal = (outputs[:, 0] != np.asarray(replay.u_V, np.float32).view(np.uint32)).any(axis=1)
-    return Equality(("log", law.name), law.arithmetic, len(unequal), int(unequal.sum()))
+    sent = np.asarray(replay.u_V, np.float32).view(np.uint32)[:, np.newaxis]
+    unequal: NDArray[np.bool_] = np.not_equal(sent, outputs)
+    mismatches = int(unequal.any(axis=(1, 2)).sum())
+    first = first_output(replay.stimulus, unequal, (sent, outputs)) if mismatches else None
+    return Equality(("log", law.name), law.arithmetic, len(unequal), mismatches, first)
 
 
 def _angles(log: RunLog, path: Path) -> tuple[Array, Array]:

@@ -55,7 +55,7 @@ def change(content, path, value):
     ("path", "value", "message"),
     [
         ("schema", "plant/2", "schema: got 'plant/2', expected 'plant/1'"),
-        ("schema", None, "schema: got None"),
+        ("schema", None, "schema: got nothing"),
         ("model", None, "key 'model': got nothing"),
         ("model", "ufo", "model: got 'ufo', expected one of ce150"),
         ("model", 7, "model: text: got 7"),
@@ -106,7 +106,7 @@ def test_two_coefficients_for_three_are_refused(content):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [(None, "got No such file"), ("model = [", "got no TOML"), (b"\xff\xfe", "got no TOML")],
+    [(None, "got No such file"), ("model = [", "got no TOML"), (b"\xff\xfe", "got no UTF-8 text")],
 )
 def test_a_file_that_is_no_plant_is_refused(tmp_path, text, message):
     path = tmp_path / "p.toml"

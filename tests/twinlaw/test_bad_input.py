@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from records.plant import load_plant
 from twinlaw.command import main
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -56,6 +57,10 @@ BAD_PLANTS = [
     ("number for list", _section("parameters.J_E", "value", "[1.0, 2.0]"), ["J_E"]),
     ("wrong sign", _section("parameters.J_E", "value", "-4.37e-3"), ["J_E", "positive"]),
     ("NaN", _section("parameters.J_E", "value", "nan"), ["J_E", "nan", "finite"]),
+    ("no float holds it", _section("parameters.J_E", "value", "1" + "0" * 400), ["J_E", "finite"]),
+    ("digits without end", _section("parameters.J_E", "value", "1" + "0" * 5000), ["digits"]),
+    ("lists without end", lambda text: text + "\ndeep = " + "[" * 10_000, ["TOML"]),
+    ("wrong power of ten", _section("parameters.J_E", "value", "4.37e-300"), ["power of ten"]),
     ("infinite", _section("parameters.K_M", "value", "inf"), ["K_M", "inf"]),
     ("sd below 0", _section("parameters.J_E", "sd", "-1e-4"), ["J_E", "sd", ">= 0"]),
     ("text for number", _section("parameters.J_E", "value", '"four"'), ["J_E", "four"]),
@@ -83,6 +88,7 @@ def _refused(arguments: list[str], words: list[str], capsys: pytest.CaptureFixtu
     lines = said.err.splitlines()
     assert len(lines) == 1, said.err
     assert "Traceback" not in lines[0]
+    assert len(lines[0]) < 1000
     for word in words:
         assert word in lines[0], f"{word!r} is not in: {lines[0]}"
     return lines[0]
@@ -97,6 +103,40 @@ def test_a_bad_plant_file_is_one_clear_line(
     line = _refused(["design", "--plant", str(plant), "--out", str(out)], words, capsys)
     assert "mine" in line
     assert not out.exists()
+
+
+def test_a_plant_file_in_utf_16_is_named_as_no_utf_8(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.toml").write_text(PLANT, encoding="utf-16")
+    _refused(["design", "--plant", str(tmp_path / "mine.toml"), "--out", str(tmp_path)], ["mine", "UTF-8"], capsys)
+
+
+def test_a_plant_file_from_windows_is_read(tmp_path: Path) -> None:
+    """A byte order mark before the text, and two characters at the end of each line, change nothing."""
+    path = tmp_path / "ce150.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + PLANT.replace("\n", "\r\n").encode())
+    assert load_plant(path) == load_plant(ROOT / "plants" / "ce150.toml")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], ["VERB", "--help"]),
+        (["fly"], ["fly", "simulate"]),
+        (["design", "--plnt", "x"], ["--plnt"]),
+        (["verify", "--steps", "0"], ["--steps", "'0'", "from 1 on", "twinlaw verify --help"]),
+        (["validate", "--steps", "many"], ["--steps", "many"]),
+    ],
+)
+def test_a_wrong_command_line_is_one_clear_line(
+    arguments: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(arguments)
+    assert left.value.code == 2
+    said = capsys.readouterr()
+    assert (said.out, len(said.err.splitlines())) == ("", 1)
+    for word in words:
+        assert word in said.err
 
 
 def test_a_plant_file_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -126,8 +166,20 @@ def table_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (lambda text: json.dumps({**json.loads(text), "psi_max_rad": 0.5}), ["digest", "changed"]),
         (lambda text: json.dumps({**json.loads(text), "colour": 1}), ["colour"]),
         (lambda text: text.replace('"sample_period_s": 0.01', '"sample_period_s": NaN'), ["sample_period_s"]),
+        (lambda _: "[" * 100_000, ["JSON"]),
+        (lambda text: json.dumps({**json.loads(text), "psi_max_rad": 10**400}), ["psi_max_rad", "finite"]),
+        (lambda text: json.dumps({**json.loads(text), "x" * 100_000: 1}), ["unknown key"]),
     ],
-    ids=["truncated", "another kind", "changed by hand", "unknown key", "NaN"],
+    ids=[
+        "truncated",
+        "another kind",
+        "changed by hand",
+        "unknown key",
+        "NaN",
+        "lists without end",
+        "no float holds it",
+        "endless key",
+    ],
 )
 def test_a_damaged_or_foreign_table_is_one_clear_line(
     damage: Callable[[str], str],

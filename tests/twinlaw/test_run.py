@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from recordings.files import datasets_folder
 from records.log import load_log, save_log
 from records.table import load_table
 from sim.columns import log_columns
@@ -94,8 +95,47 @@ def test_a_log_with_one_changed_input_fails_the_verification(
     save_log(tmp_path / "changed.csv", log)
     arguments = ["verify", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--steps", "1000"]
     assert main([*arguments, "--log", str(tmp_path / "changed.csv"), "--out", str(tmp_path)]) == 1
-    assert "log and host differ in 1 of" in capsys.readouterr().err
-    assert json.loads((tmp_path / "verification.json").read_text())["passed"] is False
+    said = capsys.readouterr().err
+    assert "log and host differ in 1 of" in said
+    assert "at step 5000: u_M_V is" in said
+    verification = json.loads((tmp_path / "verification.json").read_text())
+    assert verification["passed"] is False
+    first = [row["first_mismatch"] for row in verification["equality"] if row["mismatches"]]
+    assert [(entry["step"], entry["signal"]) for entry in first] == [(5000, "u_M_V")]
+    assert first[0]["words"][0] == f"{np.float32(log.u[5000, 0]).view(np.uint32):08X}"
+    assert [row for row in verification["equality"] if not row["mismatches"] and "first_mismatch" in row] == []
+
+
+def test_measured_pitch_and_yaw_of_the_quanser_aero_replay_alike_on_twin_host_and_target(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if not (datasets_folder() / "quanser_aero").is_dir():
+        pytest.skip(f"no recordings at {datasets_folder()}: set TWINLAW_DATASETS")
+    log = tmp_path / "mv.csv"
+    assert main(["import", "quanser_aero", "model_verification", "--out", str(log)]) == 0
+    samples = len(log.read_text().splitlines()) - 1
+    capsys.readouterr()
+    arguments = ["verify", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--json"]
+    assert main([*arguments, "--log", str(log), "--steps", "1", "--out", str(tmp_path)]) == 0
+    rows = {tuple(row["between"]): row for row in json.loads(capsys.readouterr().out)["equality"]}
+    assert samples > 1000
+    for pair in (("twin", "host"), ("host", "target")):
+        assert rows[pair]["mismatches"] == 0
+        assert rows[pair]["steps"] >= samples
+
+
+def test_an_unfinished_run_leaves_no_verdict_and_no_flight_of_an_earlier_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("verification.json", "run.csv", "run.toml", "report.html"):
+        (tmp_path / name).write_text("of an earlier run")
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("twinlaw.verbs.run.generate_sources", interrupt)
+    assert main(["run", "--plant", str(PLANT), "--out", str(tmp_path)]) == 130
+    assert {path.name for path in tmp_path.iterdir()} == {"controller.json"}
 
 
 class _Page(HTMLParser):

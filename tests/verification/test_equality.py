@@ -146,7 +146,14 @@ def test_a_build_with_fused_multiply_add_is_noticed() -> None:
     fused = HostLaw(generate_law(table), flags=FUSED_FLAGS)
     result = compare(Float32Twin(table), fused, standard_stimuli(table, 10_000))
     assert result.equality.mismatches > 1000
-    assert "reference jumps, lane" in str(result.first_mismatch)
+    first = result.first_mismatch
+    assert first == result.equality.first_mismatch
+    assert first is not None
+    assert first.signal in ("u_M_V", "u_T_V")
+    assert first.words[0] != first.words[1]
+    sentence = result.equality.failures[0]
+    for told in ("reference jumps, lane", f"at step {first.step}", first.signal, " against ".join(first.words)):
+        assert told in sentence
 
 
 def test_nan_equals_nan_whatever_its_payload_but_zeros_of_other_sign_differ() -> None:
@@ -164,6 +171,7 @@ def test_a_difference_that_stays_within_the_state_is_noticed() -> None:
     assert result.equality.mismatches == 1
     assert result.first_mismatch is not None
     assert result.first_mismatch.step is None
+    assert result.first_mismatch.signal.startswith("state word")
 
 
 def _states(twin: Float32Twin, stimulus: Stimulus) -> np.ndarray:

@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 import blind
+from twinlaw import options
 from twinlaw.console import stage
 
 
@@ -18,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
-    maker.add_argument("--cases", type=int, default=60, help="default: %(default)s")
+    maker.add_argument("--cases", type=options.count, default=60, help="default: %(default)s")
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
     maker.set_defaults(part=_make)
     scorer = verbs.add_parser("score", help="score answers against the truth")

@@ -6,7 +6,7 @@ Leaves in DIR: controller.json, generated/, firmware.elf, firmware.bin, run.csv 
 import argparse
 import json
 
-from records.files import write_atomic
+from records.files import remove_all, write_atomic
 from records.log import save_log
 from records.table import table_text
 from records.verification import verification_text
@@ -36,6 +36,8 @@ def run(chosen: argparse.Namespace) -> int:
     """Every stage in turn; each leaves its files as soon as it is done."""
     out = chosen.out
     designed = design_controller(chosen.plant)
+    # Whatever stops this run, no verdict or flight of an earlier one is to lie beside the new table.
+    remove_all(out / name for name in ("verification.json", "run.csv", "run.toml", "report.html"))
     write_atomic(out / "controller.json", table_text(designed.table))
     law = generate_sources(designed.table, "float32", out / "generated")
     image = build_image(law, out)

@@ -18,10 +18,10 @@ from twinlaw.stages import board_url, fly_board, load_bound, validate_board
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--port, --plant, --table, --steps, --out, --json."""
-    parser.add_argument("--port", default="emulated", help="serial port of the board; default: %(default)s")
+    options.port(parser)
     options.plant(parser)
     options.table(parser)
-    parser.add_argument("--steps", type=int, default=10_000, help="replayed at least; default: %(default)s")
+    parser.add_argument("--steps", type=options.count, default=10_000, help="replayed at least; default: %(default)s")
     options.out(parser)
     options.as_json(parser)
 

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--log", type=Path, action="append", default=[], metavar="LOG.csv", help="replay it too; may be repeated"
     )
-    parser.add_argument("--steps", type=int, default=STEPS, help="compared at least; default: %(default)s")
+    parser.add_argument("--steps", type=options.count, default=STEPS, help="compared at least; default: %(default)s")
     options.out(parser)
     options.as_json(parser)
 
