@@ -1,37 +1,74 @@
-"""Import a record of a real rig's dataset as a run log: SI units, true times, known limits told.
+"""Import a record of a real rig's dataset, a MATLAB .mat or an MDF4 .mf4 file as a run log: SI units, true times, known limits told.
 
 `twinlaw import quanser_aero model_verification --out mv.csv` writes mv.csv and mv.toml. A dataset without a record lists its records.
+`twinlaw import FILE.mat --plant ce150 --column psi_rad=Pitch*0.01745329252 --out run.csv` takes vectors or channels that are named
+like the columns of a run log (t_s, u_M_V, ...), or that --column names, with a factor where their unit is another.
 """
 
 import argparse
 import json
 from pathlib import Path
 
+from recordings.channels import Choice
+from recordings.exported import SUFFIXES, import_file
 from recordings.library import IMPORTERS, import_record, records
-from records.log import save_log
+from records.errors import BadInput
+from records.log import LOOPS, RunLog, save_log
 from twinlaw import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """DATASET, RECORD, --out, --json."""
-    parser.add_argument("dataset", metavar="DATASET", help=", ".join(IMPORTERS))
+    """DATASET, RECORD or FILE, --plant, --column, --loop, --out, --json."""
+    parser.add_argument("dataset", metavar="DATASET|FILE", help=f"{', '.join(IMPORTERS)}; or a .mat or .mf4 file")
     parser.add_argument("record", metavar="RECORD", nargs="?", help="left out: list the dataset's records")
+    parser.add_argument("--plant", default="ce150", metavar="NAME", help="of a file: its rig; default: %(default)s")
+    parser.add_argument(
+        "--column",
+        type=_choice,
+        action="append",
+        default=[],
+        metavar="COLUMN=CHANNEL[*FACTOR]",
+        help="of a file: the channel of a column; may be repeated",
+    )
+    parser.add_argument("--loop", choices=LOOPS, help="of a file; default: closed where it holds references")
     parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: RECORD.csv here")
     options.as_json(parser)
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Import and write, or list."""
-    if chosen.record is None:
+    is_file = Path(chosen.dataset).suffix.lower() in SUFFIXES
+    if chosen.record is None and not is_file:
         names = records(chosen.dataset)
         print(json.dumps(names) if chosen.json else "\n".join(names))
         return 0
-    log = import_record(chosen.dataset, chosen.record)
-    path = chosen.out or Path(f"{Path(chosen.record).stem}.csv")
+    if is_file:
+        log = import_file(Path(chosen.dataset), chosen.plant, dict(chosen.column), chosen.loop)
+    else:
+        log = import_record(chosen.dataset, chosen.record)
+    path = chosen.out or Path(f"{Path(chosen.dataset if is_file else chosen.record).stem}.csv")
+    if path.suffix != ".csv":
+        raise BadInput("--out", str(path), f"a name that ends in {path.suffix!r}", "NAME.csv", "call it .csv")
     save_log(path, log)
+    _tell(path, log, chosen.json)
+    return 0
+
+
+def _tell(path: Path, log: RunLog, as_json: bool) -> None:
     notes = log.source.notes if log.source else ()
-    if chosen.json:
+    if as_json:
         print(json.dumps({"log": str(path), "rows": len(log.t_s), "notes": list(notes)}))
     else:
         print(f"{path}  {len(log.t_s)} rows, {log.t_s[-1] - log.t_s[0]:.3f} s", *notes, sep="\n  ")
-    return 0
+
+
+def _choice(text: str) -> tuple[str, Choice]:
+    """COLUMN=CHANNEL or COLUMN=CHANNEL*FACTOR."""
+    column, found, channel = text.partition("=")
+    if not (found and column and channel):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}, expected COLUMN=CHANNEL or COLUMN=CHANNEL*FACTOR")
+    name, found, factor = channel.rpartition("*")
+    try:
+        return column, Choice(name, float(factor)) if found and name else Choice(channel)
+    except ValueError:
+        return column, Choice(channel)  # the channel's own name has the asterisk
