@@ -1,0 +1,289 @@
+/*
+ * firmware_replay.c - the generated law with its numbers as data and its decisions as switches, to be held against a log.
+ *
+ * Operations and their order are those of the generated law.c: with every switch at its first value and the numbers of a table,
+ * outputs are the same bits. No part of the firmware. `number` is float, or double for a law in double precision.
+ */
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifndef NUMBER
+#define NUMBER float
+#endif
+typedef NUMBER number;
+
+#define ROOM 12
+
+enum { SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE };
+enum { WINDUP_OBSERVER, WINDUP_NONE };
+enum { ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO };
+
+/* Ascending coefficients; count 0 where the term is left out of the sum. */
+typedef struct {
+    int32_t count;
+    number c[ROOM];
+} polynomial;
+
+typedef struct {
+    polynomial q[4], p[3], a[3], u_ff;
+    int32_t prefilter_poles;
+    number prefilter_gain;
+    number u_min_V, u_max_V, u_safe_V;
+    number reference_min_rad, reference_max_rad;
+} axis_law;
+
+typedef struct {
+    axis_law axis[2];
+    number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
+    int32_t schedule, windup, feedforward_of_raw_reference;
+} replay_law;
+
+typedef struct {
+    number reference_1_rad, reference_2_rad;
+    number e_0_rad, e_1_rad, e_2_rad;
+    number v_V;
+    number s_V[3], w_V[3];
+} axis_state;
+
+typedef struct {
+    axis_state axis[2];
+    number angle_rad[2], reference_rad[2];
+} replay_state;
+
+/* What lies between the law's output and the logged number: limits, then a grid; step 0 for none. */
+typedef struct {
+    double low_V[2], high_V[2], step_V[2];
+    int32_t rounding;
+} replay_channel;
+
+void replay_start(const replay_law *law, const number angles_rad[2], replay_state *state);
+void replay_step(const replay_law *law, replay_state *state, const number input[4], number output[2]);
+int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from, int32_t to,
+                   const number (*inputs)[4], const double (*logged_V)[2], const double (*slack_V)[2],
+                   number (*outputs)[2]);
+
+static number finite_or(number value, number last)
+{
+    if (isfinite(value)) {
+        return value;
+    }
+    return isfinite(last) ? last : (number)0;
+}
+
+static number clamp(number value, number low, number high)
+{
+    if (value < low) {
+        return low;
+    }
+    return (high < value) ? high : value;
+}
+
+static number saturate(number value, number low, number high, number safe)
+{
+    return isnan(value) ? safe : clamp(value, low, high);
+}
+
+static number magnitude(number value)
+{
+    return (value < 0) ? -value : value;
+}
+
+static number value_at(const polynomial *terms, number x)
+{
+    number value = terms->c[terms->count - 1];
+    for (int32_t power = terms->count - 2; power >= 0; power--) {
+        value = value * x + terms->c[power];
+    }
+    return value;
+}
+
+static void prefilter(const axis_law *axis, axis_state *state, number reference_rad)
+{
+    const number low_rad = axis->reference_min_rad;
+    const number high_rad = axis->reference_max_rad;
+    const number target_rad = clamp(reference_rad, low_rad, high_rad);
+    if (axis->prefilter_poles == 0) {
+        state->reference_1_rad = target_rad;
+        state->reference_2_rad = target_rad;
+        return;
+    }
+    const number first_rad = state->reference_1_rad + axis->prefilter_gain * (target_rad - state->reference_1_rad);
+    state->reference_1_rad = saturate(first_rad, low_rad, high_rad, target_rad);
+    if (axis->prefilter_poles == 1) {
+        state->reference_2_rad = state->reference_1_rad;
+        return;
+    }
+    const number second_rad =
+        state->reference_2_rad + axis->prefilter_gain * (state->reference_1_rad - state->reference_2_rad);
+    state->reference_2_rad = saturate(second_rad, low_rad, high_rad, target_rad);
+}
+
+/* The sum starts with the first term that is there, as in the generated text: 0 + x would lose the sign of -0. */
+static void add_term(number *sum, bool *is_empty, const polynomial *terms, number x, number factor, bool subtract)
+{
+    if (terms->count == 0) {
+        return;
+    }
+    const number product = value_at(terms, x) * factor;
+    if (*is_empty) {
+        *sum = product;
+    } else {
+        *sum = subtract ? *sum - product : *sum + product;
+    }
+    *is_empty = false;
+}
+
+static number move(const axis_law *axis, const axis_state *state, const number e_rad[4], number schedule_rad)
+{
+    number sum = 0;
+    bool is_empty = true;
+    for (int32_t i = 0; i < 4; i++) {
+        add_term(&sum, &is_empty, &axis->q[i], schedule_rad, e_rad[i], false);
+    }
+    for (int32_t i = 0; i < 3; i++) {
+        add_term(&sum, &is_empty, &axis->p[i], schedule_rad, state->s_V[i], i == 0);
+    }
+    for (int32_t i = 0; i < 3; i++) {
+        add_term(&sum, &is_empty, &axis->a[i], schedule_rad, state->w_V[i], i == 0);
+    }
+    return sum;
+}
+
+/* value, its first and second difference, from the last value and its first */
+static void remember(number differences[3], number value)
+{
+    const number first = value - differences[0];
+    const number second = first - differences[1];
+    differences[0] = value;
+    differences[1] = first;
+    differences[2] = second;
+}
+
+static number drive(const replay_law *law, const axis_law *axis, axis_state *state, const number e_rad[4], number v_V,
+                    number u_ff_V)
+{
+    const bool is_plausible = magnitude(v_V) <= law->plausible_V;
+    if (!is_plausible) {
+        v_V = 0;
+        memset(state->s_V, 0, sizeof state->s_V);
+        memset(state->w_V, 0, sizeof state->w_V);
+    }
+    const number u_V = v_V + u_ff_V;
+    const number limited_V = saturate(u_V, axis->u_min_V, axis->u_max_V, axis->u_safe_V);
+    const number w_V = (law->windup == WINDUP_NONE) ? (number)0 : u_V - limited_V;
+    remember(state->w_V, w_V);
+    remember(state->s_V, v_V - w_V);
+    state->e_0_rad = e_rad[0];
+    state->e_1_rad = is_plausible ? e_rad[1] : (number)0;
+    state->e_2_rad = is_plausible ? e_rad[2] : (number)0;
+    state->v_V = v_V;
+    return limited_V;
+}
+
+static number scheduling_angle(const replay_law *law, const replay_state *state, number last_psi_rad)
+{
+    number psi_rad = state->angle_rad[0];
+    if (law->schedule == SCHEDULE_LAST_MEASURED) {
+        psi_rad = last_psi_rad;
+    } else if (law->schedule == SCHEDULE_FILTERED_REFERENCE) {
+        psi_rad = state->axis[0].reference_2_rad;
+    } else if (law->schedule == SCHEDULE_REFERENCE) {
+        psi_rad = state->reference_rad[0];
+    }
+    const number held_rad = clamp(psi_rad, law->psi_min_rad, law->psi_max_rad);
+    return (magnitude(held_rad) < law->least_schedule_rad) ? (number)0 : held_rad;
+}
+
+void replay_step(const replay_law *law, replay_state *state, const number input[4], number output[2])
+{
+    const number last_psi_rad = state->angle_rad[0];
+    for (int32_t i = 0; i < 2; i++) {
+        state->reference_rad[i] = finite_or(input[i], state->reference_rad[i]);
+        state->angle_rad[i] = finite_or(input[2 + i], state->angle_rad[i]);
+        prefilter(&law->axis[i], &state->axis[i], state->reference_rad[i]);
+    }
+    const number schedule_rad = scheduling_angle(law, state, last_psi_rad);
+    const axis_state *elevation = &state->axis[0];
+    const number ahead_rad = law->feedforward_of_raw_reference ? state->reference_rad[0] : elevation->reference_2_rad;
+    for (int32_t i = 0; i < 2; i++) {
+        const axis_law *axis = &law->axis[i];
+        axis_state *self = &state->axis[i];
+        const number u_ff_V = (axis->u_ff.count == 0) ? (number)0 : value_at(&axis->u_ff, ahead_rad);
+        number e_rad[4];
+        e_rad[0] = self->reference_2_rad - state->angle_rad[i];
+        e_rad[1] = e_rad[0] - self->e_0_rad;
+        e_rad[2] = e_rad[1] - self->e_1_rad;
+        e_rad[3] = e_rad[2] - self->e_2_rad;
+        const number v_V = self->v_V + move(axis, self, e_rad, schedule_rad);
+        output[i] = drive(law, axis, self, e_rad, v_V, u_ff_V);
+    }
+}
+
+void replay_start(const replay_law *law, const number angles_rad[2], replay_state *state)
+{
+    memset(state, 0, sizeof *state);
+    for (int32_t i = 0; i < 2; i++) {
+        const axis_law *axis = &law->axis[i];
+        const number angle_rad = finite_or(angles_rad[i], (number)0);
+        const number reference_rad = clamp(angle_rad, axis->reference_min_rad, axis->reference_max_rad);
+        state->angle_rad[i] = angle_rad;
+        state->reference_rad[i] = reference_rad;
+        state->axis[i].reference_1_rad = reference_rad;
+        state->axis[i].reference_2_rad = reference_rad;
+        state->axis[i].e_0_rad = reference_rad - angle_rad;
+    }
+}
+
+static double on_grid(double u_V, double step_V, int32_t rounding)
+{
+    const double steps = u_V / step_V;
+    const double whole = (rounding == ROUND_NEAREST) ? round(steps) : (rounding == ROUND_DOWN) ? floor(steps) : trunc(steps);
+    return whole * step_V;
+}
+
+static double seen(const replay_channel *channel, int32_t i, number u_V)
+{
+    double value_V = (double)u_V;
+    value_V = (value_V < channel->low_V[i]) ? channel->low_V[i] : value_V;
+    value_V = (channel->high_V[i] < value_V) ? channel->high_V[i] : value_V;
+    return (channel->step_V[i] > 0.0) ? on_grid(value_V, channel->step_V[i], channel->rounding) : value_V;
+}
+
+/* True where the log agrees within the slack; a row whose logged number is NaN is not in the log, and agrees. */
+static bool agrees(const replay_channel *channel, const number output[2], const double logged_V[2],
+                   const double slack_V[2])
+{
+    for (int32_t i = 0; i < 2; i++) {
+        if (!isnan(logged_V[i]) && !(fabs(seen(channel, i, output[i]) - logged_V[i]) <= slack_V[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/*
+ * Steps rows from..to-1 and returns the first that does not agree with the log, the state being that before it; `to` if all agree.
+ * Without a log (NULL) nothing is compared. Outputs, where asked for, are written up to the returned row and in it.
+ */
+int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from, int32_t to,
+                   const number (*inputs)[4], const double (*logged_V)[2], const double (*slack_V)[2],
+                   number (*outputs)[2])
+{
+    for (int32_t row = from; row < to; row++) {
+        const replay_state before = *state;
+        number output[2];
+        replay_step(law, state, inputs[row], output);
+        if (outputs != NULL) {
+            outputs[row][0] = output[0];
+            outputs[row][1] = output[1];
+        }
+        if (logged_V != NULL && !agrees(channel, output, logged_V[row], slack_V[row])) {
+            *state = before;
+            return row;
+        }
+    }
+    return to;
+}

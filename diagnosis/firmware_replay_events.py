@@ -1,0 +1,240 @@
+"""One firmware held against a log, sample by sample, with the single incidents that leave its answer unexplained.
+
+An incident is accepted only when the law, run on behind it, meets the log again at once: in a float32 log that is a match of
+64 bits, which does not happen by chance.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.firmware_replay_flight import Flight, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
+from diagnosis.firmware_replay_law import FLOAT64, ReplayLaw, Setup, number_type
+
+Array = NDArray[np.float64]
+
+LONGEST_HOLD = 64  # samples in a row in which one output may be held
+LOOK_AHEAD = 200
+LEAST_SHARE = 0.4  # of the samples in which the output moved, the law itself must explain this share
+LEAST_SAMPLES = 20
+DOUBLE_SLACK_V = 1e-9  # two ways to write the same law in double precision stay well within this
+LIMIT_SLACK_V = 2e-6
+GRID_SLACK = 1e-3  # of a step: a number on a grid is known by its nearest step
+
+OUTPUT_HELD, SAMPLE_LOST, RESET = "dropped_frame", "lost_sample", "reset"
+STALE_ANGLES, STALE_REFERENCES, UNLOGGED = "stale_sample_once", "stale_reference_once", "sample_not_logged"
+
+
+@dataclass(frozen=True)
+class Incident:
+    """What happened once, from sample `first` on, for `samples` samples."""
+
+    kind: str
+    first: int
+    samples: int = 1
+
+
+@dataclass(frozen=True)
+class Trace:
+    """How far a firmware explains the log: the sample at which it no longer does (None: throughout), and the incidents until there."""
+
+    stopped: int | None
+    incidents: tuple[Incident, ...]
+
+    @property
+    def explains(self) -> bool:
+        """True where nothing is left unexplained."""
+        return self.stopped is None
+
+    def kinds(self) -> Counter[str]:
+        """How many incidents of each kind."""
+        return Counter(incident.kind for incident in self.incidents)
+
+
+_Gap = tuple[Any, tuple[int, int]]  # the state before samples that the log lacks, and which they are
+
+
+@dataclass(frozen=True)
+class _Hypothesis:
+    kind: str
+    first: int
+    behind: int
+    state: Any
+
+
+class Workshop:
+    """Makes followers of one flight; what several setups have in common is made once."""
+
+    def __init__(self, flight: Flight) -> None:
+        self.flight = flight
+        self._inputs: dict[object, NDArray[Any]] = {}
+        self._answers: dict[object, tuple[Array, Array]] = {}
+
+    def inputs(self, setup: Setup) -> NDArray[Any]:
+        """What the setup's law is given (n, 4): references, angles."""
+        key = (setup.angle_lags, setup.reference_lag, setup.arithmetic)
+        if key not in self._inputs:
+            self._inputs[key] = _inputs(self.flight, setup).astype(number_type(setup.arithmetic))
+        return self._inputs[key]
+
+    def answers(self, setup: Setup) -> tuple[Array, Array]:
+        """What the setup's law should answer (n, 2), and how exactly that is known (n, 2); in V."""
+        key = (setup.arithmetic, setup.channel, setup.output_lag)
+        if key not in self._answers:
+            self._answers[key] = _wanted(self.flight, setup)
+        return self._answers[key]
+
+
+class Follower:
+    """A setup's law over a flight; `follow` gives the trace."""
+
+    def __init__(self, workshop: Workshop, setup: Setup) -> None:
+        """Raises BadInput for a table that no law can be made from."""
+        self._law = ReplayLaw(setup)
+        self._flight = workshop.flight
+        self.inputs = workshop.inputs(setup)
+        self._wanted, self._slack = workshop.answers(setup)
+        self._late = np.array([setup.reference_lag] * 2 + list(setup.angle_lags)) > 0
+
+    def follow(self) -> Trace:
+        """Run through the log, accepting incidents."""
+        n = len(self.inputs)
+        state, row = self._law.start(self.inputs[0, 2:]), 0
+        incidents: list[Incident] = []
+        gaps = list(self._flight.missing)
+        last_gap: _Gap | None = None
+        while True:
+            stop = gaps[0][0] if gaps else n
+            row = self._run(state, row, stop)
+            if row == n:
+                return self._judged(Trace(None, tuple(incidents)))
+            if row == stop:
+                last_gap = (self._law.copied(state), gaps.pop(0))
+                continue
+            best = self._best(row, state, last_gap)
+            if best is None:
+                return Trace(row, tuple(incidents))
+            incidents.append(Incident(best.kind, best.first, max(1, best.behind - best.first)))
+            state, row = best.state, best.behind
+
+    def _judged(self, trace: Trace) -> Trace:
+        """Incidents alone are no explanation: enough samples in which the output moved must be the law's own answers."""
+        if not trace.incidents:
+            return trace
+        moved = np.concatenate([[True], np.any(self._wanted[1:] != self._wanted[:-1], axis=1)])
+        telling = moved & ~np.isnan(self._wanted).any(axis=1)
+        explained = telling.copy()
+        for incident in trace.incidents:
+            explained[incident.first : incident.first + incident.samples] = False
+        enough = explained.sum() >= max(LEAST_SAMPLES, LEAST_SHARE * telling.sum())
+        return trace if enough else Trace(trace.incidents[0].first, ())
+
+    def _run(self, state: Any, first: int, behind: int, inputs: NDArray[Any] | None = None) -> int:
+        given = self.inputs if inputs is None else inputs
+        return self._law.run(state, (first, behind), given, self._wanted, self._slack)
+
+    def _best(self, row: int, state: Any, last_gap: _Gap | None) -> _Hypothesis | None:
+        """The hypothesis that carries furthest, if it carries at all; of equals the first."""
+        best, furthest = None, 0
+        for hypothesis in self._hypotheses(row, state, last_gap):
+            ahead = min(hypothesis.behind + LOOK_AHEAD, len(self.inputs))
+            reached = self._run(self._law.copied(hypothesis.state), hypothesis.behind, ahead)
+            carries = reached > hypothesis.behind or reached == len(self.inputs)
+            # Behind a number that was found because its answer fits, the next may be missing as well.
+            carries = carries or (hypothesis.kind == UNLOGGED and bool(np.isnan(self.inputs[reached]).any()))
+            if reached > max(furthest, row) and carries:
+                best, furthest = hypothesis, reached
+        return best
+
+    def _hypotheses(self, row: int, state: Any, last_gap: _Gap | None) -> Iterator[_Hypothesis]:
+        if row == len(self.inputs) or row == 0:
+            return
+        yield from self._held(row, state)
+        yield _Hypothesis(RESET, row, row, self._law.start(self.inputs[row, 2:]))
+        yield from self._other_input(row, state, STALE_ANGLES, slice(2, 4), self.inputs[row - 1, 2:])
+        yield from self._other_input(row, state, STALE_REFERENCES, slice(0, 2), self.inputs[row - 1, :2])
+        if np.isnan(self.inputs[row]).any():
+            yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
+        if last_gap is not None and row <= last_gap[1][1] + 2:
+            yield from self._not_logged(row, last_gap)
+
+    def _held(self, row: int, state: Any) -> Iterator[_Hypothesis]:
+        """The output stayed as it was: the law's frame was lost, or the law was not called."""
+        same = self._wanted[row : row + LONGEST_HOLD] == self._wanted[row - 1]
+        held = int(np.argmin(np.append(same.all(axis=1), False)))
+        stepped = self._law.copied(state)
+        for length in range(1, held + 1):
+            self._law.run(stepped, (row + length - 1, row + length), self.inputs, None, None)
+            yield _Hypothesis(OUTPUT_HELD, row, row + length, self._law.copied(stepped))
+            yield _Hypothesis(SAMPLE_LOST, row, row + length, self._law.copied(state))
+            if self._late.any() and row + length < len(self.inputs):
+                yield from self._late_behind_loss(row, length, state)
+
+    def _late_behind_loss(self, row: int, length: int, state: Any) -> Iterator[_Hypothesis]:
+        """A firmware that is late by samples which it ran: behind a loss it uses those from before the loss."""
+        behind, changed, moved = row + length, self.inputs.copy(), self._law.copied(state)
+        changed[behind, self._late] = changed[row, self._late]
+        if self._run(moved, behind, behind + 1, changed) == behind + 1:
+            yield _Hypothesis(SAMPLE_LOST, row, behind + 1, moved)
+
+    def _other_input(self, row: int, state: Any, kind: str, columns: slice, values: Array) -> Iterator[_Hypothesis]:
+        """The law was given other numbers in this one sample, and answered them exactly."""
+        if np.array_equal(self.inputs[row, columns], values):
+            return
+        changed, moved = self.inputs.copy(), self._law.copied(state)
+        changed[row, columns] = values
+        if self._run(moved, row, row + 1, changed) == row + 1:
+            yield _Hypothesis(kind, row, row + 1, moved)
+
+    def _not_logged(self, row: int, gap: _Gap) -> Iterator[_Hypothesis]:
+        """Samples that the log lacks: the law did not run, or was given the numbers that make its next answers fit."""
+        state, (first, behind) = gap
+        if behind > row + 1:
+            return
+        yield _Hypothesis(UNLOGGED, first, behind, self._law.copied(state))
+        yield from self._given(state, (first, behind), candidates_for_missing(self._flight, (first, behind)))
+
+    def _given(self, state: Any, rows: tuple[int, int], candidates: Iterable[Array]) -> Iterator[_Hypothesis]:
+        """The law's state behind `rows` for each candidate of what it was given there, if its answers agree with the log's."""
+        first, behind = rows
+        for candidate in candidates:
+            changed, moved = self.inputs[first:behind].copy(), self._law.copied(state)
+            gaps = np.isnan(changed)
+            changed[gaps] = candidate.astype(changed.dtype)[gaps]
+            if self._law.run(moved, (0, behind - first), changed, *self._between(first, behind)) == behind - first:
+                yield _Hypothesis(UNLOGGED, first, behind, moved)
+
+    def _between(self, first: int, behind: int) -> tuple[Array, Array]:
+        return self._wanted[first:behind].copy(), self._slack[first:behind].copy()
+
+
+def _inputs(flight: Flight, setup: Setup) -> Array:
+    """What the law was given (n, 4): references and angles, each as late as the setup says."""
+    angles = [
+        lagged(column[:, np.newaxis], lag) for column, lag in zip(flight.angle_rad.T, setup.angle_lags, strict=True)
+    ]
+    return np.hstack([lagged(flight.reference_rad, setup.reference_lag), *angles])
+
+
+def _wanted(flight: Flight, setup: Setup) -> tuple[Array, Array]:
+    """What the law should have answered (n, 2) in V, and how exactly that is known (n, 2)."""
+    logged, slack = flight.logged_V, flight.half_step_V
+    as_float32 = logged.astype(np.float32).astype(float)
+    steps = np.array(setup.channel.step_V)
+    if setup.arithmetic == FLOAT64:
+        rounded = (
+            np.abs(np.spacing(logged.astype(np.float32))) * 0.5 * np.array_equal(as_float32, logged, equal_nan=True)
+        )
+        slack = slack + DOUBLE_SLACK_V + rounded
+    elif not flight.inputs_are_rounded and not steps.any():
+        logged = as_float32
+    slack = np.where(np.isnan(slack), 0.0, slack) + GRID_SLACK * steps
+    # Limits are read off the log, perhaps in more digits than float32 has.
+    at_limits = np.minimum(np.abs(logged - setup.channel.low_V), np.abs(logged - setup.channel.high_V)) < LIMIT_SLACK_V
+    slack = slack + LIMIT_SLACK_V * at_limits
+    lead = setup.output_lag
+    return tuple(np.ascontiguousarray(advanced(values, lead)) for values in (logged, slack))  # type: ignore[return-value]

@@ -1,0 +1,179 @@
+"""A log made ready for replay: one row per control sample, with what the law saw and what was logged of its answer."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.firmware_replay_print import Printing, printing
+from records.log import RunLog
+from records.table import ControllerTable
+from sim.columns import reference_name
+
+Array = NDArray[np.float64]
+
+MOST_MISSING = 0.2  # share of samples that may be missing; beyond it rows are taken as they come
+UNMEASURED_REACH = np.array(
+    sorted(range(-6, 7), key=abs)
+)  # counts about the line between measured neighbours, nearest first
+PRINT_MARGIN = 1.0 + 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """Samples k = 0..n-1: references and angles (n, 2) in rad, logged inputs (n, 2) in V, their rounding `half_step_V` (n, 2).
+
+    A sample that the log lacks has NaN everywhere. `printings` are those of u_M, u_T, the two references and the two angles.
+    """
+
+    t_s: Array
+    reference_rad: Array
+    angle_rad: Array
+    logged_V: Array
+    half_step_V: Array
+    missing: tuple[tuple[int, int], ...]
+    printings: tuple[Printing, ...]
+    steps_rad: tuple[float, float]
+    rows: NDArray[np.int64]
+
+    @property
+    def inputs_are_rounded(self) -> bool:
+        """True where the log wrote the voltages down with fewer digits than a float32 has."""
+        return not all(entry.is_exact for entry in self.printings[:2])
+
+
+def has_replayable_columns(log: RunLog) -> bool:
+    """True where the log holds two inputs, two angles and both references."""
+    names = [reference_name(output) for output in log.columns.outputs]
+    return len(log.columns.inputs) == 2 and len(names) == 2 and all(name in log.extra for name in names)
+
+
+def flight_of(log: RunLog, table: ControllerTable) -> Flight:
+    """The log on its control samples; rows that are missing by sequence number or by time are put in as NaN."""
+    references = np.column_stack([log.extra[reference_name(output)] for output in log.columns.outputs])
+    samples = _samples(log)
+    columns = [log.u, references, log.y]
+    n = int(samples[-1]) + 1
+    u_V, reference_rad, angle_rad = (_spread(column, samples, n) for column in columns)
+    written = tuple(printing(column) for block in columns for column in block.T)
+    return Flight(
+        t_s=np.interp(np.arange(n), samples, log.t_s),
+        reference_rad=reference_rad,
+        angle_rad=angle_rad,
+        logged_V=u_V,
+        half_step_V=np.column_stack([p.half_step(column) for p, column in zip(written, u_V.T, strict=False)])
+        * PRINT_MARGIN,
+        missing=_blocks(np.isnan(u_V[:, 0])),
+        printings=written,
+        steps_rad=(table.elevation.resolution_rad, table.azimuth.resolution_rad),
+        rows=samples,
+    )
+
+
+def readings(flight: Flight) -> tuple[Flight, ...]:
+    """The flight as logged and, where its angles were written with few digits, as the whole encoder counts they stand for.
+
+    Counts become angles in two ways: multiplied in double precision and then rounded, or in float32 as the firmware does.
+    """
+    if all(entry.is_exact for entry in flight.printings[4:]) or not all(flight.steps_rad):
+        return (flight,)
+    steps = np.array(flight.steps_rad)
+    counts = np.round(flight.angle_rad / steps)
+    in_float32 = (counts.astype(np.float32) * steps.astype(np.float32)).astype(float)
+    return flight, replace(flight, angle_rad=counts * steps), replace(flight, angle_rad=in_float32)
+
+
+def _samples(log: RunLog) -> NDArray[np.int64]:
+    """Number of the control sample of each row, from 0 up."""
+    in_order = np.arange(len(log.t_s))
+    if log.seq is not None:
+        samples = log.seq - log.seq[0]
+    else:
+        samples = np.round((log.t_s - log.t_s[0]) / log.sample_period_s).astype(np.int64)
+    rises = bool(np.all(np.diff(samples) > 0))
+    few_missing = int(samples[-1]) + 1 - len(samples) <= MOST_MISSING * len(samples)
+    return samples if rises and few_missing else in_order
+
+
+def _spread(values: Array, samples: NDArray[np.int64], n: int) -> Array:
+    spread = np.full((n, values.shape[1]), np.nan)
+    spread[samples] = values
+    return spread
+
+
+def _blocks(marked: NDArray[np.bool_]) -> tuple[tuple[int, int], ...]:
+    """Runs of True as (first, behind last)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(np.int8)))
+    return tuple((int(a), int(b)) for a, b in edges.reshape(-1, 2))
+
+
+def lagged(values: Array, lag: int) -> Array:
+    """Row k holds what row k - lag held; the first rows hold the first."""
+    return values if lag == 0 else np.concatenate([np.repeat(values[:1], lag, axis=0), values[:-lag]])
+
+
+def advanced(values: Array, lead: int) -> Array:
+    """Row k holds what row k + lead held, NaN where there is none."""
+    if lead == 0:
+        return values
+    result = np.full_like(values, np.nan)
+    if lead > 0:
+        result[:-lead] = values[lead:]
+    else:
+        result[-lead:] = values[:lead]
+    return result
+
+
+def candidates_for_missing(flight: Flight, block: tuple[int, int]) -> Sequence[Array]:
+    """What the law may have been given in up to two missing samples: counts near the line between their neighbours.
+
+    Each candidate is (samples, 4): references, then angles; nothing for longer gaps or gaps at an end.
+    """
+    first, behind = block
+    if behind - first > 2 or first == 0 or behind == len(flight.t_s) or not all(flight.steps_rad):
+        return ()
+    before, after = flight.angle_rad[first - 1], flight.angle_rad[behind]
+    if np.isnan(before).any() or np.isnan(after).any():
+        return ()
+    steps = np.array(flight.steps_rad)
+    reach = UNMEASURED_REACH[:5] if behind - first == 1 else UNMEASURED_REACH[:3]
+    offsets = np.stack(np.meshgrid(reach, reach, indexing="ij"), axis=-1).reshape(-1, 2)
+    rows = [
+        (np.round((before + (after - before) * (k + 1) / (behind - first + 1)) / steps) + offsets) * steps
+        for k in range(behind - first)
+    ]
+    pairs = np.array(np.meshgrid(*[np.arange(len(offsets))] * len(rows), indexing="ij")).reshape(len(rows), -1).T
+    angles = [np.stack([row[index] for row, index in zip(rows, pair, strict=True)]) for pair in pairs]
+    return [np.hstack([r, angle]) for r in _references_between(flight, block) for angle in angles]
+
+
+def candidates_for_unmeasured(flight: Flight, sample: int) -> Sequence[Array]:
+    """What the law may have measured in a sample whose angles the log lacks: counts near the line between known ones.
+
+    Each candidate is (1, 4): the sample's references, then angles; those that are known stay as they are.
+    """
+    steps, known = np.array(flight.steps_rad), flight.angle_rad[sample]
+    if not steps.all():
+        return ()
+    choices = []
+    for axis, angles in enumerate(flight.angle_rad.T):
+        finite = np.flatnonzero(np.isfinite(angles))
+        if np.isfinite(known[axis]) or not finite.size:
+            choices.append(known[axis : axis + 1])
+            continue
+        count = np.round(np.interp(sample, finite, angles[finite]) / steps[axis])
+        choices.append((count + UNMEASURED_REACH) * steps[axis])
+    grid = np.array(np.meshgrid(*choices, indexing="ij")).reshape(2, -1).T
+    return [np.hstack([flight.reference_rad[sample], angles])[np.newaxis] for angles in grid]
+
+
+def _references_between(flight: Flight, block: tuple[int, int]) -> list[Array]:
+    """References of the missing samples: as before, as after, or on the line between."""
+    first, behind = block
+    before, after = flight.reference_rad[first - 1], flight.reference_rad[behind]
+    n = behind - first
+    if np.array_equal(before, after):
+        return [np.tile(before, (n, 1))]
+    share = (np.arange(1, n + 1) / (n + 1))[:, np.newaxis]
+    return [np.tile(before, (n, 1)), np.tile(after, (n, 1)), before + (after - before) * share]

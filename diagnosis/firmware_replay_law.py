@@ -1,0 +1,192 @@
+"""The law as data and switches: what a firmware may have run instead of the table's law, and the C that runs it."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.law_constants import AxisConstants, law_constants
+from records.errors import BadInput
+from records.table import ControllerTable
+from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
+
+Array = NDArray[np.float64]
+Pair = tuple[float, float]
+Gains = tuple[float | None, float | None]
+
+ROOM = 12  # coefficients of a polynomial, as in firmware_replay.c
+SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE = range(4)
+WINDUP_OBSERVER, WINDUP_NONE = range(2)
+ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO = range(3)
+FLOAT32, FLOAT64 = "float32", "float64"
+
+_SOURCE = Path(__file__).with_name("firmware_replay.c")
+_C_NAMES = {FLOAT32: "float", FLOAT64: "double"}
+_DECLARATIONS = f"""
+    typedef struct {{ int32_t count; number c[{ROOM}]; }} polynomial;
+    typedef struct {{
+        polynomial q[4], p[3], a[3], u_ff;
+        int32_t prefilter_poles;
+        number prefilter_gain;
+        number u_min_V, u_max_V, u_safe_V;
+        number reference_min_rad, reference_max_rad;
+    }} axis_law;
+    typedef struct {{
+        axis_law axis[2];
+        number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
+        int32_t schedule, windup, feedforward_of_raw_reference;
+    }} replay_law;
+    typedef struct {{
+        number reference_1_rad, reference_2_rad, e_0_rad, e_1_rad, e_2_rad, v_V, s_V[3], w_V[3];
+    }} axis_state;
+    typedef struct {{ axis_state axis[2]; number angle_rad[2], reference_rad[2]; }} replay_state;
+    typedef struct {{ double low_V[2], high_V[2], step_V[2]; int32_t rounding; }} replay_channel;
+    void replay_start(const replay_law *law, const number *angles_rad, replay_state *state);
+    int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from,
+                       int32_t to, const void *inputs, const void *logged_V, const void *slack_V, void *outputs);
+"""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What lies between the law's output and the log: limits `low_V`, `high_V`, then a grid of `step_V` (0: none); per input."""
+
+    low_V: Pair = (-1e9, -1e9)
+    high_V: Pair = (1e9, 1e9)
+    step_V: Pair = (0.0, 0.0)
+    rounding: int = ROUND_NEAREST
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A firmware that may have flown: numbers, switches, and by how many samples its inputs and its output are late.
+
+    `prefilter_gains` replaces b of both axes' reference filters, `prefilter_poles` their number; None is the table's own.
+    """
+
+    table: ControllerTable
+    arithmetic: str = FLOAT32
+    schedule: int = SCHEDULE_MEASURED
+    windup: int = WINDUP_OBSERVER
+    raw_feedforward: bool = False
+    prefilter_poles: int | None = None
+    prefilter_gains: Gains | None = None
+    angle_lags: tuple[int, int] = (0, 0)
+    reference_lag: int = 0
+    output_lag: int = 0
+    channel: Channel = Channel()
+
+    def with_axis(self, name: str, **change: object) -> "Setup":
+        """The setup with fields of the table's axis `name` replaced."""
+        axis = replace(getattr(self.table, name), **change)
+        return replace(self, table=replace(self.table, **{name: axis}))
+
+
+class ReplayLaw:
+    """The C law of a setup; states are C structures that the caller keeps, all arrays contiguous and of the law's numbers."""
+
+    def __init__(self, setup: Setup) -> None:
+        """Raises BadInput for a table that no law can be made from."""
+        self.ffi, self._lib = _library(setup.arithmetic)
+        self.number = number_type(setup.arithmetic)
+        self._law = self.ffi.new("replay_law *", _law_fields(setup))
+        channel = setup.channel
+        self._channel = self.ffi.new(
+            "replay_channel *", [channel.low_V, channel.high_V, channel.step_V, channel.rounding]
+        )
+
+    def start(self, angles_rad: Array) -> Any:
+        """A state at rest at the angles (2,)."""
+        state = self.ffi.new("replay_state *")
+        self._lib.replay_start(
+            self._law, self.ffi.new("number[2]", np.asarray(angles_rad, self.number).tolist()), state
+        )
+        return state
+
+    def copied(self, state: Any) -> Any:
+        """A state of its own with the same content."""
+        return self.ffi.new("replay_state *", state[0])
+
+    def run(
+        self, state: Any, rows: tuple[int, int], inputs: NDArray[Any], logged_V: Array | None, slack_V: Array | None
+    ) -> int:
+        """Step the rows from..to and return the first that does not agree with the log within the slack; moves `state` up to it.
+
+        inputs (n, 4), logged_V and slack_V (n, 2) in V; a logged NaN agrees with anything, None compares nothing.
+        """
+        arrays = (self._address(array) for array in (inputs, logged_V, slack_V))
+        return int(self._lib.replay_run(self._law, self._channel, state, *rows, *arrays, self.ffi.NULL))
+
+    def outputs(self, inputs: NDArray[Any]) -> Array:
+        """Outputs (n, 2) in V from rest at the first row's angles, before the channel."""
+        result = np.empty((len(inputs), 2), self.number)
+        arguments = (0, len(inputs), self._address(inputs), self.ffi.NULL, self.ffi.NULL, self._address(result))
+        self._lib.replay_run(self._law, self._channel, self.start(inputs[0, 2:]), *arguments)
+        return result.astype(float)
+
+    def _address(self, array: NDArray[Any] | None) -> Any:
+        return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+
+
+def number_type(arithmetic: str) -> np.dtype[Any]:
+    """float32 or float64."""
+    return np.dtype(np.float32 if arithmetic == FLOAT32 else np.float64)
+
+
+@cache
+def _library(arithmetic: str) -> tuple[Any, Any]:
+    name = _C_NAMES[arithmetic]
+    flags = (*(flag for flag in STRICT_FLOAT_FLAGS if flag != "-Wdouble-promotion"), f"-DNUMBER={name}")
+    library = build_shared(f"firmware-replay-{arithmetic}", [_SOURCE], flags=flags)
+    return load_shared(f"typedef {name} number; {_DECLARATIONS}", library)
+
+
+def _law_fields(setup: Setup) -> dict[str, Any]:
+    number = np.float32 if setup.arithmetic == FLOAT32 else np.float64
+    constants = law_constants(setup.table, number)
+    gains = setup.prefilter_gains or (None, None)
+    axes = (constants.elevation, constants.azimuth)
+    return {
+        "axis": [
+            _axis_fields(axis, setup.prefilter_poles, None if gain is None else number(gain))
+            for axis, gain in zip(axes, gains, strict=True)
+        ],
+        "psi_min_rad": constants.psi_min_rad,
+        "psi_max_rad": constants.psi_max_rad,
+        "least_schedule_rad": constants.least_schedule_rad,
+        "plausible_V": constants.plausible_V,
+        "schedule": setup.schedule,
+        "windup": setup.windup,
+        "feedforward_of_raw_reference": int(setup.raw_feedforward),
+    }
+
+
+def _axis_fields(axis: AxisConstants[Any], poles: int | None, gain: Any) -> dict[str, Any]:
+    gain = axis.prefilter_gain if gain is None else gain
+    if gain is None:
+        poles = 0
+    scalars = ("u_min_V", "u_max_V", "u_safe_V", "reference_min_rad", "reference_max_rad")
+    return {
+        "q": [_polynomial(row) for row in axis.q_V_rad],
+        "p": [_polynomial(row) for row in axis.p],
+        "a": [_polynomial(row) for row in axis.a],
+        "u_ff": _polynomial(axis.feedforward_V),
+        "prefilter_poles": 2 if poles is None else poles,
+        "prefilter_gain": 1.0 if gain is None else gain,
+        **{name: getattr(axis, name) for name in scalars},
+    }
+
+
+def _polynomial(coefficients: tuple[Any, ...]) -> dict[str, Any]:
+    if len(coefficients) > ROOM:
+        raise BadInput(
+            "polynomial",
+            "controller table",
+            f"{len(coefficients)} coefficients",
+            f"at most {ROOM}",
+            "design with a lower degree",
+        )
+    return {"count": len(coefficients), "c": [float(value) for value in coefficients]}

@@ -1,0 +1,87 @@
+"""The reference filter that a log betrays: time constants found by fit, then tried as the round numbers that people write."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.firmware_replay_flight import Flight
+from diagnosis.firmware_replay_law import ReplayLaw, Setup
+from diagnosis.firmware_replay_variants import AXES, Variant
+from records.table import ControllerTable
+
+Array = NDArray[np.float64]
+
+LOG10_RANGE_S = (-2.5, 1.0)
+GRID = 71
+GOLDEN_STEPS = 60
+SPAN = 1500  # samples behind the reference's first move that the fit looks at
+DIGITS = (1, 2, 3, 4, 6)
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+def fitted_prefilters(table: ControllerTable, flight: Flight, inputs: NDArray[Any]) -> Iterator[Variant]:
+    """Both axes with the time constants that fit the log best, rounded to few digits, then to more; none where no reference moves.
+
+    `inputs` (n, 4) are what the law was given. Elevation is fitted to u_M alone, azimuth then to u_T, on which both act.
+    """
+    window = _window(flight)
+    if window is None:
+        return
+    given = np.ascontiguousarray(inputs[:window], dtype=np.float32)
+    logged = flight.logged_V[:window]
+    found_s = [_constant(table, axis) for axis in range(2)]
+    for axis in range(2):
+        if np.ptp(flight.reference_rad[:window, axis][~np.isnan(flight.reference_rad[:window, axis])]) > 0.0:
+            found_s[axis] = _fitted(partial(_misfit, table, given, logged, axis, tuple(found_s)))
+    for digits in DIGITS:
+        constants_s = tuple(float(f"{value:.{digits}g}") for value in found_s)
+        shown = " and ".join(f"{value:g} s" for value in constants_s)
+        sentence = f"filters its references with time constants of {shown} (elevation and azimuth)"
+        yield Variant("other_prefilter", "prefilter", sentence, partial(_with_constants, constants_s=constants_s))
+
+
+def _window(flight: Flight) -> int | None:
+    moved = np.flatnonzero(np.any(np.diff(flight.reference_rad, axis=0) != 0.0, axis=1))
+    return None if not moved.size else min(int(moved[0]) + SPAN, len(flight.t_s))
+
+
+def _constant(table: ControllerTable, axis: int) -> float:
+    return float((table.elevation, table.azimuth)[axis].prefilter_time_constant_s)
+
+
+def _with_constants(setup: Setup, constants_s: tuple[float, ...]) -> Setup:
+    for axis, constant_s in zip(AXES, constants_s, strict=True):
+        setup = setup.with_axis(axis, prefilter_time_constant_s=constant_s)
+    return setup
+
+
+def _misfit(
+    table: ControllerTable,
+    given: NDArray[Any],
+    logged: Array,
+    axis: int,
+    others_s: tuple[float, ...],
+    constant_s: float,
+) -> float:
+    """Mean error of one input [V] over the window with this axis' time constant."""
+    constants_s = tuple(constant_s if index == axis else other for index, other in enumerate(others_s))
+    setup = _with_constants(Setup(table), constants_s)
+    return float(np.nanmean(np.abs(ReplayLaw(setup).outputs(given)[:, axis] - logged[:, axis])))
+
+
+def _fitted(misfit: Callable[[float], float]) -> float:
+    """The time constant of least misfit: a grid, then the golden section around its best point, in the logarithm."""
+    exponents = np.linspace(*LOG10_RANGE_S, GRID)
+    errors = [misfit(10.0**exponent) for exponent in exponents]
+    best = int(np.argmin(errors))
+    low, high = exponents[max(best - 1, 0)], exponents[min(best + 1, GRID - 1)]
+    for _ in range(GOLDEN_STEPS):
+        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        if misfit(10.0**left) <= misfit(10.0**right):
+            high = right
+        else:
+            low = left
+    return float(10.0 ** ((low + high) / 2.0))

@@ -1,0 +1,60 @@
+"""With how many digits a column was written down: numbers that a log rounded cannot be replayed to the last bit."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+MOST_DECIMALS = 7  # more reproduce any voltage or angle of a float32 law
+MOST_DIGITS = 8  # nine significant digits give every float32 number back
+FEWEST_VALUES = 10  # a handful of round numbers proves nothing
+
+
+@dataclass(frozen=True)
+class Printing:
+    """Digits of a column: `decimals` behind the point or `digits` in all, whichever was found first; both None for all digits."""
+
+    decimals: int | None = None
+    digits: int | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """True where nothing was rounded."""
+        return self.decimals is None and self.digits is None
+
+    def half_step(self, values: ArrayLike) -> Array:
+        """How far rounding may have moved each value, shape of `values`, in their unit; 0 where nothing was rounded."""
+        values = np.asarray(values, dtype=float)
+        if self.decimals is not None:
+            return np.full(values.shape, 0.5 * 10.0**-self.decimals)
+        if self.digits is not None:
+            return 0.5 * 10.0 ** (_exponents(values) + 1 - self.digits)
+        return np.zeros(values.shape)
+
+    def __str__(self) -> str:
+        if self.decimals is not None:
+            return f"{self.decimals} decimals"
+        return "all digits" if self.digits is None else f"{self.digits} significant digits"
+
+
+def printing(values: ArrayLike) -> Printing:
+    """The digits with which `values` (n,) were written; all of them where fewer than FEWEST_VALUES distinct numbers are there."""
+    distinct = np.unique(np.asarray(values, dtype=float))
+    distinct = distinct[np.isfinite(distinct)]
+    if distinct.size < FEWEST_VALUES:
+        return Printing()
+    for decimals in range(MOST_DECIMALS + 1):
+        if np.array_equal(np.round(distinct, decimals), distinct):
+            return Printing(decimals=decimals)
+    for digits in range(1, MOST_DIGITS + 1):
+        if all(float(f"{value:.{digits}g}") == value for value in distinct[:: max(1, distinct.size // 200)].tolist()):
+            return Printing(digits=digits)
+    return Printing()
+
+
+def _exponents(values: Array) -> Array:
+    """Power of ten of the first digit; that of the smallest normal float32 for zero."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.maximum(np.floor(np.log10(np.abs(values))), -38.0))

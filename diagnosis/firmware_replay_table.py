@@ -1,0 +1,44 @@
+"""The controller table that a log names: given, or found beside the log."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
+from records.errors import BadInput
+from records.log import RunLog
+from records.table import ControllerTable, load_table
+
+TABLE_NAME = "controller.json"
+TABLE_NOT_FOUND = "table_not_found"
+
+
+def replay_log(log: RunLog, path: Path, tables: Sequence[ControllerTable] = ()) -> FirmwareReplay | None:
+    """Run the firmware again that the log at `path` names; None where it names none.
+
+    Its table is one of `tables`, or controller.json in the log's folder. The other tables are tried as what may have flown instead.
+    Raises BadInput when tables are given and the log names none of them.
+    """
+    if log.table_digest is None:
+        return None
+    known = {table.digest: table for table in (*tables, *_beside(path))}
+    table = known.pop(log.table_digest, None)
+    if table is not None:
+        return replay_firmware(log, table, tuple(known.values()))
+    if tables:
+        raise BadInput(
+            "run log",
+            str(path),
+            f"a flight of table {log.table_digest[:16]}",
+            f"one of table {tables[0].digest[:16]}",
+            "give the table that flew, or a log of this table",
+        )
+    sentence = f"table {log.table_digest[:16]}, which the log names, is not beside it as {TABLE_NAME}"
+    return FirmwareReplay(False, False, None, TABLE_NOT_FOUND, sentence)
+
+
+def _beside(path: Path) -> tuple[ControllerTable, ...]:
+    """The table in the log's folder, if one is there and whole."""
+    try:
+        return (load_table(path.with_name(TABLE_NAME)),)
+    except BadInput:
+        return ()

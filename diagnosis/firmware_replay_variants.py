@@ -1,0 +1,272 @@
+"""What a firmware may do otherwise than the table's law: each variant is a change of the setup, with its name and sentence."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis import firmware_replay_law as law
+from diagnosis.firmware_replay_flight import Flight
+from diagnosis.firmware_replay_law import Channel, Gains, Setup
+from records.table import ControllerTable, Polynomial
+
+Array = NDArray[np.float64]
+Change = Callable[[Setup], Setup]
+Round = Callable[[float], float]
+
+AXES = ("elevation", "azimuth")
+OBSERVER_POLES = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.95, 0.98)
+LEAST_PLATEAU = 2  # a float32 that moves freely does not meet its extreme twice
+PWM_STEP_V = 10.0 / 3200.0
+LEAST_GRID_V = 1e-4
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A change of the setup; two of one `group` exclude each other. `sentence` continues "the firmware ..."."""
+
+    name: str
+    group: str
+    sentence: str
+    change: Change
+
+
+def variants(table: ControllerTable, flight: Flight, others: Sequence[ControllerTable]) -> list[Variant]:
+    """All single variants that this table and this log allow, the plain ones first."""
+    return [
+        *_timing(),
+        *_other_tables(table, others),
+        *_windup(),
+        *_references(table),
+        *_limits(table, flight),
+        *_quantised(flight),
+        *_arithmetic(),
+        *_schedule(table),
+        *_rounded(table),
+    ]
+
+
+def _timing() -> Iterator[Variant]:
+    lags = {"both angles": (1, 1), "the elevation": (1, 0), "the azimuth": (0, 1)}
+    for samples, what in ((1, "one sample"), (2, "two samples")):
+        for angles, (psi, phi) in lags.items():
+            sentence = f"used {angles} measured {what} before"
+            change = partial(replace, angle_lags=(samples * psi, samples * phi))
+            yield Variant("stale_sample", "angles", sentence, change)
+        yield Variant(
+            "stale_reference", "references", f"used references {what} old", partial(replace, reference_lag=samples)
+        )
+        yield Variant("late_output", "output", f"sent its output {what} late", partial(replace, output_lag=samples))
+    yield Variant(
+        "early_output", "output", "has each output logged one row before its angles", partial(replace, output_lag=-1)
+    )
+
+
+def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> Iterator[Variant]:
+    for other in others:
+        if other.digest != table.digest:
+            sentence = f"ran table {other.digest[:16]}, not {table.digest[:16]} that the log names"
+            yield Variant("other_table", "coefficients", sentence, partial(replace, table=other))
+
+
+def _windup() -> Iterator[Variant]:
+    yield Variant("no_anti_windup", "windup", "has no anti-windup", partial(replace, windup=law.WINDUP_NONE))
+    sentence = "feeds the limited voltage back into its recursion (anti-windup polynomial 1)"
+    yield Variant("anti_windup_fb", "windup", sentence, partial(_observer, a=(1.0, 0.0, 0.0)))
+    for pole in OBSERVER_POLES:
+        sentence = f"has three anti-windup poles at {pole:g}"
+        yield Variant("anti_windup_poles", "windup", sentence, partial(_observer, a=_recursion(pole)))
+
+
+def _recursion(pole: float) -> tuple[float, float, float]:
+    """a_i of A = (1 - pole z^-1)^3 = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]."""
+    c_0, c_1, c_2 = 3.0 * pole, -3.0 * pole**2, pole**3  # bracket c_0 + c_1 z^-1 + c_2 z^-2 with z^-1 = 1 - delta
+    return 1.0 - (c_0 + c_1 + c_2), -(c_1 + 2.0 * c_2), c_2
+
+
+def _observer(setup: Setup, a: tuple[float, float, float]) -> Setup:
+    for axis in AXES:
+        setup = setup.with_axis(axis, a=a)
+    return setup
+
+
+def _references(table: ControllerTable) -> Iterator[Variant]:
+    yield Variant(
+        "reference_unfiltered", "prefilter", "does not filter its references", partial(replace, prefilter_poles=0)
+    )
+    yield Variant(
+        "prefilter_one_pole", "prefilter", "filters its references with one pole", partial(replace, prefilter_poles=1)
+    )
+    yield Variant(
+        "feedforward_unfiltered",
+        "feedforward",
+        "feeds the unfiltered reference forward",
+        partial(replace, raw_feedforward=True),
+    )
+    without: Mapping[str, Polynomial] = dict.fromkeys(AXES, (0.0,))
+    yield Variant("no_feedforward", "feedforward", "has no feed-forward", partial(_feedforward, by_axis=without))
+    for name, gain in (("T_s/T", _euler_gain), ("T_s/(T + T_s)", _backward_gain)):
+        gains = _gains(table, gain)
+        sentence = f"filters its references with the gain {name}"
+        yield Variant("prefilter_gain", "prefilter", sentence, partial(replace, prefilter_gains=gains))
+
+
+def _feedforward(setup: Setup, by_axis: Mapping[str, Polynomial]) -> Setup:
+    for axis, polynomial in by_axis.items():
+        setup = setup.with_axis(axis, feedforward_V=polynomial)
+    return setup
+
+
+def _gains(table: ControllerTable, gain: Callable[[float, float], float]) -> Gains:
+    """b of both axes by the rule `gain` of time constant and sample period; None where there is no filter."""
+    constants_s = [getattr(table, axis).prefilter_time_constant_s for axis in AXES]
+    first, second = (gain(value, table.sample_period_s) if value > 0.0 else None for value in constants_s)
+    return first, second
+
+
+def _euler_gain(time_constant_s: float, sample_period_s: float) -> float:
+    return sample_period_s / time_constant_s
+
+
+def _backward_gain(time_constant_s: float, sample_period_s: float) -> float:
+    return sample_period_s / (time_constant_s + sample_period_s)
+
+
+def _limits(table: ControllerTable, flight: Flight) -> Iterator[Variant]:
+    """Limits read off the log: extremes at which it stays, or beyond the stated ones; within the law or only behind it."""
+    found: dict[str, dict[str, float]] = {}
+    for axis, u_V in zip(AXES, flight.logged_V.T, strict=True):
+        stated = getattr(table, axis)
+        for name, extreme, outwards in (("u_min_V", np.nanmin(u_V), -1.0), ("u_max_V", np.nanmax(u_V), 1.0)):
+            beyond = outwards * (np.float32(extreme) - np.float32(getattr(stated, name)))
+            if beyond > 0.0 or (beyond < 0.0 and np.sum(u_V == extreme) >= LEAST_PLATEAU):
+                found.setdefault(axis, {})[name] = float(extreme)
+    if not found:
+        return
+    shown = ", ".join(f"{axis} {name} {value:g} V" for axis, limits in found.items() for name, value in limits.items())
+    yield Variant("other_limits", "limits", f"has other limits: {shown}", partial(_other_limits, found=found))
+    behind = f"is limited behind its law, the inputs were logged after that: {shown}"
+    yield Variant("limited_behind_the_law", "channel", behind, partial(_limited_behind, found=found))
+
+
+def _other_limits(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
+    for axis, limits in found.items():
+        setup = setup.with_axis(axis, **limits)
+    return setup
+
+
+def _limited_behind(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
+    low = [found.get(axis, {}).get("u_min_V", -1e9) for axis in AXES]
+    high = [found.get(axis, {}).get("u_max_V", 1e9) for axis in AXES]
+    return replace(setup, channel=replace(setup.channel, low_V=(low[0], low[1]), high_V=(high[0], high[1])))
+
+
+def _quantised(flight: Flight) -> Iterator[Variant]:
+    """Grids on which all logged voltages lie: that of the firmware's own PWM, and whatever the log shows."""
+    steps = [_grid(u_V) for u_V in flight.logged_V.T]
+    if not any(steps) or (flight.inputs_are_rounded and all(_is_decimal(step) for step in steps)):
+        return
+    shown = " and ".join(f"{step:.6g} V" for step in steps)
+    for name, rounding in (
+        ("to the nearest", law.ROUND_NEAREST),
+        ("down", law.ROUND_DOWN),
+        ("towards zero", law.ROUND_TO_ZERO),
+    ):
+        channel = Channel(step_V=(steps[0], steps[1]), rounding=rounding)
+        sentence = f"sends voltages in steps of {shown}, rounded {name}"
+        yield Variant("quantised_output", "channel", sentence, partial(replace, channel=channel))
+
+
+def _grid(u_V: Array) -> float:
+    """The step of the grid on which all values lie; 0 where there is none above LEAST_GRID_V."""
+    distinct = np.unique(u_V[np.isfinite(u_V)])
+    gaps = np.diff(distinct)
+    gaps = gaps[gaps > LEAST_GRID_V / 10.0]
+    if distinct.size < 20:
+        return 0.0
+    for step in (PWM_STEP_V, float(gaps.min())):
+        off = np.abs(distinct / step - np.round(distinct / step))
+        if step >= LEAST_GRID_V and off.max() < 1e-3:
+            # The mean over the whole span is sharper than one gap.
+            span = np.round((distinct[-1] - distinct[0]) / step)
+            return PWM_STEP_V if step == PWM_STEP_V else float((distinct[-1] - distinct[0]) / span)
+    return 0.0
+
+
+def _is_decimal(step: float) -> bool:
+    """True for 0 and for powers of ten: digits of the log, not a grid of the firmware."""
+    return step == 0.0 or abs(math.log10(step) - round(math.log10(step))) < 1e-6
+
+
+def _arithmetic() -> Iterator[Variant]:
+    sentence = "computes in double precision, not in float32"
+    yield Variant("float64", "arithmetic", sentence, partial(replace, arithmetic=law.FLOAT64))
+
+
+def _schedule(table: ControllerTable) -> Iterator[Variant]:
+    for schedule, sentence in (
+        (law.SCHEDULE_LAST_MEASURED, "schedules on the elevation of the sample before"),
+        (law.SCHEDULE_FILTERED_REFERENCE, "schedules on the filtered elevation reference"),
+        (law.SCHEDULE_REFERENCE, "schedules on the elevation reference"),
+    ):
+        yield Variant("other_schedule", "schedule", sentence, partial(replace, schedule=schedule))
+    rows = [row for axis in AXES for row in (*getattr(table, axis).q_V_rad, *getattr(table, axis).p)]
+    for degree in reversed(range(max(len(row) for row in rows) - 1)):
+        sentence = f"schedules with polynomials cut to degree {degree}"
+        yield Variant("cut_schedule", "coefficients", sentence, partial(_cut, degree=degree))
+
+
+def _cut(setup: Setup, degree: int) -> Setup:
+    for name in AXES:
+        axis = getattr(setup.table, name)
+        cut = {key: tuple(row[: degree + 1] for row in getattr(axis, key)) for key in ("q_V_rad", "p")}
+        setup = setup.with_axis(name, **cut)
+    return setup
+
+
+def _rounded(table: ControllerTable) -> Iterator[Variant]:
+    ways: list[tuple[str, Round]] = [
+        *((f"{digits} significant digits", partial(_to_digits, digits=digits)) for digits in range(3, 9)),
+        *((f"{decimals} decimals", partial(round, ndigits=decimals)) for decimals in range(3, 9)),
+        ("half precision", _to_half),
+        ("bfloat16", _to_bfloat16),
+    ]
+    for way, to in ways:
+        for extent, what in enumerate(("q and p", "q, p, a", "q, p, a, feed-forward", "all of the law")):
+            sentence = f"has coefficients ({what}) rounded to {way}"
+            change = partial(_round_table, to=to, extent=extent)
+            yield Variant("rounded_coefficients", "coefficients", sentence, change)
+
+
+def _to_digits(value: float, digits: int) -> float:
+    return float(f"{value:.{digits}g}")
+
+
+def _to_half(value: float) -> float:
+    return float(np.float16(value))
+
+
+def _to_bfloat16(value: float) -> float:
+    """The nearest number with eight bits of mantissa, halves to even."""
+    bits = int(np.float32(value).view(np.uint32))
+    kept = (bits + 0x7FFF + ((bits >> 16) & 1)) & 0xFFFF0000
+    return float(np.uint32(kept).view(np.float32))
+
+
+def _round_table(setup: Setup, to: Round, extent: int) -> Setup:
+    for name in AXES:
+        axis = getattr(setup.table, name)
+        change: dict[str, object] = {
+            key: tuple(tuple(map(to, row)) for row in getattr(axis, key)) for key in ("q_V_rad", "p")
+        }
+        if extent >= 1:
+            change["a"] = tuple(map(to, axis.a))
+        if extent >= 2:
+            change["feedforward_V"] = tuple(map(to, axis.feedforward_V))
+        setup = setup.with_axis(name, **change)
+    if extent < 3:
+        return setup
+    return replace(setup, prefilter_gains=_gains(setup.table, lambda T, T_s: to(-math.expm1(-T_s / T))))
