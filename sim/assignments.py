@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import sympy
 
 from sim.printer import c_text
+from sim.slopes import symbols_of
 
 
 @dataclass
@@ -18,19 +19,21 @@ class Constants:
     variables: frozenset[sympy.Symbol]
     expressions: list[sympy.Expr] = field(default_factory=list)
     reserved: int = 0
+    places: dict[sympy.Expr, int] = field(default_factory=dict)  # of those that are not reserved
 
     def index(self, expression: sympy.Expr) -> int:
         """The place of `expression` in the list, which it joins if it is new."""
-        if expression not in self.expressions[self.reserved :]:
+        if expression not in self.places:
+            self.places[expression] = len(self.expressions)
             self.expressions.append(expression)
-        return self.expressions.index(expression, self.reserved)
+        return self.places[expression]
 
     def lifted(self, expression: sympy.Expr) -> sympy.Expr:
         """The same expression with every part that depends on parameters alone replaced by a symbol c[i]."""
         if expression.is_Number:
             return expression
-        if isinstance(expression, sympy.Expr) and not expression.free_symbols & self.variables:
-            return sympy.Symbol(f"c[{self.index(expression)}]", real=True) if expression.free_symbols else expression
+        if isinstance(expression, sympy.Expr) and not symbols_of(expression) & self.variables:
+            return sympy.Symbol(f"c[{self.index(expression)}]", real=True) if symbols_of(expression) else expression
         if expression.is_Add or expression.is_Mul:
             return self._split(expression)
         if expression.is_Atom:
@@ -38,8 +41,8 @@ class Constants:
         return expression.func(*(self.lifted(argument) for argument in expression.args))
 
     def _split(self, expression: sympy.Expr) -> sympy.Expr:
-        fixed = [argument for argument in expression.args if not argument.free_symbols & self.variables]
-        moving = [self.lifted(argument) for argument in expression.args if argument.free_symbols & self.variables]
+        fixed = [argument for argument in expression.args if not symbols_of(argument) & self.variables]
+        moving = [self.lifted(argument) for argument in expression.args if symbols_of(argument) & self.variables]
         return expression.func(self.lifted(expression.func(*fixed)), *moving)
 
 

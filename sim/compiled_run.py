@@ -99,7 +99,7 @@ def run_equations(
     request.seed = 0 if noise is None else noise.seed
     kept.append(_drive(compiled, request, drive, reference is not None))
     batch = (not single if batched is None else batched) and not isinstance(drive, CController)
-    (compiled.lib.run_batch if batch else compiled.lib.run_single)(request)
+    (compiled.batch.run_batch if batch else compiled.lib.run_single)(request)
     return Runs(times, **{name: array[0] if single and array is not None else array for name, array in results.items()})
 
 

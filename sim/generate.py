@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 import sympy
 
 from sim.assignments import Constants, assignments, constant_lines
-from sim.model import TIME, Model, smooth
+from sim.model import TIME, Model
+from sim.slopes import jacobian
 
 _ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
 
@@ -115,8 +116,8 @@ def _jacobians(model: Model, constants: Constants) -> str:
     }
     targets = {}
     for name, (functions, variables) in blocks.items():
-        jacobian = smooth(functions.jacobian(sympy.Matrix(variables)))
-        for (row, column), entry in jacobian.todok().items():
+        slopes = jacobian(functions, variables)
+        for (row, column), entry in slopes.todok().items():
             targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
     head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H,"
     return _function(f"{head} num *E)", [*_locals(model), *assignments(targets, constants)])

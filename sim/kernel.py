@@ -14,7 +14,8 @@ from sim.sincos import sincos_header
 from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
 
 C_DIR = Path(__file__).parent / "c"
-SOURCES = ("single.c", "batch.c", "events.c", "sensitivity.c")
+SINGLE = ("single.c", "events.c", "sensitivity.c")
+BATCH = ("batch.c", "events.c")  # a library of its own: most models never fly side by side
 HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
 Array = NDArray[np.float64]
@@ -29,6 +30,11 @@ class Kernel:
     lib: Any
 
     @property
+    def batch(self) -> Any:
+        """The library with `run_batch`, compiled when it is first asked for."""
+        return _batch(self)
+
+    @property
     def constants(self) -> int:
         """Length of the array of constants."""
         return int(self.lib.constants_count())
@@ -41,15 +47,27 @@ class Kernel:
 @lru_cache(maxsize=64)
 def kernel(model: Model) -> Kernel:
     """The kernel of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
-    sources: list[Source] = [
-        CText("model.h", model_header(model)),
-        CText("sincos_coefficients.h", sincos_header()),
-        *(C_DIR / name for name in SOURCES),
-    ]
-    flags = (*FAST_FLAGS, f"-DBATCH_LANES={BATCH_LANES}")
-    path = build_shared(f"kernel-{model.name}", sources, include_dirs=[C_DIR], flags=flags)
-    ffi, lib = load_shared(_declarations(), path)
+    ffi, lib = load_shared(_declarations(), _built(model, f"kernel-{model.name}", SINGLE))
     return Kernel(model, ffi, lib)
+
+
+@lru_cache(maxsize=64)
+def _batch(single: Kernel) -> Any:
+    return single.ffi.dlopen(str(_built(single.model, f"batch-{single.model.name}", BATCH)))
+
+
+def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
+    sources: list[Source] = [
+        CText("model.h", _header(model)),
+        CText("sincos_coefficients.h", sincos_header()),
+        *(C_DIR / file for file in files),
+    ]
+    return build_shared(name, sources, include_dirs=[C_DIR], flags=(*FAST_FLAGS, f"-DBATCH_LANES={BATCH_LANES}"))
+
+
+@lru_cache(maxsize=64)
+def _header(model: Model) -> str:
+    return model_header(model)
 
 
 def _declarations() -> str:

@@ -98,12 +98,6 @@ class Model:
         return sympy.Matrix([rates[state] for state in self.states])
 
 
-def smooth(jacobian: sympy.Matrix) -> sympy.Matrix:
-    """Drop the impulses that SymPy makes of slopes of steps: events and sample times carry those, not slopes."""
-    impulses = (sympy.DiracDelta, sympy.Derivative, sympy.Subs)
-    return jacobian.replace(lambda entry: isinstance(entry, impulses), lambda _: sympy.Integer(0))
-
-
 def symbol(name: str) -> sympy.Symbol:
     """A real symbol: the assumption lets SymPy differentiate |w|."""
     return sympy.Symbol(name, real=True)

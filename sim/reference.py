@@ -8,7 +8,8 @@ import numpy as np
 import sympy
 from numpy.typing import ArrayLike, NDArray
 
-from sim.model import TIME, Model, smooth
+from sim.model import TIME, Model
+from sim.slopes import jacobian
 
 Array = NDArray[np.float64]
 
@@ -31,19 +32,14 @@ class Reference:
 @lru_cache(maxsize=64)
 def reference(model: Model) -> Reference:
     """Derive rates and Jacobians from the symbolic equations of `model`, once for each model object."""
-    states, inputs, parameters = (
-        sympy.Matrix(model.states),
-        sympy.Matrix(model.inputs),
-        sympy.Matrix(model.parameter_symbols),
-    )
     rates = model.state_rates()
     outputs = sympy.Matrix(list(model.outputs.values()))
     return Reference(
         rates=_function(model, rates, flat=True),
-        A=_function(model, smooth(rates.jacobian(states))),
-        B=_function(model, smooth(rates.jacobian(inputs))),
-        D_p=_function(model, smooth(rates.jacobian(parameters))),
-        C=_function(model, smooth(outputs.jacobian(states))),
+        A=_function(model, jacobian(rates, model.states)),
+        B=_function(model, jacobian(rates, model.inputs)),
+        D_p=_function(model, jacobian(rates, model.parameter_symbols)),
+        C=_function(model, jacobian(outputs, model.states)),
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
+from sim.effects.edits import positive
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -24,7 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
             source="contract; gap catalogue 1, 2",
-            applied=lambda d, u=u: {u: sympy.sign(u) * sympy.Max(sympy.Abs(u) - d, 0)},
+            applied=lambda d, u=u: {u: sympy.sign(u) * positive(sympy.Abs(u) - d)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",
                 f"{place}.gain": "over a narrow range of inputs, a constant loss looks like a smaller gain",

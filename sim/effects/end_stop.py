@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, short, with_torque
+from sim.effects.edits import axis_of, positive, short, with_torque
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -35,6 +35,6 @@ def effects(model: Model) -> Iterator[Effect]:
 
 def _edit(model: Model, k: sympy.Symbol, a: sympy.Symbol, name: str) -> Model:
     axis = axis_of(model, name)
-    above = sympy.Max(axis.position - (axis.upper - a), 0)
-    below = sympy.Max(axis.lower + a - axis.position, 0)
+    above = positive(axis.position - (axis.upper - a))
+    below = positive(axis.lower + a - axis.position)
     return with_torque(model, name, k * (below - above))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import short, sign_of, with_axis
+from sim.effects.edits import positive, short, sign_of, with_axis
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -31,6 +31,4 @@ def effects(model: Model) -> Iterator[Effect]:
 
 def _edit(model: Model, difference: sympy.Symbol, name: str) -> Model:
     sign = sign_of(model, name)
-    return with_axis(
-        model, name, lambda axis: replace(axis, coulomb=sympy.Max(axis.coulomb + difference / 2 * sign, 0))
-    )
+    return with_axis(model, name, lambda axis: replace(axis, coulomb=positive(axis.coulomb + difference / 2 * sign)))

@@ -5,8 +5,7 @@
 
 from collections.abc import Iterator
 
-import sympy
-
+from sim.effects.edits import positive
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -25,6 +24,6 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> max(-limit, min(limit, {u}))",
             story="The driver or its supply gives out before the controller's own limit is reached.",
             source="contract; gap catalogue 3",
-            applied=lambda limit, u=u: {u: sympy.Max(-limit, sympy.Min(limit, u))},
+            applied=lambda limit, u=u: {u: positive(u + limit) - positive(u - limit) - limit},
             smooth=False,
         )
