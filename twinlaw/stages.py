@@ -28,6 +28,7 @@ from rig.line_law import LineLaw
 from rig.target_law import TargetLaw
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
+from sim.halving import StepError, step_error
 from sim.loop import fly, fly_law
 from sim.manoeuvres import flight
 from sim.plants import MODELS
@@ -192,6 +193,13 @@ def fly_double(bound: BoundPlant, table: ControllerTable) -> Flight:
     with stage("flying the law in double precision"):
         log = fly_law(bound, table, flight(bound, table.sample_period_s))
     return Flight(log, _tracking(log), {})
+
+
+def halved_step(bound: BoundPlant, table: ControllerTable) -> StepError:
+    """The step-halving check of that flight: how large the error of one integration step a sample is."""
+    with stage("flying it with steps of half the length"):
+        whole = flight(bound, table.sample_period_s)
+        return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
 
 
 def _tracking(log: RunLog) -> tuple[Tracking, ...]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from design.migration import SlowestPole
 from design.report import AxisReport, DesignReport
 from records.validation import Validation
 from records.verification import Verification
@@ -16,7 +17,8 @@ Row = tuple[str, ...]
 DESIGN_HEADING: Row = (
     "axis",
     "designed",
-    "worst flown",
+    "after fit",
+    "as float32",
     "at Psi",
     "Ms",
     "phase",
@@ -27,8 +29,12 @@ DESIGN_HEADING: Row = (
 
 
 def design_rows(report: DesignReport) -> list[Row]:
-    """One row per axis: slowest pole designed and worst flown, and the worst of each margin over Psi."""
-    return [_design_row(axis) for axis in (report.elevation, report.azimuth)]
+    """One row per axis: slowest pole designed, worst after fit and rounding, worst of each margin over Psi; then both loops coupled."""
+    coupled = ("both, coupled", "", "", f"{report.coupled.worst_rad_s:.2f} rad/s", degrees(report.coupled.at_psi_rad))
+    return [
+        *(_design_row(axis) for axis in (report.elevation, report.azimuth)),
+        (*coupled, *[""] * (len(DESIGN_HEADING) - len(coupled))),
+    ]
 
 
 def _design_row(axis: AxisReport) -> Row:
@@ -36,6 +42,7 @@ def _design_row(axis: AxisReport) -> Row:
     return (
         axis.axis,
         f"{axis.designed_slowest_rad_s:.2f} rad/s",
+        f"{axis.after_fit.worst_rad_s:.2f} rad/s",
         f"{axis.after_float32.worst_rad_s:.2f} rad/s",
         degrees(axis.after_float32.at_psi_rad),
         f"{worst.sensitivity:.2f}",
@@ -47,10 +54,19 @@ def _design_row(axis: AxisReport) -> Row:
 
 
 def design_facts(report: DesignReport) -> dict[str, Any]:
-    """The same for a program, with the poles of both loops closed together."""
-    axes = {axis.axis: _finite(asdict(axis.worst_margins)) for axis in (report.elevation, report.azimuth)}
-    coupled = {"worst_slowest_rad_s": report.coupled.worst_rad_s, "at_psi_rad": report.coupled.at_psi_rad}
-    return {"poles": report.pole_entries(), "worst_margins": axes, "coupled": coupled}
+    """The same for a program."""
+    axes = (report.elevation, report.azimuth)
+    return {
+        "poles": report.pole_entries(),
+        "after_fit": {axis.axis: _slowest(axis.after_fit) for axis in axes},
+        "fit_error": {axis.axis: asdict(axis.fit_error) for axis in axes},
+        "worst_margins": {axis.axis: _finite(asdict(axis.worst_margins)) for axis in axes},
+        "coupled": _slowest(report.coupled),
+    }
+
+
+def _slowest(pole: SlowestPole) -> dict[str, float]:
+    return {"worst_slowest_rad_s": pole.worst_rad_s, "at_psi_rad": pole.at_psi_rad}
 
 
 def size_rows(sizes: ImageSizes, flash_limit_bytes: int = 128 * 1024, ram_limit_bytes: int = 32 * 1024) -> list[Row]:
