@@ -36,12 +36,18 @@ class Channel:
         self._source = Random(f"{direction.value} {seed}")
         self._passing = Passing()
         self.done: Counter[str] = Counter()
+        self.frames = 0
 
     def carry(self, data: bytes, t_s: float = 0.0) -> bytes:
         """What arrives of `data`, which is sent at `t_s`: each delimiter ends a frame, and so does the end of the data."""
         *ended, rest = data.split(DELIMITER)
         frames = [piece + DELIMITER for piece in ended] + ([rest] if rest else [])
+        self.frames += sum(frame != DELIMITER for frame in frames)
         return b"".join(self._arriving(frame, t_s) for frame in frames)
+
+    def heal(self) -> None:
+        """No fault acts any more; a frame that was kept back is lost."""
+        self._faults = []
 
     def _arriving(self, frame: bytes, t_s: float) -> bytes:
         for fault in self._faults:
@@ -76,6 +82,11 @@ class HostileLine:
     def time_s(self) -> float:
         """Virtual time of the board."""
         return float(self.port.time_s)
+
+    @property
+    def frames_sent(self) -> int:
+        """Frames that the host has written, whatever became of them."""
+        return self._to_board.frames
 
     @property
     def in_waiting(self) -> int:
@@ -136,6 +147,13 @@ class HostileLine:
         """Close the port behind it."""
         self.port.close()
 
+    def heal(self) -> None:
+        """From now on the line is as it should be."""
+        self._physical, self._at_host = [], []
+        self._to_board.heal()
+        self._to_host.heal()
+        self._settle()
+
     def struck(self) -> Counter[str]:
         """How often each fault has struck, by its name."""
         return self.done + self._to_board.done + self._to_host.done
@@ -182,7 +200,7 @@ class HostileLine:
         self._acting = acting
         for to_host in (False, True):
             disturb(self.port.board, to_host=to_host, bursts_per_bit=0.0, burst_bits=1, seed=self._seed)
-        self.port.board.set_host_baud(BAUD_RATE)
+        self.port.baudrate = BAUD_RATE
         for fault in acting:
             self._apply(fault)
 
@@ -190,7 +208,7 @@ class HostileLine:
         board = self.port.board
         self.done[type(fault).__name__] += 1
         if isinstance(fault, BaudMismatch):
-            board.set_host_baud(round(BAUD_RATE * fault.ratio))
+            self.port.baudrate = round(BAUD_RATE * fault.ratio)
         if isinstance(fault, Noise):
             to_host, rate = fault.direction is Direction.TO_HOST, fault.bursts_per_bit
             disturb(board, to_host=to_host, bursts_per_bit=rate, burst_bits=fault.burst_bits, seed=self._seed)

@@ -92,8 +92,8 @@ class TruncateFrames(FrameFault):
     """The frame ends early, with its delimiter or without."""
 
     def spoiled(self, frame: bytes, passing: Passing, source: Random) -> bytes:
-        """A part of its beginning."""
-        return frame[: source.randrange(len(frame))] + source.choice([b"", DELIMITER])
+        """A part of its beginning, one byte short at least."""
+        return frame[: source.randrange(max(1, len(frame) - 1))] + source.choice([b"", DELIMITER])
 
 
 @dataclass(frozen=True, kw_only=True)

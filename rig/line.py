@@ -48,21 +48,24 @@ class Line:
         sequence = self.sequence
         line = encode_frame(PROTOCOL, name, sequence, values)
         self.sequence = (sequence + 1) & 0xFFFF
+        expected_bytes = line_length(PROTOCOL.message(reply_name))
+        self._drain()
         before = self.receiver.received
-        for attempt, wait_s in enumerate(self._waits_s()):
-            if attempt:  # what a disturbance has left half in the host's receiver would spoil this attempt too
-                self.receiver.pending.clear()
-            self._write(DELIMITER + line if attempt else line)  # and in the board's
+        for attempt, (wait_s, patience_bytes) in enumerate(self._patience(expected_bytes)):
+            # A delimiter first ends whatever a disturbance has left in the board's receiver.
+            self._write(DELIMITER + line if attempt else line)
             self.port.timeout = wait_s
-            reply = self._await({reply_name, "RESULT"}, sequence, line_length(PROTOCOL.message(reply_name)))
+            reply = self._await({reply_name, "RESULT"}, sequence, expected_bytes, patience_bytes)
             self.port.timeout = self.timeout_s
             if reply is not None:
                 return reply
+            if self._waiting() == 0:  # what a disturbance has left half would spoil the next reply too
+                self.receiver.pending.clear()
         raise no_reply(self.where, name, before, self.receiver.received)
 
     def next_frame(self, name: str) -> Frame | None:
         """The next frame called `name`, or None when the port's time-out passes without one."""
-        return self._await({name}, None, line_length(PROTOCOL.message(name)))
+        return self._await({name}, None, line_length(PROTOCOL.message(name)), PATIENCE_BYTES)
 
     def restart(self) -> None:
         """Forget what was received so far, and end whatever the board has received so far."""
@@ -71,12 +74,22 @@ class Line:
         self.backlog.clear()
         self._write(DELIMITER)
 
-    def _waits_s(self) -> list[float | None]:
-        quick = [wait_s for wait_s in QUICK_S if self.timeout_s is None or wait_s < self.timeout_s]
-        return [*quick, *(self.timeout_s,) * PATIENT_ATTEMPTS]
+    def _patience(self, expected_bytes: int) -> list[tuple[float | None, int]]:
+        """Time-out and most bytes of each attempt; telemetry comes every 10 ms, so that a stream of it never times out."""
+        quick_bytes = expected_bytes + 2 * line_length(PROTOCOL.message("TELEMETRY"))
+        quick = [(wait_s, quick_bytes) for wait_s in QUICK_S if self.timeout_s is None or wait_s < self.timeout_s]
+        return [*quick, *[(self.timeout_s, PATIENCE_BYTES)] * PATIENT_ATTEMPTS]
 
-    def _await(self, names: set[str], echo: int | None, expected_bytes: int) -> Frame | None:
-        limit = self.receiver.received.bytes + PATIENCE_BYTES
+    def _drain(self) -> None:
+        """Take in what came before; of that only telemetry is still of use, a reply in it answers something else."""
+        waiting = self._waiting()
+        if waiting:
+            self.backlog.extend(self.receiver.feed(self._read(waiting)))
+        for frame in [frame for frame in self.backlog if frame.message.name != "TELEMETRY"]:
+            self.backlog.remove(frame)
+
+    def _await(self, names: set[str], echo: int | None, expected_bytes: int, patience_bytes: int) -> Frame | None:
+        limit = self.receiver.received.bytes + patience_bytes
         frame = self._take(names, echo)
         while frame is None and self.receiver.received.bytes < limit:
             data = self._read(max(1, expected_bytes - len(self.receiver.pending)))
@@ -96,6 +109,12 @@ class Line:
     def _write(self, data: bytes) -> None:
         try:
             self.port.write(data)
+        except OSError as error:
+            raise self._broken(error) from error
+
+    def _waiting(self) -> int:
+        try:
+            return int(self.port.in_waiting)
         except OSError as error:
             raise self._broken(error) from error
 

@@ -36,6 +36,11 @@ class BoxPort:
         self.time_outs += len(data) < count
         return data
 
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        return len(self.waiting)
+
     def reset_input_buffer(self) -> None:
         """Forget what has come."""
         self.waiting = b""

@@ -47,6 +47,11 @@ class TimedBox:
             count = box.lib.box_tick(box.path, box.psi_counts, box.phi_counts, 1, self._now_us, self._out)
             self._waiting += bytes(box.ffi.buffer(self._out, count))
 
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        return len(self._waiting)
+
     def reset_input_buffer(self) -> None:
         """Forget what has come."""
         self._waiting = b""
