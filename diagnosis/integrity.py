@@ -1,0 +1,144 @@
+"""Are these logs what they say they are? Looked at before anything is concluded from them; nothing is repaired silently.
+
+Rows that cannot be used are marked, everything odd is said, and what makes a log worthless is refused by `demand`.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+
+from diagnosis.integrity_between import duplicate_findings, plant_pair_findings
+from diagnosis.integrity_finding import REFUSE, Finding, Found, Rows
+from diagnosis.integrity_plant import PlantFacts, plant_facts, plant_findings
+from diagnosis.integrity_time import Timing, timing, timing_findings
+from diagnosis.integrity_values import Excitation, Saturation, excitations, saturations, value_findings
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.columns import log_columns
+
+SATURATED_SHARE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class LogIntegrity:
+    """One log: its timing, saturation by input, excitation by column, and which rows (n,) are left out."""
+
+    name: str
+    timing: Timing
+    saturation: Mapping[str, Saturation]
+    excitation: Mapping[str, Excitation]
+    excluded: Rows
+
+
+@dataclass(frozen=True, eq=False)
+class Integrity:
+    """All logs, training first and then hold-out, and everything that was found, the worst first."""
+
+    logs: tuple[LogIntegrity, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def refusals(self) -> tuple[Finding, ...]:
+        """Findings that forbid any conclusion."""
+        return tuple(finding for finding in self.findings if finding.severity == REFUSE)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Every finding as one sentence that names its log."""
+        return tuple(f"{finding.log}: {finding.sentence}" for finding in self.findings)
+
+
+def examine(
+    logs: Sequence[RunLog],
+    bound: BoundPlant,
+    *,
+    holdout: Sequence[RunLog] = (),
+    names: Sequence[str] | None = None,
+) -> Integrity:
+    """Examine training logs and hold-out logs of one plant; `names` are those of all logs, training first.
+
+    Never raises for what stands in a log: what is wrong is a finding, and `demand` refuses.
+    """
+    everything = [*logs, *holdout]
+    names = [f"log {index + 1}" for index in range(len(everything))] if names is None else list(names)
+    facts = plant_facts(bound)
+    found: list[list[Found]] = [
+        list(_findings(log, name, bound, facts)) for log, name in zip(everything, names, strict=True)
+    ]
+    if not any(entry.finding.severity == REFUSE for entry in chain(*found)):
+        split = len(logs)
+        between = duplicate_findings(logs, names[:split], holdout, names[split:])
+        for index, entry in chain(between, plant_pair_findings(everything, names)):
+            found[index].append(entry)
+    order = {severity: rank for rank, severity in enumerate(("refuse", "exclude", "note"))}
+    findings = sorted((entry.finding for entry in chain(*found)), key=lambda finding: order[finding.severity])
+    examined = zip(everything, names, found, strict=True)
+    return Integrity(tuple(_examined(log, name, own, facts) for log, name, own in examined), tuple(findings))
+
+
+def demand(integrity: Integrity) -> None:
+    """Raise BadInput with the first finding that forbids any conclusion."""
+    for finding in integrity.refusals:
+        where = finding.log if finding.column is None else f"{finding.log}, column {finding.column!r}"
+        raise BadInput(finding.kind.replace("_", " "), where, finding.sentence, finding.expected, finding.remedy)
+
+
+def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
+    """All findings within one log; those that make others meaningless end the list."""
+    expected = log_columns(bound.model)
+    if (log.columns.inputs, log.columns.outputs) != (expected.inputs, expected.outputs):
+        yield _other_plant(log, name, bound)
+        return
+    own = list(timing_findings(log, name, timing(log)))
+    yield from own
+    if any(entry.finding.severity == REFUSE for entry in own):
+        return
+    own = list(value_findings(log, name, facts.steps))
+    yield from own
+    if any(entry.finding.severity == REFUSE for entry in own):
+        return
+    yield from plant_findings(log, name, bound, facts)
+    yield from _saturated(log, name, facts)
+    if log.source is not None and log.source.simulated:
+        span = (float(log.t_s[0]), float(log.t_s[-1]))
+        yield Found(Finding("simulated", name, None, *span, "its source says that these numbers are simulated"))
+
+
+def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:
+    got = f"columns {', '.join((*log.columns.inputs, *log.columns.outputs))} of plant {log.columns.plant!r}"
+    expected = f"those of {bound.model.name!r}"
+    span = (float(log.t_s[0]), float(log.t_s[-1])) if len(log.t_s) else (0.0, 0.0)
+    return Found(Finding("other_plant", name, None, *span, got, REFUSE, 0, expected, "give the log's own plant"))
+
+
+def _saturated(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    for column, shares in saturations(log, facts.limits).items():
+        low, high = facts.limits[column]
+        sides = [(low, shares.lower), (high, shares.upper)]
+        shown = [f"{share:.1%} of the rows at {limit:g}" for limit, share in sides if share > SATURATED_SHARE]
+        if shown:
+            yield Found(Finding("saturated", name, column, *span, f"{column} is at its limits: {', '.join(shown)}"))
+        beyond = (log.column(column) < low - 1e-6 * (high - low)) | (log.column(column) > high + 1e-6 * (high - low))
+        if beyond.any():
+            at = log.t_s[beyond]
+            sentence = f"{column} is beyond the plant's limits {low:g}..{high:g} in {int(beyond.sum())} rows: the plant clips it"
+            yield Found(Finding("beyond_limits", name, column, float(at[0]), float(at[-1]), sentence))
+
+
+def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts) -> LogIntegrity:
+    excluded = np.zeros(len(log.t_s), bool)
+    for entry in found:
+        if entry.excluded is not None:
+            excluded |= entry.excluded
+    is_other = any(entry.finding.kind in ("other_plant", "too_short") for entry in found)
+    return LogIntegrity(
+        name=name,
+        timing=timing(log),
+        saturation={} if is_other else saturations(log, facts.limits),
+        excitation={} if is_other else excitations(log, facts.steps),
+        excluded=excluded,
+    )

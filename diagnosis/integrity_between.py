@@ -1,0 +1,152 @@
+"""What two logs say about each other: the same rows twice, or two rigs."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows
+from records.log import RunLog
+
+Hashes = NDArray[np.uint64]
+
+WINDOW_DOUBLINGS = 5  # windows of 2^5 rows
+LEAST_CHANGES = 8  # rows in a window that differ from the one before: rest is alike in all logs
+BINS = 24
+LEAST_ROWS = 100  # quasi-steady rows of a bin in both logs
+STEADY_RAD_S = 0.05
+WORTH = 0.1  # of the greater limit: a holding input below it says nothing
+NOTE_RATIO, REFUSE_RATIO = 1.35, 2.0
+
+
+def shared_rows(one: RunLog, other: RunLog) -> Rows:
+    """Rows (n,) of `other` that stand in `one` too, within at least 32 rows in a row that do, whatever their times."""
+    mine, theirs = _windows(one), _windows(other)
+    n = len(other.t_s)
+    if not mine.size or not theirs.size:
+        return np.zeros(n, bool)
+    begins = np.flatnonzero((theirs != 0) & np.isin(theirs, mine[mine != 0]))
+    edges = np.zeros(n + 1, np.int64)
+    np.add.at(edges, begins, 1)
+    np.add.at(edges, begins + 2**WINDOW_DOUBLINGS, -1)
+    return np.asarray(np.cumsum(edges[:-1]) > 0)
+
+
+def _windows(log: RunLog) -> Hashes:
+    """A hash of each window of rows, of inputs and outputs; 0 for windows in which hardly anything changes."""
+    rows = np.ascontiguousarray(np.hstack([log.u, log.y]) + 0.0).view(np.uint64)
+    hashes = np.zeros(len(rows), np.uint64)
+    for column in rows.T:
+        hashes = _mixed(hashes, column)
+    changes = np.concatenate([[0], np.cumsum(hashes[1:] != hashes[:-1])])
+    for doubling in range(WINDOW_DOUBLINGS):
+        width = 2**doubling
+        if len(hashes) <= width:
+            return np.zeros(0, np.uint64)
+        hashes = _mixed(hashes[:-width], hashes[width:])
+    changed = changes[2**WINDOW_DOUBLINGS - 1 :] - changes[: len(hashes)]
+    return np.where(changed >= LEAST_CHANGES, hashes | np.uint64(1), np.uint64(0))
+
+
+def _mixed(one: Hashes, other: Hashes) -> Hashes:
+    """Two words into one, each bit on many (the multiplier is 2^64 over the golden ratio)."""
+    product = (one ^ (other * np.uint64(0x9E3779B97F4A7C15))) + np.uint64(0x632BE59BD9B4E019)
+    product = (product ^ (product >> np.uint64(29))) * np.uint64(0xBF58476D1CE4E5B9)
+    return np.asarray(product ^ (product >> np.uint64(32)))
+
+
+def duplicate_findings(
+    logs: Sequence[RunLog], names: Sequence[str], holdout: Sequence[RunLog], holdout_names: Sequence[str]
+) -> Iterator[tuple[int, Found]]:
+    """Rows that stand twice: refused between training and hold-out, the later ones left out within training. Index of the log, finding."""
+    for index, log in enumerate(logs):
+        for earlier in range(index):
+            rows = shared_rows(logs[earlier], log)
+            if rows.any():
+                sentence = f"{int(rows.sum())} rows stand in {names[earlier]} too; left out here"
+                yield index, _found("duplicate_rows", log, names[index], rows, sentence, EXCLUDE)
+    for index, (held, held_name) in enumerate(zip(holdout, holdout_names, strict=True), len(logs)):
+        for log, name in zip(logs, names, strict=True):
+            rows = shared_rows(log, held)
+            if rows.any():
+                sentence = f"{int(rows.sum())} rows of the hold-out log stand in {name} too"
+                yield index, _found("holdout_overlap", held, held_name, rows, sentence, REFUSE)
+
+
+def _found(kind: str, log: RunLog, name: str, rows: Rows, sentence: str, severity: str) -> Found:
+    at = log.t_s[rows]
+    expected, remedy = "a hold-out run of its own", "record another run, or give it only once"
+    finding = Finding(
+        kind, name, None, float(at[0]), float(at[-1]), sentence, severity, int(rows.sum()), expected, remedy
+    )
+    return Found(finding, rows if severity == EXCLUDE else None)
+
+
+def plant_pair_findings(logs: Sequence[RunLog], names: Sequence[str]) -> Iterator[tuple[int, Found]]:
+    """Logs that need another input to hold the same angle, on the first axis, than the first log does."""
+    for index in range(1, len(logs)):
+        ratio = holding_ratio(logs[0], logs[index])
+        if ratio is None or 1.0 / NOTE_RATIO < ratio < NOTE_RATIO:
+            continue
+        log, column = logs[index], logs[index].columns.inputs[0]
+        severity = NOTE if 1.0 / REFUSE_RATIO < ratio < REFUSE_RATIO else REFUSE
+        sentence = f"{column} that holds the same {log.columns.outputs[0]} is {ratio:.3g} times that of {names[0]}"
+        sentence += ": not one plant" if severity == REFUSE else ": not one plant, or a changed one"
+        span = (float(log.t_s[0]), float(log.t_s[-1]))
+        yield (
+            index,
+            Found(
+                Finding(
+                    "two_plants",
+                    names[index],
+                    column,
+                    *span,
+                    sentence,
+                    severity,
+                    0,
+                    "logs of one rig",
+                    "diagnose them apart",
+                )
+            ),
+        )
+
+
+def holding_ratio(one: RunLog, other: RunLog) -> float | None:
+    """Median ratio of the first inputs that hold the first output, over angles that both logs rest at; None for too few of them."""
+    steady = [_steady(log) for log in (one, other)]
+    angles = [log.y[rows, 0] for log, rows in zip((one, other), steady, strict=True)]
+    if min(len(values) for values in angles) < LEAST_ROWS:
+        return None
+    low, high = max(values.min() for values in angles), min(values.max() for values in angles)
+    if not low < high:
+        return None
+    edges = np.linspace(low, high, BINS + 1)
+    worth = WORTH * max(float(np.abs(log.u[:, 0]).max()) for log in (one, other))
+    holding = [
+        _by_bin(values, log.u[rows, 0], edges) for values, log, rows in zip(angles, (one, other), steady, strict=True)
+    ]
+    both = np.isfinite(holding[0]) & np.isfinite(holding[1])
+    both &= (np.abs(holding[0]) > worth) & (np.abs(holding[1]) > worth) & (holding[0] * holding[1] > 0.0)
+    return float(np.median(holding[1][both] / holding[0][both])) if both.any() else None
+
+
+def _steady(log: RunLog) -> Rows:
+    """Rows in whose surroundings of a second the first output hardly moves."""
+    half = max(1, round(0.5 / log.sample_period_s))
+    psi, n = log.y[:, 0], len(log.t_s)
+    steady = np.zeros(n, bool)
+    if n > 2 * half:
+        with np.errstate(invalid="ignore"):
+            slow = np.abs(psi[2 * half :] - psi[: -2 * half]) < STEADY_RAD_S
+            slow &= np.abs(psi[half:-half] - psi[: -2 * half]) < STEADY_RAD_S
+        steady[half:-half] = slow & np.isfinite(psi[half:-half])
+    return steady
+
+
+def _by_bin(angles: Array, u: Array, edges: Array) -> Array:
+    """Mean input by bin of the angle; NaN where a bin holds fewer than LEAST_ROWS rows."""
+    place = np.clip(np.digitize(angles, edges) - 1, 0, BINS - 1)
+    inside = (angles >= edges[0]) & (angles <= edges[-1])
+    count = np.bincount(place[inside], minlength=BINS)
+    total = np.bincount(place[inside], weights=u[inside], minlength=BINS)
+    return np.where(count >= LEAST_ROWS, total / np.maximum(count, 1), np.nan)

@@ -1,0 +1,198 @@
+"""What a log's numbers say against the plant that it names: stops, limits, encoder grids, units."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy
+
+from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
+from diagnosis.integrity_units import rate_unit, reference_unit, rotor_unit
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.equilibrium import equilibrium
+
+DEGREE = np.degrees(1.0)
+SAMPLE = 20_000  # rows that a test of a grid or a unit looks at
+FINEST = 1e5  # steps in a column's range, beyond which the step is no encoder's but a number format's
+ON_GRID, OFF_GRID = 0.97, 0.6  # length of the mean phase: 1 for numbers on the grid, 0 for any numbers
+BEYOND_STOP_rad = 0.1  # offsets and scales of a sensor may carry an angle this far beyond its stop
+MOST = 0.95  # share of a column's rows that speaks for its unit
+FAR_BEYOND = 1.5  # times the stop's own angle
+MACHINE_CLOSE = 1.6  # a rig may need this much more or less than its plant file says
+
+
+@dataclass(frozen=True)
+class PlantFacts:
+    """What a plant fixes about its logs: encoder steps by output, limits by input, stops by output."""
+
+    steps: Mapping[str, float]
+    limits: Mapping[str, tuple[float, float]]
+    stops: Mapping[str, tuple[float, float]]
+
+
+def plant_facts(bound: BoundPlant) -> PlantFacts:
+    """Steps, limits and stops of a bound plant; those that it has not are left out."""
+    model = bound.model
+    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
+    stops = {
+        str(axis.position): (_value(axis.lower, values), _value(axis.upper, values))
+        for axis in model.axes
+        if axis.position is not None and axis.lower is not None and axis.upper is not None
+    }
+    limits = {str(u): (_value(low, values), _value(high, values)) for u, (low, high) in model.input_limits.items()}
+    return PlantFacts(dict(bound.plant.sensors), limits, stops)
+
+
+def _value(expression: sympy.Expr, values: Mapping[sympy.Symbol, float]) -> float:
+    return float(sympy.sympify(expression).subs(values))
+
+
+def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
+    """What is odd about the numbers of a log of this plant."""
+    slips = [slip for column in log.columns.outputs for slip in _angle_unit(log, name, column, facts)]
+    slips += [*_input_unit(log, name, facts), *_machine_unit(log, name, bound, facts)]
+    yield from slips
+    if slips:  # everything else would follow from the wrong unit
+        return
+    for column in log.columns.outputs:
+        yield from _stops(log, name, column, facts)
+        yield from _grid(log, name, column, facts.steps.get(column, 0.0))
+        yield from reference_unit(log, name, column)
+    yield from rate_unit(log, name, bound.model)
+    yield from rotor_unit(log, name, bound, facts.limits)
+
+
+def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:
+    """Degrees or counts where radians should be: by the encoder's grid, or by the stops."""
+    values, step = _some(log.column(column)), facts.steps.get(column, 0.0)
+    if not column.endswith("_rad") or values.size < 2 or values.min() == values.max():
+        return
+    low, high = facts.stops.get(column, (-np.inf, np.inf))
+    widest = max(abs(low), abs(high))
+    greatest = float(np.quantile(np.abs(values), MOST))  # single rows may be wrong in any unit
+    whole = bool(np.all(values == np.round(values)))
+    unit = None
+    if step > 0.0 and whole and not _is_on(values, step) and greatest > 3.0:
+        unit = "encoder counts"
+    elif step > 0.0 and _is_on(values, step * DEGREE) and not _is_on(values, step):
+        unit = "degrees"
+    elif np.isfinite(widest) and greatest > max(FAR_BEYOND * widest, widest + 3.0 * BEYOND_STOP_rad):
+        fits = greatest / DEGREE <= widest + BEYOND_STOP_rad
+        unit = "degrees" if fits else "something else than radians"
+    if unit is not None:
+        sentence = f"{column} is in {unit}: up to {greatest:.4g}"
+        yield _slip(log, name, column, sentence, "radians", "convert the column to radians")
+
+
+def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
+    """Percent or ticks where volt should be: far beyond what the drive takes, in every input that moves."""
+    for column in log.columns.inputs:
+        low, high = facts.limits.get(column, (-np.inf, np.inf))
+        widest = max(abs(low), abs(high))
+        greatest = float(np.quantile(np.abs(_some(log.column(column))), MOST))
+        if not np.isfinite(widest) or not greatest > 3.0 * widest:
+            continue
+        unit = "percent" if greatest <= 10.05 * widest else "another unit"
+        sentence = f"{column} is in {unit}, up to {greatest:.4g} where the plant takes {low:g}..{high:g}"
+        yield _slip(log, name, column, sentence, "the unit that the column's name states", "convert the column")
+
+
+def _machine_unit(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
+    """Machine units, 1 at full scale: an input within -1..1 that holds the plant with a tenth of what it needs."""
+    column = log.columns.inputs[0]
+    low, high = facts.limits.get(column, (-np.inf, np.inf))
+    widest = max(abs(low), abs(high))
+    present = np.isfinite(log.y[:, 0])
+    if not np.isfinite(widest) or np.abs(log.u[:, 0]).max() > 1.05 or widest < 5.0 or not present.any():
+        return
+    try:
+        needed = float(equilibrium(bound, float(np.median(log.y[present, 0]))).u0[0])
+    except BadInput:
+        return
+    held = float(np.median(log.u[present, 0])) * widest
+    if abs(needed) > 0.2 * widest and 1.0 / MACHINE_CLOSE < held / needed < MACHINE_CLOSE:
+        sentence = f"{column} is in machine units, 1 for {widest:g} V: the plant needs {needed:.3g} V to hold its angle"
+        yield _slip(log, name, column, sentence, "volt", f"multiply the inputs by {widest:g}")
+
+
+def _slip(log: RunLog, name: str, column: str, sentence: str, expected: str, remedy: str) -> Found:
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    return Found(Finding("unit_slip", name, column, *span, sentence, REFUSE, 0, expected, remedy))
+
+
+def _stops(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:
+    """Rows beyond a stop: a little is a matter of the sensor, much is no measurement."""
+    if column not in facts.stops:
+        return
+    (low, high), values = facts.stops[column], log.column(column)
+    margin = BEYOND_STOP_rad + facts.steps.get(column, 0.0)
+    with np.errstate(invalid="ignore"):
+        far = (values < low - margin) | (values > high + margin)
+        near = ((values < low - facts.steps.get(column, 0.0)) | (values > high + facts.steps.get(column, 0.0))) & ~far
+    for kind, rows, severity, what in (
+        ("beyond_stops", far, EXCLUDE, "; left out"),
+        ("beyond_stops", near, NOTE, ": the sensor's zero or scale is not the plant's"),
+    ):
+        if rows.any():
+            at, count = log.t_s[rows], int(rows.sum())
+            sentence = f"{column} is beyond its stops {low:.4g}..{high:.4g} in {in_words(count, 'row')}, first at {at[0]:g} s{what}"
+            left_out = rows if severity == EXCLUDE else None
+            finding = Finding(
+                kind, name, column, float(at[0]), float(at[-1]), sentence, severity, count * (left_out is not None)
+            )
+            yield Found(finding, left_out)
+
+
+def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
+    """A measured angle lies on its encoder's grid; one that lies on none is simulated, filtered or interpolated."""
+    values = _some(log.column(column))
+    if step <= 0.0 or values.size < 20 or not step < np.ptp(values) < FINEST * step:
+        return
+    held = _phase(values, step)
+    own = grid_step(values)
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    if held < OFF_GRID and own == 0.0:
+        sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
+        yield Found(Finding("simulated_looking", name, column, *span, sentence))
+    elif own > 0.0 and abs(own / step - 1.0) > 0.01 and not 0.99 < own / step - round(own / step) + 1.0 < 1.01:
+        yield Found(
+            Finding(
+                "other_grid",
+                name,
+                column,
+                *span,
+                f"{column} moves in steps of {own:.5g}, not of {step:.5g} as the plant states",
+            )
+        )
+
+
+def grid_step(values: Array) -> float:
+    """The step of the grid on which all of `values` lie, as their least difference; 0 where there is none."""
+    distinct = np.unique(values)
+    gaps = np.diff(distinct)
+    gaps = gaps[gaps > 1e-9 * max(float(np.abs(distinct).max()), 1e-9)]
+    if gaps.size < 5:
+        return 0.0
+    step = float(gaps.min())
+    multiples = np.round(gaps / step)
+    if multiples.max() > 1e4:
+        return 0.0
+    step = float(gaps.sum() / multiples.sum())
+    return step if _phase(distinct, step) > ON_GRID and distinct.size < 0.9 * values.size + 5 else 0.0
+
+
+def _phase(values: Array, step: float) -> float:
+    """Length of the mean of exp(2 pi i y / step): 1 on the grid whatever its offset."""
+    return float(np.abs(np.mean(np.exp(2j * np.pi * (values / step)))))
+
+
+def _is_on(values: Array, step: float) -> bool:
+    return _phase(np.unique(values), step) > ON_GRID and np.unique(np.round(values / step)).size > 3
+
+
+def _some(values: Array) -> Array:
+    """At most SAMPLE finite values, from all over the column."""
+    present = values[np.isfinite(values)]
+    return present[:: max(1, len(present) // SAMPLE)]

@@ -1,0 +1,154 @@
+"""What a log's time stamps and sequence numbers say: true sample period, jitter, missing and repeated rows."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from records.log import RunLog
+
+LEAST_ROWS = 50
+LEAST_DURATION_S = 1.0  # one window of prediction
+GAP = 1.5  # sample periods between two rows that make a gap
+JITTER = 0.01  # of the sample period, rms, that is worth a note
+PERIOD_ERROR_PPM = 500.0  # beyond what a crystal does
+OTHER_UNIT = 300.0  # a period wrong by this factor is in another unit: milliseconds, microseconds
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Statistics of the time stamps; `period_s` is the slope of time over sample number, `period_error_ppm` against the sidecar.
+
+    Jitter is the deviation of a step from whole periods. `missing_by_time` and `missing_by_seq` count samples without a row, None without
+    sequence numbers.
+    """
+
+    rows: int
+    duration_s: float
+    period_s: float
+    period_error_ppm: float
+    jitter_rms_s: float
+    jitter_max_s: float
+    missing_by_time: int
+    missing_by_seq: int | None
+
+
+def timing(log: RunLog) -> Timing:
+    """The timing of a log; for fewer than three rows the stated period stands."""
+    t_s, stated_s = log.t_s, log.sample_period_s
+    n = len(t_s)
+    duration_s = float(t_s[-1] - t_s[0]) if n else 0.0
+    if n < 3 or not np.isfinite(duration_s):
+        return Timing(n, duration_s, stated_s, 0.0, 0.0, 0.0, 0, None)
+    steps = np.diff(t_s)
+    usual_s = float(np.median(steps))
+    by_time = np.maximum(np.round(steps / usual_s), 0.0) if usual_s > 0.0 else np.ones(n - 1)
+    by_seq = by_time if log.seq is None else np.maximum(np.diff(log.seq), 0)
+    # Where the two disagree in all, times were not taken where the samples were: then only times tell of time.
+    counted = by_seq if by_seq.sum() == by_time.sum() else by_time
+    samples = np.concatenate([[0.0], np.cumsum(counted)])
+    period_s = _slope(samples, t_s)
+    jitter_s = (steps - counted * period_s)[counted == by_time]
+    jitter_s = jitter_s if jitter_s.size else np.zeros(1)
+    return Timing(
+        rows=n,
+        duration_s=duration_s,
+        period_s=period_s,
+        period_error_ppm=(period_s / stated_s - 1.0) * 1e6,
+        jitter_rms_s=float(np.sqrt(np.mean(jitter_s**2))),
+        jitter_max_s=float(np.abs(jitter_s).max()),
+        missing_by_time=int(np.sum(np.maximum(by_time - 1.0, 0.0))),
+        missing_by_seq=None if log.seq is None else int(np.sum(np.maximum(by_seq - 1, 0))),
+    )
+
+
+def _slope(samples: Array, t_s: Array) -> float:
+    """Least squares of time over sample number."""
+    x = samples - samples.mean()
+    spread = float(x @ x)
+    return float(x @ (t_s - t_s.mean())) / spread if spread > 0.0 else 0.0
+
+
+def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
+    """What is odd about the times of a log."""
+    start_s, end_s = (float(log.t_s[0]), float(log.t_s[-1])) if found.rows else (0.0, 0.0)
+
+    def say(kind: str, sentence: str, severity: str = NOTE, expected: str = "", remedy: str = "") -> Found:
+        return Found(Finding(kind, name, "t_s", start_s, end_s, sentence, severity, 0, expected, remedy))
+
+    if found.rows < LEAST_ROWS or found.duration_s < LEAST_DURATION_S:
+        got = f"{in_words(found.rows, 'row')} over {found.duration_s:g} s"
+        least = f"at least {LEAST_ROWS} rows over {LEAST_DURATION_S:g} s"
+        yield say("too_short", got, REFUSE, least, "record a longer run")
+        return
+    yield from _order(log, name)
+    ratio = found.period_s / log.sample_period_s
+    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT:
+        got = f"rows {found.period_s:g} s apart where the sidecar states {log.sample_period_s:g} s"
+        yield say("time_unit", got, REFUSE, "t_s in seconds", "convert the time stamps to seconds")
+    elif abs(found.period_error_ppm) > max(PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
+        yield say(
+            "sample_period",
+            f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s ({found.period_error_ppm:+.0f} ppm); "
+            "their own times are used",
+        )
+    if found.jitter_rms_s > JITTER * found.period_s:
+        yield say(
+            "jitter",
+            f"time stamps jitter by {found.jitter_rms_s:.3g} s rms, {found.jitter_max_s:.3g} s at most; true times are used",
+        )
+    yield from _missing(log, name, found)
+
+
+def _by_jitter_ppm(found: Timing) -> float:
+    """How far jitter that adds up from row to row moves the period, four standard deviations."""
+    return float(4e6 * found.jitter_rms_s / np.sqrt(found.rows) / found.period_s)
+
+
+def _order(log: RunLog, name: str) -> Iterator[Found]:
+    """Rows whose time or sequence number does not rise: the later one is left out."""
+    yield from _not_rising(log, name, "t_s", log.t_s)
+    if log.seq is not None:
+        yield from _not_rising(log, name, "seq", log.seq.astype(float))
+
+
+def _not_rising(log: RunLog, name: str, column: str, values: Array) -> Iterator[Found]:
+    highest = np.maximum.accumulate(values)
+    bad: Rows = np.concatenate([[False], values[1:] <= highest[:-1]])
+    repeated = np.concatenate([[False], values[1:] == values[:-1]])
+    for kind, rows, what in (
+        ("repeated_rows", bad & repeated, "repeat the number before"),
+        ("disordered_rows", bad & ~repeated, "go back"),
+    ):
+        if rows.any():
+            at = log.t_s[rows]
+            count = int(rows.sum())
+            sentence = f"{column}: {in_words(count, 'row')} {what}, first at {at[0]:g} s; left out"
+            yield Found(Finding(kind, name, column, float(at[0]), float(at[-1]), sentence, EXCLUDE, count), rows)
+
+
+def _missing(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
+    steps = np.diff(log.t_s)
+    gaps = np.flatnonzero(steps > GAP * found.period_s)
+    if gaps.size and found.missing_by_time:
+        first, longest = gaps[0], gaps[np.argmax(steps[gaps])]
+        sentence = (
+            f"{in_words(found.missing_by_time, 'sample')} missing in {in_words(gaps.size, 'gap')}, first behind "
+            f"{log.t_s[first]:g} s, the longest {steps[longest]:.3g} s behind {log.t_s[longest]:g} s"
+        )
+        span = (float(log.t_s[first]), float(log.t_s[gaps[-1] + 1]))
+        yield Found(Finding("missing_rows", name, "t_s", *span, sentence))
+    if log.seq is None:
+        return
+    lost = np.flatnonzero(np.diff(log.seq) > 1)
+    if lost.size:
+        sentence = f"sequence numbers: {in_words(found.missing_by_seq or 0, 'sample')} missing, first behind {log.t_s[lost[0]]:g} s"
+        span = (float(log.t_s[lost[0]]), float(log.t_s[lost[-1] + 1]))
+        yield Found(Finding("sequence_gap", name, "seq", *span, sentence))
+    if found.missing_by_seq != found.missing_by_time:
+        sentence = (
+            f"sequence numbers lack {found.missing_by_seq}, time stamps {found.missing_by_time} samples: "
+            "the times were not taken where the samples were"
+        )
+        yield Found(Finding("sequence_against_time", name, "seq", float(log.t_s[0]), float(log.t_s[-1]), sentence))

@@ -1,0 +1,165 @@
+"""What the numbers of a log's columns say by themselves: missing, constant, saturated, copied, out of line; and how much moves."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from records.log import RunLog
+from sim.columns import reference_name
+
+COPY_SHARE = 0.999  # of the rows in which two columns are one number
+GLITCH_FACTOR = 30.0  # a row off its neighbours by so many times what rows usually move
+GLITCH_STEPS = 20.0  # and by so many encoder steps
+NEAR_LIMIT = 1e-6  # of the limits' span
+
+
+@dataclass(frozen=True)
+class Saturation:
+    """Share of rows in which an input is at (or beyond) its lower and its upper limit."""
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """How far a column moves: least, greatest, standard deviation; rms of its rate and encoder counts travelled in a second.
+
+    Rates are over a tenth of a second, so that encoder steps do not count as motion; counts are None where there is no encoder.
+    """
+
+    least: float
+    greatest: float
+    sd: float
+    rate_rms: float
+    counts_per_s: float | None
+
+
+def saturations(log: RunLog, limits: Mapping[str, tuple[float, float]]) -> dict[str, Saturation]:
+    """Shares at the limits by input."""
+    result = {}
+    for name in log.columns.inputs:
+        low, high = limits.get(name, (-np.inf, np.inf))
+        u, margin = log.column(name), NEAR_LIMIT * (high - low) if np.isfinite(high - low) else 0.0
+        result[name] = Saturation(float(np.mean(u <= low + margin)), float(np.mean(u >= high - margin)))
+    return result
+
+
+def excitations(log: RunLog, steps: Mapping[str, float]) -> dict[str, Excitation]:
+    """How far inputs and outputs move, by column; columns without any number are left out."""
+    stride = max(1, round(0.1 / log.sample_period_s))
+    result = {}
+    for name in (*log.columns.inputs, *log.columns.outputs):
+        present = np.isfinite(log.column(name))
+        values, t_s = log.column(name)[present], log.t_s[present]
+        if values.size <= stride:
+            continue
+        moved, passed_s = values[stride:] - values[:-stride], t_s[stride:] - t_s[:-stride]
+        rates = moved / np.where(passed_s > 0.0, passed_s, np.inf)
+        travelled = float(np.abs(np.diff(values)).sum())
+        duration_s = max(float(t_s[-1] - t_s[0]), log.sample_period_s)
+        step = steps.get(name, 0.0) if name in log.columns.outputs else 0.0
+        counts_per_s = travelled / step / duration_s if step > 0.0 else None
+        rate_rms = float(np.sqrt(np.mean(rates**2)))
+        result[name] = Excitation(float(values.min()), float(values.max()), float(values.std()), rate_rms, counts_per_s)
+    return result
+
+
+def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterator[Found]:
+    """What is odd about the numbers, whatever the plant."""
+    yield from _missing_numbers(log, name)
+    yield from _constant(log, name)
+    yield from _copies(log, name)
+    for column in log.columns.outputs:
+        yield from _glitches(log, name, column, steps.get(column, 0.0))
+
+
+def _missing_numbers(log: RunLog, name: str) -> Iterator[Found]:
+    for column in (*log.columns.outputs, *log.extra):
+        rows = np.flatnonzero(np.isnan(log.column(column)))
+        if not rows.size:
+            continue
+        span = (float(log.t_s[rows[0]]), float(log.t_s[rows[-1]]))
+        if rows.size == len(log.t_s):
+            yield Found(Finding("not_recorded", name, column, *span, f"{column} was not recorded: NaN in every row"))
+            continue
+        runs = 1 + int(np.sum(np.diff(rows) > 1))
+        spans = in_words(runs, "span")
+        sentence = f"{column} is NaN in {in_words(rows.size, 'row')} in {spans}, first at {span[0]:g} s; not measured"
+        yield Found(Finding("not_a_number", name, column, *span, sentence))
+
+
+def _constant(log: RunLog, name: str) -> Iterator[Found]:
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    still = [column for column in (*log.columns.inputs, *log.columns.outputs) if _is_constant(log.column(column))]
+    references = {reference_name(output) for output in log.columns.outputs}
+    if any(name not in references and not _is_constant(values) for name, values in log.extra.items()):
+        pass  # a rate or a rotor speed was measured: the rest may stand still
+    elif len(still) == len(log.columns.inputs) + len(log.columns.outputs):
+        sentence = "every input and every output is one constant"
+        yield Found(Finding("constant", name, None, *span, sentence, REFUSE, 0, "a run that moves", "record one"))
+        return
+    elif set(log.columns.outputs) <= set(still) and not log.locked:
+        sentence = "inputs change and no measured output does: the sensors were not read"
+        yield Found(
+            Finding("stuck_sensors", name, None, *span, sentence, REFUSE, 0, "outputs that answer", "check the sensors")
+        )
+        return
+    for column in still:
+        if np.isnan(log.column(column)).all():
+            continue
+        yield Found(Finding("constant", name, column, *span, f"{column} is {log.column(column)[0]:g} in every row"))
+
+
+def _is_constant(values: Array) -> bool:
+    present = values[np.isfinite(values)]
+    return bool(present.size == 0 or present.min() == present.max())
+
+
+def _copies(log: RunLog, name: str) -> Iterator[Found]:
+    """A measured output that is a reference, or another column, number for number."""
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    names = [*log.columns.outputs, *log.columns.inputs, *log.extra]
+    for index, column in enumerate(names):
+        for other in names[index + 1 :]:
+            if not _is_copy(log.column(column), log.column(other)):
+                continue
+            is_reference = column in log.columns.outputs and other == reference_name(column)
+            sentence = f"{column} is {other}, number for number" + (": no measurement" if is_reference else "")
+            severity = REFUSE if column in log.columns.outputs else NOTE
+            remedy = f"log what the sensor of {column} measured"
+            yield Found(Finding("copied_column", name, column, *span, sentence, severity, 0, "two columns", remedy))
+
+
+def _is_copy(one: Array, other: Array) -> bool:
+    sparse = slice(None, None, max(1, len(one) // 5000))
+    if np.mean(one[sparse] == other[sparse]) < COPY_SHARE or _is_constant(one):
+        return False
+    return bool(np.mean(one == other) >= COPY_SHARE)
+
+
+def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
+    """Single rows far off both neighbours, which agree with each other: no motion does that."""
+    values = log.column(column)
+    if len(values) < 3:
+        return
+    before, after = values[1:-1] - values[:-2], values[1:-1] - values[2:]
+    off = np.minimum(np.abs(before), np.abs(after))
+    across = np.abs(values[2:] - values[:-2])
+    usual = (
+        float(np.nanpercentile(np.abs(before[:: max(1, len(before) // 20000)]), 99.0))
+        if np.isfinite(before).any()
+        else 0.0
+    )
+    bound = max(GLITCH_FACTOR * usual, GLITCH_STEPS * step)
+    with np.errstate(invalid="ignore"):
+        inner = (
+            (off > bound) & (across < 0.25 * off) & (before * after > 0.0) if bound > 0.0 else np.zeros(len(off), bool)
+        )
+    rows: Rows = np.concatenate([[False], inner, [False]])
+    if rows.any():
+        count, at = int(rows.sum()), log.t_s[rows]
+        sentence = f"{column} leaps away and back in {in_words(count, 'row')}, first at {at[0]:g} s; left out"
+        yield Found(Finding("glitch", name, column, float(at[0]), float(at[-1]), sentence, EXCLUDE, count), rows)

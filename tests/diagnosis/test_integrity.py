@@ -1,0 +1,228 @@
+"""Logs spoiled in known ways: each defect is found, with its column and severity; clean and merely unusual logs are not refused."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from diagnosis.integrity import Integrity, demand, examine
+from records.errors import BadInput
+from records.log import LogColumns, RunLog
+from sim.columns import log_columns
+from sim.simulate import simulate
+from tests.diagnosis.firmware_flights import flown, lively, plant, rows_of
+from tests.law_tables import ce150_table
+from verification.host_law import host_law
+
+TURN_STEP_RAD = 2.0 * np.pi / 4096.0
+Spoil = Callable[[RunLog], RunLog]
+
+
+@cache
+def clean(duration_s: float = 20.0) -> RunLog:
+    """A flight of the compiled law, with rotor speeds and rates as a rig would log them."""
+    log = flown(host_law(ce150_table()), duration_s=duration_s)
+    runs = simulate(plant(), log.t_s, lively(duration_s).x0, log.u, keep="x")
+    assert runs.x is not None
+    rng, states = np.random.default_rng(2), [str(state) for state in plant().model.states]
+    measured = {name: runs.x[:, states.index(name)] for name in ("omega_M_rad_s", "omega_T_rad_s", "psi_dot_rad_s")}
+    noisy = {name: np.round(values + rng.normal(0.0, 0.02, values.shape), 4) for name, values in measured.items()}
+    return replace(log, extra={**log.extra, **noisy})
+
+
+def _kinds(found: Integrity, severity: str | None = None) -> set[str]:
+    return {finding.kind for finding in found.findings if severity in (None, finding.severity)}
+
+
+def _examined(*logs: RunLog, holdout: Sequence[RunLog] = ()) -> Integrity:
+    return examine(logs, plant(), holdout=holdout)
+
+
+def _column(log: RunLog, name: str, values: np.ndarray) -> RunLog:
+    """The log with the column `name` replaced."""
+    if name == "t_s":
+        return replace(log, t_s=values)
+    if name in log.extra:
+        return replace(log, extra={**log.extra, name: values})
+    block = "u" if name in log.columns.inputs else "y"
+    names = log.columns.inputs if block == "u" else log.columns.outputs
+    changed = getattr(log, block).copy()
+    changed[:, names.index(name)] = values
+    return replace(log, **{block: changed})  # type: ignore[arg-type]
+
+
+def _scaled(name: str, factor: float) -> Spoil:
+    return lambda log: _column(log, name, log.column(name) * factor)
+
+
+def _other_flight() -> RunLog:
+    """Another run of the same rig: the same manoeuvre with another law."""
+    return flown(host_law(ce150_table(prefilter_time_constant_s=0.5)))
+
+
+def test_a_clean_log_has_no_findings_and_its_numbers_are_told() -> None:
+    found = _examined(clean(), holdout=[_other_flight()])
+    assert found.findings == ()
+    demand(found)
+    first = found.logs[0]
+    assert not first.excluded.any()
+    assert (first.timing.rows, first.timing.missing_by_time, first.timing.missing_by_seq) == (2001, 0, None)
+    assert first.timing.period_error_ppm == pytest.approx(0.0, abs=1e-3)
+    psi = first.excitation["psi_rad"]
+    travelled = np.abs(np.diff(clean().y[:, 0])).sum() / TURN_STEP_RAD / 20.0
+    assert psi.counts_per_s == pytest.approx(travelled)
+    assert (psi.least, psi.greatest) == (clean().y[:, 0].min(), clean().y[:, 0].max())
+    assert first.excitation["u_M_V"].counts_per_s is None
+
+
+@pytest.mark.parametrize(
+    ("spoil", "kind", "column"),
+    [
+        (_scaled("psi_rad", 180.0 / np.pi), "unit_slip", "psi_rad"),
+        (_scaled("phi_rad", 180.0 / np.pi), "unit_slip", "phi_rad"),
+        (_scaled("psi_rad", 1.0 / TURN_STEP_RAD), "unit_slip", "psi_rad"),
+        (_scaled("psi_ref_rad", 180.0 / np.pi), "unit_slip", "psi_ref_rad"),
+        (_scaled("psi_dot_rad_s", 180.0 / np.pi), "unit_slip", "psi_dot_rad_s"),
+        (_scaled("omega_M_rad_s", 30.0 / np.pi), "unit_slip", "omega_M_rad_s"),
+        (_scaled("omega_T_rad_s", 0.5 / np.pi), "unit_slip", "omega_T_rad_s"),
+        (_scaled("u_M_V", 10.0), "unit_slip", "u_M_V"),
+        (_scaled("u_M_V", 0.1), "unit_slip", "u_M_V"),
+        (_scaled("t_s", 1000.0), "time_unit", "t_s"),
+        (lambda log: _column(log, "psi_rad", log.extra["psi_ref_rad"]), "copied_column", "psi_rad"),
+        (lambda log: replace(log, u=0.0 * log.u, y=0.0 * log.y + 0.1, extra={}), "constant", None),
+        (lambda log: replace(log, y=0.0 * log.y + 0.1, extra={}), "stuck_sensors", None),
+        (lambda log: rows_of(log, np.arange(len(log.t_s)) < 10), "too_short", "t_s"),
+    ],
+)
+def test_what_makes_a_log_worthless_is_refused_by_name(spoil: Spoil, kind: str, column: str | None) -> None:
+    found = _examined(spoil(clean()))
+    assert [(finding.kind, finding.column) for finding in found.refusals] == [(kind, column)]
+    with pytest.raises(BadInput, match=kind.replace("_", " ")) as caught:
+        demand(found)
+    assert caught.value.expected
+    assert caught.value.remedy
+
+
+def test_degrees_within_the_stops_are_known_by_the_encoders_grid() -> None:
+    log = clean()
+    small = _column(log, "psi_rad", np.round(log.y[:, 0] / 60.0 / TURN_STEP_RAD) * TURN_STEP_RAD * 180.0 / np.pi)
+    assert np.abs(small.y[:, 0]).max() < 0.7
+    assert _kinds(_examined(small), "refuse") == {"unit_slip"}
+
+
+def test_a_log_of_another_plant_is_refused() -> None:
+    columns = LogColumns("quanser_aero", ("u_M_V", "u_T_V"), ("theta_rad", "psi_rad"), (), ())
+    found = _examined(replace(clean(), columns=columns, extra={}))
+    assert _kinds(found) == {"other_plant"}
+
+
+def test_missing_rows_are_counted_by_time_and_by_number() -> None:
+    log, kept = clean(), np.ones(2001, bool)
+    kept[[300, 301, 900]] = False
+    found = _examined(rows_of(replace(log, seq=np.arange(2001)), kept))
+    assert _kinds(found) == {"missing_rows", "sequence_gap"}
+    assert (found.logs[0].timing.missing_by_time, found.logs[0].timing.missing_by_seq) == (3, 3)
+    closed_up = replace(rows_of(replace(log, seq=np.arange(2001)), kept), t_s=log.t_s[:-3])
+    assert _kinds(_examined(closed_up)) == {"sequence_gap", "sequence_against_time"}
+
+
+def test_repeated_and_disordered_rows_are_left_out() -> None:
+    log = clean()
+    seq = np.arange(2001)
+    seq[500] = 499
+    seq[800] = 700
+    found = _examined(replace(log, seq=seq))
+    assert _kinds(found, "exclude") == {"repeated_rows", "disordered_rows"}
+    assert np.flatnonzero(found.logs[0].excluded).tolist() == [500, 800]
+
+
+def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
+    log = clean()
+    off = _examined(replace(log, t_s=log.t_s * 1.002))
+    assert _kinds(off) == {"sample_period"}
+    assert off.logs[0].timing.period_error_ppm == pytest.approx(2000.0, rel=1e-6)
+    late_s = np.random.default_rng(4).uniform(0.0, 1e-3, 2001)
+    jittered = _examined(replace(log, t_s=log.t_s + late_s))
+    assert _kinds(jittered) == {"jitter"}
+    assert jittered.logs[0].timing.jitter_rms_s == pytest.approx(1e-3 * np.sqrt(1.0 / 6.0), rel=0.05)
+
+
+def test_missing_numbers_glitches_and_rows_beyond_the_stops_are_found_where_they_are() -> None:
+    log = clean()
+    y = log.y.copy()
+    y[100:103, 0], y[700, 1], y[1200:1205, 0] = np.nan, y[700, 1] + 1.0, 1.2
+    found = _examined(replace(log, y=y))
+    assert _kinds(found) == {"not_a_number", "glitch", "beyond_stops"}
+    assert np.flatnonzero(found.logs[0].excluded).tolist() == [700, 1200, 1201, 1202, 1203, 1204]
+
+
+def test_saturation_and_inputs_beyond_the_limits_are_shares_of_the_rows() -> None:
+    log = clean()
+    u = log.u.copy()
+    u[:500, 1], u[500:600, 0] = 10.0, 11.0
+    found = _examined(replace(log, u=u))
+    assert _kinds(found) == {"saturated", "beyond_limits"}
+    assert found.logs[0].saturation["u_T_V"].upper == pytest.approx(500 / 2001)
+
+
+def test_numbers_off_the_encoders_grid_look_simulated_and_a_coarser_grid_is_named() -> None:
+    log = clean()
+    smooth = _column(log, "psi_rad", log.y[:, 0] + 1e-3 * np.random.default_rng(1).normal(size=2001))
+    assert _kinds(_examined(smooth)) == {"simulated_looking"}
+    coarse = _column(log, "psi_rad", np.round(log.y[:, 0] / 0.005) * 0.005)
+    assert _kinds(_examined(coarse)) == {"other_grid"}
+    assert _kinds(_examined(_column(log, "psi_rad", log.y[:, 0] + 0.03))) == set()
+
+
+def test_a_holdout_that_overlaps_the_training_runs_is_refused_whatever_its_times() -> None:
+    log = clean()
+    part = rows_of(log, np.arange(2001) > 1500)
+    found = _examined(log, holdout=[replace(part, t_s=part.t_s - part.t_s[0])])
+    assert _kinds(found, "refuse") == {"holdout_overlap"}
+    assert _kinds(_examined(log, holdout=[_other_flight()])) == set()
+
+
+def test_rows_given_twice_for_training_count_once() -> None:
+    found = _examined(clean(), clean())
+    assert _kinds(found) == {"duplicate_rows"}
+    assert not found.logs[0].excluded.any()
+    assert found.logs[1].excluded.mean() > 0.9
+
+
+@pytest.mark.parametrize(("factor", "severity"), [(1.1, None), (1.5, "note"), (2.5, "refuse")])
+def test_logs_that_hold_the_same_angle_with_another_input_are_not_of_one_plant(
+    factor: float, severity: str | None
+) -> None:
+    other = _other_flight()
+    scaled = replace(other, u=np.column_stack([other.u[:, 0] / factor, other.u[:, 1]]))
+    found = [finding for finding in _examined(clean(), scaled).findings if finding.kind == "two_plants"]
+    assert [finding.severity for finding in found] == ([] if severity is None else [severity])
+
+
+def test_a_million_rows_are_examined_and_their_defects_found() -> None:
+    log, times = clean(), 500
+    n = 2001 * times
+    noise = np.random.default_rng(6).integers(-1, 2, (n, 2)) * TURN_STEP_RAD
+    long = replace(
+        log,
+        t_s=np.arange(n) * 0.01,
+        u=np.tile(log.u, (times, 1)) + 1e-3 * noise,
+        y=np.tile(log.y, (times, 1)) + noise,
+        extra={name: np.tile(values, times) for name, values in log.extra.items()},
+    )
+    long.y[777_777, 0] += 1.0
+    found = _examined(long)
+    assert np.flatnonzero(found.logs[0].excluded).tolist() == [777_777]
+    assert not found.refusals
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2, 3])
+def test_logs_of_hardly_any_rows_are_refused_and_not_crashed_on(rows: int) -> None:
+    found = _examined(rows_of(clean(), np.arange(2001) < rows))
+    assert _kinds(found) == {"too_short"}
+
+
+def test_the_columns_of_the_plant_are_those_of_its_logs() -> None:
+    assert clean().columns == log_columns(plant().model)
