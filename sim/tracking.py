@@ -16,10 +16,11 @@ SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
 
 @dataclass(frozen=True)
 class Tracking:
-    """One output over a flight.
+    """One output over a flight, as its sensor shows it.
 
     `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `steady_error_rad` the
-    largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight.
+    largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight; `push_rad` the
+    largest |error| in the holds that another output's change began: what the axes do to each other.
     """
 
     output: str
@@ -27,6 +28,7 @@ class Tracking:
     overshoot: float
     steady_error_rad: float
     mean_error_rad: float
+    push_rad: float
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,9 @@ def tracking(log: RunLog, output: str) -> Tracking:
     reference, measured = references[output], log.column(output)
     holds = _holds(log.t_s, references, reference)
     errors = [float(np.nanmean((reference - measured)[_last(log.t_s, hold)])) for hold in holds]
+    pushes = [
+        float(np.nanmax(np.abs(reference - measured)[hold.begin : hold.end])) for hold in holds[1:] if not hold.change
+    ]
     overshoots = [_overshoot(reference, measured, hold) for hold in holds if hold.change]
     return Tracking(
         output=output,
@@ -51,6 +56,7 @@ def tracking(log: RunLog, output: str) -> Tracking:
         overshoot=max(overshoots, default=0.0),
         steady_error_rad=max((abs(error) for error in errors), default=0.0),
         mean_error_rad=float(np.nanmean(np.abs(reference - measured))),
+        push_rad=max(pushes, default=0.0),
     )
 
 

@@ -72,6 +72,8 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
         (
             "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
             "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
+            "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; the last "
+            "column is how far the other axis' steps push it out of rest.",
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(summary.tracking_rows(tracking), summary.TRACKING_HEADING),),
@@ -150,7 +152,7 @@ def _migration(report: DesignReport) -> Section:
             m.source,
             m.storage,
             f"{m.slowest.worst_rad_s:.3f} rad/s",
-            "holds" if m.slowest.stable else "FAILS",
+            "yes" if m.slowest.stable else "no",
         )
         for axis in (report.elevation, report.azimuth)
         for m in axis.migrations

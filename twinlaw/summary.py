@@ -119,11 +119,11 @@ def verification_rows(verification: Verification) -> list[Row]:
     return rows
 
 
-TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|")
+TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|", "pushed by the other axis")
 
 
 def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
-    """One row per output: the worst overshoot, the worst mean error at rest, the mean error of the whole flight."""
+    """One row per output: the worst overshoot, the worst mean error at rest, the mean error, how far the other axis pushes it."""
     return [
         (
             entry.output,
@@ -131,6 +131,7 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             f"{100 * entry.overshoot:.1f} %",
             f"{math.degrees(entry.steady_error_rad):.3f} deg",
             f"{math.degrees(entry.mean_error_rad):.2f} deg",
+            f"{math.degrees(entry.push_rad):.2f} deg",
         )
         for entry in tracking
     ]

@@ -76,6 +76,7 @@ def test_the_flight_tracks_within_two_percent_and_a_twentieth_of_a_degree(out: P
         assert found.holds >= 10
         assert found.overshoot <= 0.02
         assert np.degrees(found.steady_error_rad) <= 0.05
+        assert 0.0 < np.degrees(found.push_rad) <= 1.5
 
 
 def test_the_log_of_the_flight_replays_bit_by_bit(
