@@ -6,16 +6,18 @@ from typing import Any
 import jinja2
 import numpy as np
 
+from codegen.fixed_law import fixed_context
+from codegen.fixed_twin import FixedTwin
 from codegen.law_constants import without_vanishing_powers
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import self_test
-from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
 from records.errors import BadInput
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
-ARITHMETIC_CODES = {"float32": 0}
+ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
 
 _FACTORS = {
     "q": ("e->e_0_rad", "e->e_1_rad", "e->e_2_rad", "e->e_3_rad"),
@@ -72,11 +74,9 @@ def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[st
     if arithmetic not in ARITHMETIC_CODES:
         known = " or ".join(ARITHMETIC_CODES)
         raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
-    context = _context(table, arithmetic)
-    return {name: _environment().get_template(f"{name}.j2").render(context) for name in _FILES}
-
-
-_FILES = ("law.h", "law.c", "law_self_test.c")
+    context = _shared_context(table, arithmetic) | _CONTEXTS[arithmetic](table)
+    templates = _TEMPLATES[arithmetic]
+    return {name: _environment().get_template(template).render(context) for name, template in templates.items()}
 
 
 def _environment() -> jinja2.Environment:
@@ -92,10 +92,7 @@ def _environment() -> jinja2.Environment:
     return environment
 
 
-def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
-    count = operation_count(table)  # refuses an unusable table before anything is made from it
-    arrays = tuple(array for name in _AXES for array in _arrays(table, name))
-    axes = tuple(_axis(table, name) for name in _AXES)
+def _shared_context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
     return {
         "arithmetic": arithmetic,
         "arithmetic_code": ARITHMETIC_CODES[arithmetic],
@@ -105,6 +102,14 @@ def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
         "sample_period_us": round(table.sample_period_s * 1e6),
         "pwm_ticks": PWM_TICKS,
         "full_scale_V": FULL_SCALE_V,
+    }
+
+
+def _float32_context(table: ControllerTable) -> dict[str, Any]:
+    count = operation_count(table)  # refuses an unusable table before anything is made from it
+    arrays = tuple(array for name in _AXES for array in _arrays(table, name))
+    axes = tuple(_axis(table, name) for name in _AXES)
+    return {
         "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "plausible_V": PLAUSIBLE_V,
         "least_schedule_rad": LEAST_SCHEDULE_RAD,
@@ -119,10 +124,19 @@ def _context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
         "axes": axes,
         "filters": {axis.filter for axis in axes},
         "operations": f"{count.products} products, {count.sums} sums a step.",
-        "test": self_test(table),
+        "test": self_test(table, Float32Twin(table)),
     }
 
 
+def _fixed_context(table: ControllerTable) -> dict[str, Any]:
+    return {**fixed_context(table), "test": self_test(table, FixedTwin(table))}
+
+
+_CONTEXTS = {"float32": _float32_context, "fixed": _fixed_context}
+_TEMPLATES = {
+    "float32": {"law.h": "law.h.j2", "law.c": "law.c.j2", "law_self_test.c": "law_self_test.c.j2"},
+    "fixed": {"law.h": "law_fixed.h.j2", "law.c": "law_fixed.c.j2", "law_self_test.c": "law_self_test.c.j2"},
+}
 _AXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
 
 

@@ -3,11 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import nan
+from typing import Protocol, SupportsFloat
 
-import numpy as np
-
-from codegen.numbers import float32_bits
-from codegen.twin import Float32Twin
 from records.table import AxisLaw, ControllerTable
 
 STEPS = 320
@@ -39,11 +36,34 @@ class SelfTest:
     first: tuple[int, int]
     last: tuple[int, int]
     checksum: int
+    missing: int
 
 
-def self_test(table: ControllerTable) -> SelfTest:
-    """The self-test of `table`, its expected results computed by the float32 twin."""
-    twin = Float32Twin(table)
+class Twin(Protocol):
+    """What the self-test asks of a twin; angles and voltages in rad and V, exactly what their words stand for."""
+
+    def reset(self, psi_rad: float, phi_rad: float) -> None: ...
+
+    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]: ...
+
+    def angle_from_counts_psi(self, counts: int) -> SupportsFloat: ...
+
+    def angle_from_counts_phi(self, counts: int) -> SupportsFloat: ...
+
+    def duty_main(self, u_V: float) -> int: ...
+
+    def duty_tail(self, u_V: float) -> int: ...
+
+    def voltage_word(self, u_V: float) -> int:
+        """The 32 bits of a voltage."""
+
+    @property
+    def missing_word(self) -> int:
+        """The 32 bits of a number that is none."""
+
+
+def self_test(table: ControllerTable, twin: Twin) -> SelfTest:
+    """The self-test of `table`, its expected results computed by the twin of the arithmetic in question."""
     twin.reset(0.0, 0.0)
     spans = (_span(table.elevation), _span(table.azimuth))
     moves = (_move(table.elevation), _move(table.azimuth))
@@ -59,17 +79,18 @@ def self_test(table: ControllerTable) -> SelfTest:
         phi_span_counts=spans[1],
         psi_move_counts=moves[0],
         phi_move_counts=moves[1],
-        first=(float32_bits(outputs[0][0]), float32_bits(outputs[0][1])),
-        last=(float32_bits(outputs[-1][0]), float32_bits(outputs[-1][1])),
+        first=(twin.voltage_word(outputs[0][0]), twin.voltage_word(outputs[0][1])),
+        last=(twin.voltage_word(outputs[-1][0]), twin.voltage_word(outputs[-1][1])),
         checksum=_checksum(twin, outputs),
+        missing=twin.missing_word,
     )
 
 
-def _sequence(twin: Float32Twin, spans: tuple[int, int], moves: tuple[int, int]) -> Iterator[Given]:
+def _sequence(twin: Twin, spans: tuple[int, int], moves: tuple[int, int]) -> Iterator[Given]:
     """References and angles, number by number as in law_self_test.c."""
     seed = SEED
     psi_counts = phi_counts = 0
-    references = (np.float32(0.0), np.float32(0.0))
+    references: tuple[SupportsFloat, SupportsFloat] = (0.0, 0.0)
 
     def random_count(span: int) -> int:
         nonlocal seed
@@ -87,12 +108,12 @@ def _sequence(twin: Float32Twin, spans: tuple[int, int], moves: tuple[int, int])
         yield float(references[0]), float(references[1]), psi_rad, float(twin.angle_from_counts_phi(phi_counts))
 
 
-def _checksum(twin: Float32Twin, outputs: list[tuple[float, float]]) -> int:
+def _checksum(twin: Twin, outputs: list[tuple[float, float]]) -> int:
     """FNV-1a over whole words: both outputs' bits and both duties of every step."""
     checksum = 2166136261
     for u_M_V, u_T_V in outputs:
         duties = (twin.duty_main(u_M_V), twin.duty_tail(u_T_V))
-        for word in (float32_bits(u_M_V), float32_bits(u_T_V), *duties):
+        for word in (twin.voltage_word(u_M_V), twin.voltage_word(u_T_V), *duties):
             checksum = ((checksum ^ (word % 2**32)) * 16777619) % 2**32
     return checksum
 

@@ -19,6 +19,7 @@ from codegen.law_equations import (
     state_from_words,
     words_from_state,
 )
+from codegen.numbers import float32_bits
 from records.table import ControllerTable
 
 Bits = NDArray[np.uint32]
@@ -133,6 +134,15 @@ class Float32Twin:
     def duty_tail(self, u_V: float) -> int:
         """Signed PWM ticks of the tail rotor's voltage."""
         return _duty(np.float32(u_V), self.law.azimuth.u_safe_V)
+
+    def voltage_word(self, u_V: float) -> int:
+        """The bits of a voltage."""
+        return float32_bits(u_V)
+
+    @property
+    def missing_word(self) -> int:
+        """The bits of the quiet NaN."""
+        return 0x7FC00000
 
     def _at_rest(self, psi_rad: float, phi_rad: float) -> LawState[np.float32]:
         return law_reset(self.law, Float32Scalars(), np.float32(psi_rad), np.float32(phi_rad))

@@ -1,0 +1,105 @@
+"""Words of the fixed-point law as Python integers, and as lanes of int64: exact, so that both give what the C gives."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.fixed_formats import MISSING
+
+Lanes = NDArray[np.int64]
+
+_LOW_WORD = 2**32 - 1
+_LOW_HALF = 2**16 - 1
+
+
+class Scalars:
+    """The law's decisions on single integers."""
+
+    def word(self, name: str, value: int) -> int:
+        return value
+
+    def floored(self, value: int, places: int) -> int:
+        return value >> places
+
+    def clamp(self, value: int, low: int, high: int) -> int:
+        return low if value < low else high if high < value else value
+
+    def accepted(self, value: int, last: int) -> int:
+        return last if value == MISSING else value
+
+    def held(self, value: int, limit: int) -> int:
+        return self.clamp(value, -limit, limit)
+
+    def towards(self, value: int, target: int, gain: int) -> int:
+        product = gain * (2 * (target - value))
+        below = 1 if product > 0 and product & _LOW_WORD else 0
+        return value + (product >> 32) + below
+
+    def whole(self, total: int, places: int) -> tuple[int, int]:
+        high = self.clamp(total >> 32, -(1 << (places - 3)), (1 << (places - 3)) - 1)
+        return (high << (32 - places)) + ((total & _LOW_WORD) >> places), self.fraction(total, places)
+
+    def fraction(self, value: int, places: int) -> int:
+        return value & ((1 << places) - 1)
+
+    def wrapped(self, value: int, bits: int) -> int:
+        return ((value + (1 << bits)) & ((2 << bits) - 1)) - (1 << bits)
+
+    def scaled(self, value: int, x: int) -> int:
+        return int(_scaled(value, x))
+
+    def narrow_product(self, value: int, x: int) -> int:
+        return value * x
+
+    def scaled_short(self, value: int, x: int) -> int:
+        return (value * x) >> 16
+
+
+class LaneWords:
+    """The same decisions on arrays of int64, one lane each."""
+
+    def word(self, name: str, value: Lanes) -> Lanes:
+        return value
+
+    def floored(self, value: Lanes, places: int) -> Lanes:
+        return value >> places
+
+    def clamp(self, value: Any, low: Any, high: Any) -> Any:
+        return np.minimum(np.maximum(value, low), high)
+
+    def accepted(self, value: Any, last: Any) -> Any:
+        return np.where(value == MISSING, last, value)
+
+    def held(self, value: Any, limit: Any) -> Any:
+        return self.clamp(value, -limit, limit)
+
+    def towards(self, value: Any, target: Any, gain: Any) -> Any:
+        product = gain * (2 * (target - value))
+        below = (product > 0) & ((product & _LOW_WORD) != 0)
+        return value + (product >> 32) + below
+
+    def whole(self, total: Any, places: int) -> tuple[Any, Any]:
+        high = self.clamp(total >> 32, -(2 ** (places - 3)), 2 ** (places - 3) - 1)
+        return high * 2 ** (32 - places) + ((total & _LOW_WORD) >> places), self.fraction(total, places)
+
+    def fraction(self, value: Any, places: int) -> Any:
+        return value & (2**places - 1)
+
+    def wrapped(self, value: Any, bits: int) -> Any:
+        return ((value + 2**bits) & (2 ** (bits + 1) - 1)) - 2**bits
+
+    def scaled(self, value: Any, x: Any) -> Any:
+        return _scaled(value, x)
+
+    def narrow_product(self, value: Any, x: Any) -> Any:
+        return value * x
+
+    def scaled_short(self, value: Any, x: Any) -> Any:
+        return (value * x) >> 16
+
+
+def _scaled(value: Any, x: Any) -> Any:
+    """value x / 2^32 from three products of half words."""
+    value_high, x_high = value >> 16, x >> 16
+    return value_high * x_high + ((value_high * (x & _LOW_HALF)) >> 16) + (((value & _LOW_HALF) * x_high) >> 16)
