@@ -21,12 +21,14 @@ from diagnosis.firmware_replay_events import (
 )
 from diagnosis.firmware_replay_flight import Flight, readings
 from diagnosis.firmware_replay_law import FLOAT32, Setup
+from diagnosis.firmware_replay_midair import begins_in_flight
 from diagnosis.firmware_replay_prefilter import fitted_prefilters
 from diagnosis.firmware_replay_variants import Variant, variants
 from records.errors import BadInput
 from records.table import ControllerTable
 
 LOG_ROUNDING, MISSING_ROWS, FUSED = "log_rounding", "missing_rows", "fused_multiply_add"
+IN_FLIGHT = "begins_in_flight"
 INCIDENT_SENTENCES = {
     OUTPUT_HELD: "kept its output although its law ran on (a lost output frame)",
     SAMPLE_LOST: "was not run and kept its output (a lost sample)",
@@ -99,7 +101,7 @@ def explain(flight: Flight, table: ControllerTable, others: Sequence[ControllerT
         found += _exact(shop, base, _pairs(single))
         if found:
             return _told(shop.flight, found)
-    return _lost_in_gap(shops[0], base)
+    return _lost_in_gap(shops[0], base) or _from_midair(shops[0], table)
 
 
 def _exact(shop: Workshop, base: Setup, combined: Iterable[tuple[Variant, ...]]) -> list[Explanation]:
@@ -181,3 +183,16 @@ def _lost_in_gap(shop: Workshop, base: Setup) -> Told | None:
         "and the law's state behind them cannot be known"
     )
     return Told(MISSING_ROWS, sentence)
+
+
+def _from_midair(shop: Workshop, table: ControllerTable) -> Told | None:
+    """The law started before the log did; put into a state that the log tells, it follows to the end."""
+    found = begins_in_flight(shop, table)
+    if found is None:
+        return None
+    at_s, bound_V = found
+    sentence = (
+        f"the log does not begin with the law at rest; from {at_s:.6g} s on, put into the state that the log tells, "
+        f"the replay agrees within {bound_V:g} V, which is rounding and no proof of equal bits"
+    )
+    return Told(IN_FLIGHT, sentence)

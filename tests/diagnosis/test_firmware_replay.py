@@ -16,8 +16,9 @@ from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.files import write_atomic
 from records.table import ControllerTable, table_text
-from sim.loop import Controller
-from tests.diagnosis.firmware_flights import Lossy, Wrapped, edited_law, flown, rows_of, stale
+from sim.loop import Controller, fly
+from sim.manoeuvres import flight
+from tests.diagnosis.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
 from tests.law_tables import ce150_table, changed_axis, dense_table
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.host_law import HostLaw, host_law
@@ -243,3 +244,11 @@ def test_a_log_without_references_is_not_replayed() -> None:
     log = flown(host_law(TABLE))
     found = replay_firmware(replace(log, extra={}), TABLE)
     assert (found.replayed, found.bit_exact, found.cause) == (False, False, "not_replayable")
+
+
+def test_a_log_that_begins_in_flight_is_told_from_another_firmware() -> None:
+    manoeuvre = flight(plant())
+    for flew, cause in ((TABLE, "begins_in_flight"), (ce150_table(degree=2), "not_found")):
+        log = fly(plant(), host_law(flew), manoeuvre, table_digest=TABLE.digest)
+        found = replay_firmware(rows_of(log, log.t_s > 20.0), TABLE)
+        assert (found.bit_exact, found.cause) == (False, cause)
