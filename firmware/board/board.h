@@ -52,7 +52,8 @@ void usart_write(const uint8_t *line, size_t length); /* all of it or, counted, 
 void usart_faults(board_faults *faults);
 
 /* watchdog.c */
-void watchdog_start(void);
+void watchdog_start(void);       /* before all else: two seconds for the start */
+void watchdog_watch_steps(void); /* from here on a control step must finish within 125 ms */
 void watchdog_feed(void);
 
 /* identity.c */

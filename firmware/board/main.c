@@ -62,6 +62,7 @@ int main(void)
 {
     static path_state path;
     static encoder_counts encoders;
+    watchdog_start();
     clock_start();
     cycle_counter_start();
     pins_start();
@@ -71,7 +72,7 @@ int main(void)
     path_start(&path, &identity);
     usart_start();
     tick_start();
-    watchdog_start();
+    watchdog_watch_steps();
     for (;;) {
         board_sleep();
         serve_line(&path);

@@ -79,7 +79,7 @@ typedef struct {
 _Static_assert(offsetof(path_state, link) == 0 && offsetof(link_state, incoming) == 0, "the incoming bytes come first");
 _Static_assert(sizeof(link_incoming) % 4u == 0 && offsetof(path_state, seal) % 4u == 0, "the seal is over whole words");
 
-/* Disarmed, with the law's self-test run once: it lasts longer than the watchdog waits, so never later. */
+/* Disarmed, with the law's self-test run once: it may last longer than a control step has, so never later. */
 void path_start(path_state *self, const board_identity *identity);
 
 /* Take one byte off the line and obey the command that it may complete. */

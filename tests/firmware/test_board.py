@@ -233,6 +233,16 @@ def test_a_control_step_that_hangs_is_ended_by_the_watchdog_with_the_outputs_off
     assert desk.counters["resets"] == 2
 
 
+def test_a_start_that_hangs_is_tried_again_with_the_outputs_off():
+    hanging = stand_in_law()
+    hanging["law.c"] = hanging["law.c"].replace("law_state state;\n", "law_state state;\n    for (;;) {\n    }\n", 1)
+    board = EmulatedBoard(build_firmware(hanging).elf)
+    board.run_until_s(5.0)
+    assert [reset.cause for reset in board.resets] == ["power", "watchdog", "watchdog"]
+    assert board.resets[1].time_s == pytest.approx(2.0, rel=0.1)
+    assert board.pwm().enabled is False
+
+
 def test_a_healthy_board_is_never_reset_by_its_watchdog(desk):
     desk.run(5.0)
     assert [reset.cause for reset in desk.board.resets] == ["power"]
