@@ -102,7 +102,9 @@ def _constant(log: RunLog, name: str) -> Iterator[Found]:
         yield Found(Finding("constant", name, None, *span, sentence, REFUSE, 0, "a run that moves", "record one"))
         return
     elif set(log.columns.outputs) <= set(still) and not log.locked:
-        sentence = "inputs change and no measured output does: the sensors were not read"
+        sentence = (
+            "inputs change and no output ever does: sensors that were not read, or a plant that never left its rest"
+        )
         yield Found(
             Finding("stuck_sensors", name, None, *span, sentence, REFUSE, 0, "outputs that answer", "check the sensors")
         )
