@@ -1,8 +1,7 @@
 """The words of the fixed-point law, made from a controller table in its formats."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from codegen.fixed_formats import (
     AxisFormats,
@@ -16,8 +15,13 @@ from codegen.law_constants import law_constants
 from records.table import AxisLaw, ControllerTable
 
 N = TypeVar("N")
-# A number of the law from its real value, its places, and by how much terms left out of it may move it.
-MakeNumber = Callable[[float, int, float], N]
+N_co = TypeVar("N_co", covariant=True)
+
+
+class MakeNumber(Protocol[N_co]):
+    """Makes a number of the law: its real value, its places, last places to add to its word, what left-out terms add at most."""
+
+    def __call__(self, value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> N_co: ...
 
 
 @dataclass(frozen=True)
@@ -91,9 +95,9 @@ class FixedLaw(Generic[N]):
     zero: N
 
 
-def word_number(value: float, places: int, neglected: float = 0.0) -> int:
+def word_number(value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> int:
     """The nearest word."""
-    return round(value * 2.0**places)
+    return round(value * 2.0**places + made_up)
 
 
 def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N]:
@@ -111,18 +115,18 @@ def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N
     return FixedLaw(
         elevation=_axis(table, "elevation", formats, number),
         azimuth=_axis(table, "azimuth", formats, number),
-        angle_limit_rad=number(limit_rad, angle, 0.0),
-        psi_min_rad=number(table.psi_min_rad, angle, 0.0),
-        psi_max_rad=number(table.psi_max_rad, angle, 0.0),
+        angle_limit_rad=number(limit_rad, angle),
+        psi_min_rad=number(table.psi_min_rad, angle),
+        psi_max_rad=number(table.psi_max_rad, angle),
         schedule_doublings=WORD_BITS - formats.schedule_bits - angle,
         reference_doublings=WORD_BITS - formats.reference_bits - formats.elevation.reference_places,
-        v_min_V=number(-v_max_V, voltage, 0.0),
-        v_max_V=number(v_max_V, voltage, 0.0),
+        v_min_V=number(-v_max_V, voltage),
+        v_max_V=number(v_max_V, voltage),
         degree=formats.degree,
         error_bits=formats.error_bits,
         s_bits=formats.s_bits,
         w_bits=formats.w_bits,
-        zero=number(0.0, 0, 0.0),
+        zero=number(0.0, 0),
     )
 
 
@@ -149,18 +153,18 @@ def _axis(table: ControllerTable, name: str, formats: LawFormats, number: MakeNu
         name=name,
         terms=terms,
         feedforward_V=_polynomial(own.feedforward, number),
-        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(gain, WORD_BITS, 0.0),
+        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(gain, WORD_BITS),
         reference_doublings=own.reference_places - angle,
-        reference_min_rad=number(low_rad, angle, 0.0),
-        reference_max_rad=number(high_rad, angle, 0.0),
-        filtered_min_rad=number(low_rad, own.reference_places, 0.0),
-        filtered_max_rad=number(high_rad, own.reference_places, 0.0),
+        reference_min_rad=number(low_rad, angle),
+        reference_max_rad=number(high_rad, angle),
+        filtered_min_rad=number(low_rad, own.reference_places),
+        filtered_max_rad=number(high_rad, own.reference_places),
         residue_places=residue_places,
-        half_residue=number(0.5, residue_places, 0.0),
-        u_min_V=number(axis.u_min_V, voltage, 0.0),
-        u_max_V=number(axis.u_max_V, voltage, 0.0),
-        u_safe_V=number(axis.u_safe_V, voltage, 0.0),
-        zero=number(0.0, 0, 0.0),
+        half_residue=number(0.5, residue_places),
+        u_min_V=number(axis.u_min_V, voltage),
+        u_max_V=number(axis.u_max_V, voltage),
+        u_safe_V=number(axis.u_safe_V, voltage),
+        zero=number(0.0, 0),
     )
 
 
@@ -170,7 +174,6 @@ def _reference_range(axis: AxisLaw) -> tuple[float, float]:
 
 def _polynomial(p: PolynomialFormat, number: MakeNumber[N]) -> FixedPolynomial[N]:
     powers = tuple(
-        FixedPower(part.power, number(part.coefficient, part.places, 0.0), part.products, part.shift)
-        for part in p.powers
+        FixedPower(part.power, number(part.coefficient, part.places), part.products, part.shift) for part in p.powers
     )
-    return FixedPolynomial(number(p.constant, p.places, p.neglected), powers)
+    return FixedPolynomial(number(p.constant, p.places, p.made_up, p.neglected), powers)

@@ -28,12 +28,13 @@ class PowerFormat:
 
 @dataclass(frozen=True)
 class PolynomialFormat:
-    """c_0 + sum of c_i x^i with `places`; c_0 makes up for what the products lose on average.
+    """c_0 + sum of c_i x^i with `places`; `made_up` last places are added for what the products lose on average.
 
     Left-out terms are together at most `neglected` for all angles within reach.
     """
 
     constant: float
+    made_up: float
     places: int
     powers: tuple[PowerFormat, ...]
     neglected: float
@@ -48,7 +49,8 @@ def polynomial_format(polynomial: Polynomial, widest_rad: float, angle_bits: int
     powers = tuple(_power_format(i, polynomial[i], sizes[i], angle_bits, places, tolerance) for i in kept)
     lost = sum(FULL_LOSS if power.products == 3 else SHORT_LOSS for power in powers)
     return PolynomialFormat(
-        constant=(polynomial[0] if polynomial else 0.0) + lost * 2.0**-places,
+        constant=polynomial[0] if polynomial else 0.0,
+        made_up=lost,
         places=places,
         powers=powers,
         neglected=sum(size for power, size in enumerate(sizes) if power and power not in kept),

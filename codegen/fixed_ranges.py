@@ -112,7 +112,7 @@ class OverflowProof:
 
 def prove_no_overflow(table: ControllerTable) -> OverflowProof:
     """Run the law on any words; raises BadInput, naming the result, when one could leave its 32 or 64 bits."""
-    law: FixedLaw[Any] = fixed_constants(table, lambda *number: _exactly(word_number(*number)))
+    law: FixedLaw[Any] = fixed_constants(table, _exactly)
     words = Intervals()
     any_words = [Interval(*ANY_WORD) for _ in range(2 * len(AXIS_STATE_FIELDS) + 4)]
     state, output = law_step(law, words, state_from_words(any_words), LawInput(*_any(4)))
@@ -145,7 +145,8 @@ def _any(count: int) -> list[Interval]:
     return [Interval(*ANY_WORD) for _ in range(count)]
 
 
-def _exactly(word: int) -> Interval:
+def _exactly(value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> Interval:
+    word = word_number(value, places, made_up, neglected)
     return Interval(word, word)
 
 

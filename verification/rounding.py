@@ -46,9 +46,13 @@ def rounding_bound(table: ControllerTable, motion: Motion | None = None, slices:
     edges_rad = np.linspace(*ranges.given.psi_rad, slices + 1)
     bounds = [_slice_bound(table, ranges, (float(low), float(high))) for low, high in pairwise(edges_rad)]
     u_M_V, u_T_V = (max(column) for column in zip(*bounds, strict=True))
-    stated = f"angles within {motion.psi_limit_rad:g} and {motion.phi_limit_rad:g} rad moving at most "
-    stated += f"{motion.psi_rate_rad_s:g} and {motion.phi_rate_rad_s:g} rad/s"
-    return RoundingBound(u_M_V, u_T_V, METHOD.format(slices=slices, motion=stated))
+    return RoundingBound(u_M_V, u_T_V, METHOD.format(slices=slices, motion=stated_motion(motion)))
+
+
+def stated_motion(motion: Motion) -> str:
+    """The assumptions of a bound, in words."""
+    angles = f"angles within {motion.psi_limit_rad:g} and {motion.phi_limit_rad:g} rad"
+    return f"{angles} moving at most {motion.psi_rate_rad_s:g} and {motion.phi_rate_rad_s:g} rad/s"
 
 
 def restricted_voltages(
