@@ -32,7 +32,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         options = _parser(words[:1]).parse_args(words)
-        return int(options.run(options))
+        status = int(options.run(options))
+        sys.stdout.flush()  # here, where a full disk can still be told
+        return status
     except BadInput as error:
         console.fail(str(error))
         return 2
@@ -41,11 +43,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     except BrokenPipeError:
         # The reader of a pipe has left (`twinlaw bench | head`): not an error of ours.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence_stdout()
         return 0
+    except OSError as error:
+        _silence_stdout()
+        place = error.filename or "standard output"
+        console.fail(
+            f"{place}: got {error.strerror or error}, expected room and leave to write; free the disk, or go elsewhere"
+        )
+        return 2
     except KeyboardInterrupt:
         console.fail("interrupted; files already written are whole, the others were not begun")
         return 128 + signal.SIGINT
+
+
+def _silence_stdout() -> None:
+    """What is still to be written there goes nowhere, and the interpreter leaves without complaint."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser(asked: Sequence[str]) -> Parser:

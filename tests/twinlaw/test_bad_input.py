@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -229,3 +231,13 @@ def test_an_image_that_is_not_there_is_named(
         ["validate", "--table", str(table_path), "--out", str(tmp_path)], ["firmware.elf", "twinlaw build"], capsys
     )
     _refused(["flash", "--out", str(tmp_path)], ["firmware.elf", "twinlaw build"], capsys)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_a_full_disk_behind_standard_output_is_one_clear_line() -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "twinlaw.command", "import", "quanser_aero"]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "standard output" in done.stderr
