@@ -8,6 +8,7 @@ from typing import Any
 import tomlkit
 
 from records import checks
+from records.correlation import Correlation, parse_correlation
 from records.errors import BadInput
 from records.reading import read_toml
 from records.units import dimensions, unit_suffix
@@ -46,6 +47,7 @@ class Plant:
     `sensors` maps an output name ("psi_rad") to the step of its encoder and `sensor_noise` to the standard deviation of the white
     noise before it, where there is any; `design` holds the file's wishes for the controller
     (section [design], read by the design stage) and `effects` the added effects (sections [effects.PLACE.NAME]) as plain tables.
+    `correlation` tells how the parameters' sd hang together; without it they are independent.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Plant:
     design: Mapping[str, Any] = field(default_factory=dict)
     effects: Mapping[str, Any] = field(default_factory=dict)
     sensor_noise: Mapping[str, float] = field(default_factory=dict)
+    correlation: Correlation | None = None
 
 
 def load_plant(path: Path) -> Plant:
@@ -72,14 +75,28 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
     parameters = checks.table(content["parameters"], f"{where}: parameters")
     sensors = checks.table(content["sensors"], f"{where}: sensors")
     steps = {key: _sensor(key, value, f"{where}: sensors.{key}") for key, value in sensors.items()}
+    numbers = {key: parameter_entry(value, f"{where}: parameters.{key}") for key, value in parameters.items()}
+    correlation = content.get("correlation")
     return Plant(
         name=name,
         model=checks.text(content["model"], f"{where}: model"),
-        parameters={key: parameter_entry(value, f"{where}: parameters.{key}") for key, value in parameters.items()},
+        parameters=numbers,
         sensors={key: resolution for key, (resolution, _) in steps.items()},
         design=checks.table(content.get("design", {}), f"{where}: design"),
         effects=checks.table(content.get("effects", {}), f"{where}: effects"),
         sensor_noise={key: noise for key, (_, noise) in steps.items() if noise > 0.0},
+        correlation=None
+        if correlation is None
+        else parse_correlation(correlation, f"{where}: correlation", coefficient_names(numbers)),
+    )
+
+
+def coefficient_names(parameters: Mapping[str, Parameter]) -> tuple[str, ...]:
+    """One name for each number: NAME, or NAME_0, NAME_1, ... for a list."""
+    return tuple(
+        f"{name}_{index}" if isinstance(entry.value, tuple) else name
+        for name, entry in parameters.items()
+        for index in range(len(entry.values))
     )
 
 
@@ -96,6 +113,11 @@ def plant_text(plant: Plant) -> str:
     for section in ("design", "effects"):
         if getattr(plant, section):
             document[section] = dict(getattr(plant, section))
+    if plant.correlation is not None:
+        rows = tomlkit.array()
+        for row in plant.correlation.rows:
+            rows.add_line(list(row))
+        document["correlation"] = {"names": list(plant.correlation.names), "rows": rows.multiline(True)}
     return tomlkit.dumps(document)
 
 

@@ -19,6 +19,7 @@ PACKAGES = (
     "codegen",
     "verification",
     "rig",
+    "identification",
     "diagnosis",
     "blind",
     "twinlaw",

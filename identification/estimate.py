@@ -1,0 +1,180 @@
+"""One stage of identification: fit, weigh the readings by what they turn out to be worth, state how far the result may be off."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from identification.belief import Belief, prior, widened
+from identification.residuals import ResidualTest, residual_tests
+from identification.run import Run, known_names, with_sd
+from identification.solve import Point, Problem, Watch, solve
+from identification.uncertainty import Direction, inflations, pieces, unseen
+
+Array = NDArray[np.float64]
+CONTRADICTION_SD, CONTRADICTION_MOVE = 5.0, 3.0
+
+
+@dataclass(frozen=True)
+class Range:
+    """Where a parameter may lie, and its typical size."""
+
+    start: float
+    lower: float
+    upper: float
+    scale: float
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A parameter that this stage's data pull away from what earlier data said: by how many standard deviations, from where to where."""
+
+    name: str
+    sds: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests."""
+
+    belief: Belief
+    own: tuple[str, ...]
+    dof: float
+    cost: float
+    steps: int
+    unseen: tuple[Direction, ...]
+    contradictions: tuple[Contradiction, ...]
+    residuals: tuple[ResidualTest, ...]
+    runs: tuple[Run, ...]
+
+
+def interval_factor(dof: float) -> float:
+    """Half the width of a 95 % interval in standard deviations, by Student's distribution."""
+    return float(student.ppf(0.975, max(dof, 1.0)))
+
+
+def estimate(
+    runs: Sequence[Run],
+    own: Sequence[str],
+    ranges: Mapping[str, Range],
+    before: Belief,
+    watch: Watch | None = None,
+) -> Estimate:
+    """Fit the parameters `own` to the runs, with those of `before` re-estimated from what is known of them.
+
+    Earlier stages enter as a normal distribution, so the joint covariance carries their uncertainty on; after the last stage it is that
+    of one fit to all runs, to first order. Channels are weighted by their own residuals, Q_V = diag(1 / rms^2), and a run whose
+    residuals are correlated counts for fewer samples.
+    """
+    problem = problem_of(tuple(runs), tuple(own), ranges, before)
+    point = solve(problem, watch)
+    for weigh in (_by_channel, _by_correlation):
+        problem = _weighed(problem, point, weigh)
+        point = solve(problem, watch)
+    H = point.H
+    covariance = _inverse(H + problem.prior.information)
+    after = Belief(problem.names, point.theta, covariance)
+    places = [problem.names.index(name) for name in own]
+    known = H + problem.prior.information - np.diag(_weak(problem, before))
+    return Estimate(
+        belief=after,
+        own=tuple(own),
+        dof=max(1.0, float(pieces(point) - len(own))),
+        cost=point.cost,
+        steps=point.steps,
+        unseen=unseen(tuple(own), _marginal(known, places, problem.scale), problem.scale[places]),
+        contradictions=_contradictions(before, after),
+        residuals=tuple(
+            test for run, blocks in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, blocks)
+        ),
+        runs=point.runs,
+    )
+
+
+def problem_of(runs: tuple[Run, ...], own: tuple[str, ...], ranges: Mapping[str, Range], before: Belief) -> Problem:
+    """The problem of fitting `own` with what is known before; those of `before` start at their means."""
+    names, theta = widened(before, own, {name: entry.start for name, entry in ranges.items()})
+    scale = np.array([ranges[name].scale for name in names])
+    return Problem(
+        names=names,
+        start=theta,
+        scale=scale,
+        lower=np.array([ranges[name].lower for name in names]),
+        upper=np.array([ranges[name].upper for name in names]),
+        runs=runs,
+        prior=prior(before, theta, scale),
+    )
+
+
+def _weak(problem: Problem, before: Belief) -> Array:
+    """The diagonal of the prior that stands for no knowledge."""
+    weak = 1.0 / problem.scale**2
+    weak[: len(before.names)] = 0.0
+    return np.asarray(weak)
+
+
+def _weighed(problem: Problem, point: Point, weigh: Callable[[Problem, Point], tuple[Run, ...]]) -> Problem:
+    """The problem from its optimum with other weights."""
+    return replace(problem, start=point.theta, runs=weigh(problem, point))
+
+
+def _by_channel(_: Problem, point: Point) -> tuple[Run, ...]:
+    """Each channel's sd set to the rms of its residuals; that of rounded readings only upwards, as their least is known."""
+    runs = []
+    for run, blocks in zip(point.runs, point.blocks, strict=True):
+        sd, residual = run.sd.copy(), np.concatenate([block.residual for block in blocks])
+        for number in range(len(run.channels)):
+            mine = run.channel == number
+            if mine.sum() > 1:
+                rounded = run.step.size > 0 and run.step[number] > 0.0
+                sd[mine] *= max(float(np.sqrt(np.mean(residual[mine] ** 2))), 1.0 if rounded else 1e-3)
+        runs.append(with_sd(run, sd))
+    return tuple(runs)
+
+
+def _by_correlation(problem: Problem, point: Point) -> tuple[Run, ...]:
+    """All sd of a channel widened by as much as its residuals' correlation asks."""
+    weak = np.diag(1.0 / problem.scale**2)
+    return tuple(
+        with_sd(run, run.sd * np.sqrt(found)[run.channel])
+        for run, found in zip(point.runs, inflations(point, weak), strict=True)
+    )
+
+
+def _inverse(information: Array) -> Array:
+    """Inverse of a badly scaled positive definite matrix."""
+    size = np.sqrt(np.diag(information))
+    inverse = np.linalg.inv(information / np.outer(size, size))
+    return np.asarray((inverse + inverse.T) / 2.0 / np.outer(size, size))
+
+
+def _marginal(information: Array, places: Sequence[int], scale: Array) -> Array:
+    """Information on some parameters once the others are left to the data too: A - B D^-1 B^T."""
+    others = [place for place in range(information.shape[0]) if place not in places]
+    A = information[np.ix_(places, places)]
+    if not others:
+        return A
+    B, D = information[np.ix_(places, others)], information[np.ix_(others, others)]
+    floor = np.diag(1e-9 / scale[others] ** 2)
+    return np.asarray(A - B @ np.linalg.solve(D + floor, B.T))
+
+
+def _contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
+    """Parameters that moved by more than new data can explain: the variance of an update is that before less that after."""
+    found = []
+    for place, name in enumerate(before.names):
+        spread = before.covariance[place, place] - after.covariance[place, place]
+        moved = float(after.mean[place] - before.mean[place])
+        sds = abs(moved) / float(np.sqrt(max(spread, 1e-4 * before.covariance[place, place])))
+        if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
+            found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
+    return tuple(found)
+
+
+def involved(run: Run, names: Sequence[str]) -> tuple[str, ...]:
+    """Of the parameters `names` those that a run's model has."""
+    return tuple(names[place] for place, _ in known_names(run, names))

@@ -1,0 +1,68 @@
+"""The one list of the experiments, in the order of the paper and of the stages of the estimation."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.random import Generator
+
+from identification.experiments import azimuth, elevation, gravity, rotors, swings
+from identification.run import Run
+from records.experiment import Experiment
+from sim.bind import BoundPlant
+
+
+@dataclass(frozen=True)
+class Kind:
+    """An experiment: how the rig must stand for it, which parameters it is for, how it is performed, how its record becomes a run.
+
+    `aids` are parameters that the plant does not have, each with the facts of the record that give its value and sd (none: unknown).
+    """
+
+    number: int
+    title: str
+    mount: str
+    locked: tuple[str, ...]
+    own: tuple[str, ...]
+    perform: Callable[[BoundPlant, Generator], Experiment]
+    run: Callable[[Experiment, BoundPlant], Run]
+    aids: Mapping[str, tuple[str, str] | None]
+
+
+def _coefficients(name: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{name}_{index}" for index in range(count))
+
+
+_MAIN = (*_coefficients("p_bM", 3), "K_M", *_coefficients("p_FM", 5))
+_TAIL = (*_coefficients("p_bT", 3), "K_T", *_coefficients("p_FT", 5))
+_BOTH = ("elevation", "azimuth")
+_LEVER = {"Psi_m": None, "lever": ("lever_m", "lever_sd_m"), "lever_angle": ("lever_rad", "lever_sd_rad")}
+_ARM = ("J_E", "b_vE", "b_cE")
+_TURN = ("J_A", "b_vA", "b_cA")
+_perform_tail, _perform_main = partial(rotors.perform, tail=True), partial(rotors.perform, tail=False)
+_swing_arm, _swing_turn = partial(swings.perform, azimuth=False), partial(swings.perform, azimuth=True)
+_steps, _by_hand = partial(elevation.perform, by_hand=False), partial(elevation.perform, by_hand=True)
+
+# fmt: off
+KINDS: Mapping[str, Kind] = {
+    "main_rotor": Kind(1, "main rotor on load cell and photogate", "upright", _BOTH, _MAIN, _perform_main, rotors.run, {}),
+    "tail_rotor": Kind(2, "tail rotor on load cell and photogate", "upright", _BOTH, _TAIL, _perform_tail, rotors.run, {}),
+    "gravity": Kind(3, "arm balanced by weights", "upright", ("azimuth",), ("tau_gE",), gravity.perform, gravity.run, _LEVER),
+    "elevation_swing": Kind(4, "arm turned by 90 degrees swings", "turned", ("azimuth",), _ARM, _swing_arm, swings.run, {}),
+    "elevation_steps": Kind(5, "main rotor steps below the horizon", "upright", ("azimuth",), _ARM, _steps, elevation.run, {}),
+    "azimuth_swing": Kind(6, "azimuth turned by 90 degrees swings", "turned", ("elevation",), _TURN, _swing_turn, swings.run, {}),
+    "azimuth_oscillation": Kind(7, "azimuth kept swinging by a rule", "upright", ("elevation",), _TURN, azimuth.oscillate,
+                                azimuth.oscillation_run, {}),
+    "reaction_balance": Kind(8, "tail rotor balances the main rotor", "upright", ("elevation",), ("K_A",), azimuth.balance,
+                             azimuth.balance_run, {}),
+    "turned_by_hand": Kind(9, "azimuth turned by hand", "upright", (), ("K_E",), _by_hand, elevation.run, {}),
+}
+# fmt: on
+ALL_PARAMETERS = tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.own))
+
+
+def perform(kind: str, truth: BoundPlant, seed: int) -> Experiment:
+    """The experiment on a rig with the true parameters `truth`; its chance depends on the seed and the experiment's number alone."""
+    entry = KINDS[kind]
+    return entry.perform(truth, np.random.default_rng([seed, entry.number]))

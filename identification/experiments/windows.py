@@ -1,0 +1,68 @@
+"""Encoder readings of one axis, cut into windows with free starts."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.driven import driven_model
+from identification.log_run import lines, position_sd, rounding_sd
+from identification.run import Carried, Run
+from identification.subsystem import subsystem
+from sim.bind import BoundPlant
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+SHIFT_S, SPEED_ROWS = 2.0, 6
+
+
+def windowed(
+    name: str, part: BoundPlant, t_s: Array, u: Array, angle: Array, output: str, begins: Index, stops: Index
+) -> Run:
+    """A run of a subsystem with one axis: its rotor runs on from rest at the first row, angle and speed start anew in each window."""
+    model, driven = part.model, driven_model(part.model)
+    axis = model.axes[0]
+    assert axis.position is not None
+    step = part.plant.sensors[output]
+    select = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
+    level, slope, _ = lines(t_s, angle, begins, step)
+    x0 = np.zeros((begins.size, len(model.states)))
+    x0[:, model.states.index(axis.position)] = level
+    x0[:, model.states.index(axis.velocity)] = slope
+    loose = max(3.0 * float(np.std(slope)), 1.0)
+    return Run(
+        name=name,
+        bound=part,
+        t_s=t_s,
+        u=u,
+        y=angle[select],
+        sd=rounding_sd(angle, step)[select],
+        at_s=t_s[select],
+        channel=np.zeros(select.size, dtype=np.int64),
+        channels=(output,),
+        select=select,
+        begins=begins,
+        stops=stops,
+        x0=x0,
+        free=(str(axis.position), str(axis.velocity)),
+        start_sd=np.tile([position_sd(angle, step), loose], (begins.size, 1)),
+        carried=None if driven is None else Carried(subsystem(part, driven), np.zeros(len(driven.states))),
+        step=np.array([step]),
+    )
+
+
+def even_windows(t_s: Array, angle: Array, from_s: float, length_s: float) -> tuple[Index, Index]:
+    """Windows of about equal length from `from_s` on to the end, each moved to begin where the axis is fast.
+
+    A start that is almost at rest may slip to either side, and the fit would have to find out which.
+    """
+    first = int(np.searchsorted(t_s, from_s))
+    edges = np.searchsorted(t_s, np.arange(t_s[first], t_s[-1] - 0.5 * length_s, length_s))
+    begins = np.array([fastest_row(t_s, angle, int(row), SHIFT_S) for row in edges], dtype=np.int64)
+    return begins, np.append(begins[1:], t_s.size).astype(np.int64)
+
+
+def fastest_row(t_s: Array, angle: Array, row: int, within_s: float) -> int:
+    """The row within `within_s` behind `row` at which the angle changes most over `SPEED_ROWS` rows."""
+    last = min(int(np.searchsorted(t_s, t_s[row] + within_s)), t_s.size - SPEED_ROWS - 1)
+    rows = np.arange(row, max(row + 1, last))
+    change = np.abs(angle[np.minimum(rows + SPEED_ROWS, t_s.size - 1)] - angle[rows])
+    return int(rows[np.argmax(np.nan_to_num(change))] + SPEED_ROWS // 2)

@@ -1,0 +1,132 @@
+"""A run log as a run for the estimator: cut into windows whose starts are free, which holds an unstable plant to its data."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.driven import driven_model
+from identification.run import Carried, Run
+from identification.subsystem import subsystem
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.model import Model
+
+Array = NDArray[np.float64]
+SLOPE_ROWS = 4  # on either side, for a velocity guess
+AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
+POSITION_STEPS, POSITION_SHARE = (
+    20.0,
+    0.05,
+)  # so many resolution steps, or so much of its range, a window's start may be off
+
+
+def log_run(bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1) -> Run:
+    """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept.
+
+    A reading's error is that of `rounding_sd`. Rows where nothing was measured give
+    no reading. Raises BadInput for a log with less than two rows.
+    """
+    if log.t_s.size < 2:
+        raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
+    model = bound.model
+    begins, stops = _windows(log.t_s, window_s, every)
+    part = driven_model(model)
+    used = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
+    rows = np.isfinite(log.y) & np.isin(np.arange(log.t_s.size), used)[:, None]
+    select = np.flatnonzero(rows.ravel())
+    channel = select % log.y.shape[1]
+    step = np.array([bound.plant.sensors[output] for output in model.outputs])
+    noise = np.array([bound.plant.sensor_noise.get(output, 0.0) for output in model.outputs])
+    x0, free, start_sd = _starts(model, log, begins, step, part)
+    return Run(
+        name=name,
+        bound=bound,
+        t_s=log.t_s,
+        u=log.u,
+        y=log.y.ravel()[select],
+        sd=_sds(log.y.ravel()[select], channel, step, noise),
+        at_s=log.t_s[select // log.y.shape[1]],
+        channel=channel,
+        channels=tuple(model.outputs),
+        select=select,
+        begins=begins,
+        stops=stops,
+        x0=x0,
+        free=free,
+        start_sd=start_sd,
+        carried=None if part is None else Carried(subsystem(bound, part), np.zeros(len(part.states))),
+        step=step,
+    )
+
+
+def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:
+    sd = np.empty(y.size)
+    for number in range(step.size):
+        mine = channel == number
+        sd[mine] = rounding_sd(y[mine], float(step[number]), float(noise[number]))
+    return sd
+
+
+def rounding_sd(readings: Array, step: float, noise: float = 0.0) -> Array:
+    """Standard deviation of each of the readings (n,) of one sensor: step / sqrt(12) and its noise.
+
+    A reading that repeats m times in a row has one rounding error, not m independent ones; each counts for an m-th of a reading.
+    """
+    changed = np.flatnonzero(np.diff(readings, prepend=np.nan) != 0.0)
+    lengths = np.diff(np.append(changed, readings.size))
+    repeats = np.repeat(lengths, lengths) if readings.size else np.zeros(0)
+    return np.sqrt(step**2 / 12.0 * repeats + noise**2)
+
+
+def _windows(t_s: Array, window_s: float, every: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First rows of windows of about `window_s`, and the rows behind their last."""
+    count = max(1, round((t_s[-1] - t_s[0]) / window_s)) if np.isfinite(window_s) else 1
+    edges = t_s[0] + (t_s[-1] - t_s[0]) * np.arange(count) / count
+    begins = np.unique(np.searchsorted(t_s, edges - 1e-9)).astype(np.int64)
+    stops = np.append(begins[1:], t_s.size).astype(np.int64)
+    return begins[::every], stops[::every]
+
+
+def _starts(
+    model: Model, log: RunLog, begins: NDArray[np.int64], step: Array, part: Model | None
+) -> tuple[Array, tuple[str, ...], Array]:
+    """Guess of each window's state, the states that are free in it, and how far the guess may be off, (windows, free)."""
+    names = [str(state) for state in model.states]
+    carried = {str(state) for state in part.states} if part else set()
+    outputs = {expression: place for place, expression in enumerate(model.outputs.values())}
+    rates = {axis.position: axis.velocity for axis in model.axes if axis.position is not None}
+    x0, sd = np.zeros((begins.size, len(names))), np.zeros((begins.size, len(names)))
+    for state, output in outputs.items():
+        if state not in model.states:
+            continue
+        level, slope, still = lines(log.t_s, log.y[:, output], begins, step[output])
+        x0[:, names.index(str(state))] = level
+        sd[:, names.index(str(state))] = position_sd(log.y[:, output], float(step[output]))
+        velocity = rates.get(state)
+        if velocity is not None and velocity not in outputs:
+            place = names.index(str(velocity))
+            x0[:, place] = np.where(still, 0.0, slope)
+            loose = 3.0 * max(float(np.std(slope)), float(step[output] / np.median(np.diff(log.t_s))))
+            sd[:, place] = np.where(still, AT_REST, loose)
+    free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in carried)
+    return x0, free, sd[:, [names.index(name) for name in free]]
+
+
+def position_sd(y: Array, step: float) -> float:
+    """How far the guess of a position may be off: a loose hold, as the readings say it themselves."""
+    good = y[np.isfinite(y)]
+    return max(POSITION_STEPS * step, POSITION_SHARE * float(np.ptp(good)) if good.size else 0.0)
+
+
+def lines(t_s: Array, y: Array, begins: NDArray[np.int64], step: float) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Value and slope at the rows `begins` of a line through the rows around each, and whether these show no motion at all."""
+    level, slope = np.zeros(begins.size), np.zeros(begins.size)
+    still = np.zeros(begins.size, dtype=bool)
+    for number, row in enumerate(begins):
+        near = slice(max(0, row - SLOPE_ROWS), row + SLOPE_ROWS + 1)
+        good = np.isfinite(y[near])
+        if good.sum() < 2:
+            continue
+        slope[number], level[number] = np.polyfit(t_s[near][good] - t_s[row], y[near][good], 1)
+        still[number] = np.ptp(y[near][good]) < 0.5 * step
+    return level, slope, still

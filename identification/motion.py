@@ -1,0 +1,92 @@
+"""The windows of a run through the compiled variational equations: one request made ready, then one call for each window."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+
+from sim.kernel import kernel
+from sim.model import Model
+from sim.sensitivities import column_names
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """y (n, outputs), dy (n, outputs, columns) and x (n, states) at all rows of a run, window after window."""
+
+    columns: tuple[str, ...]
+    y: Array
+    dy: Array
+    x: Array
+
+
+@lru_cache(maxsize=64)
+def _column_places(model: Model) -> Mapping[str, int]:
+    return {name: place for place, name in enumerate(column_names(model))}
+
+
+def move(
+    model: Model, t_s: Array, u: Array, p: Array, windows: Sequence[slice], x0: Array, columns: tuple[str, ...]
+) -> Motion:
+    """What sim.sensitivities gives, for windows of rows, each from its own x0 (windows, states).
+
+    t_s (n,), u (n, inputs), p (parameters,). Rows in no window are left unset; raises KeyError for a column that the model does not
+    know.
+    """
+    if not model.states:  # a balance: all that counts is in its observation
+        return Motion(columns, np.zeros((t_s.size, 0)), np.zeros((t_s.size, 0, len(columns))), np.zeros((t_s.size, 0)))
+    compiled, places = kernel(model), _column_places(model)
+    lower, upper = _slopes(model, p)
+    y = np.empty((t_s.size, len(model.outputs)))
+    dy, x = np.empty((*y.shape, len(columns))), np.empty((t_s.size, len(model.states)))
+    kept: dict[str, NDArray[Any]] = {
+        "p": p,
+        "lower_slope": lower,
+        "upper_slope": upper,
+        "column": np.array([places[name] for name in columns], dtype=np.int32),
+    }
+    request = compiled.ffi.new("sensitivity_request *")
+    for name, array in kept.items():
+        setattr(request, name, compiled.pointer(array))
+    request.substeps, request.columns = 1, len(columns)
+    moving = {"t_s": t_s, "input": np.ascontiguousarray(u), "y": y, "dy": dy, "x": x}
+    starts = np.ascontiguousarray(x0)
+    bases = {
+        name: compiled.ffi.cast("double *", array.ctypes.data) for name, array in (*moving.items(), ("x0", starts))
+    }
+    strides = {name: array[0].size for name, array in moving.items()}
+    for number, rows in enumerate(windows):
+        for name, stride in strides.items():
+            setattr(request, name, bases[name] + rows.start * stride)
+        request.x0 = bases["x0"] + number * starts.shape[1]
+        request.samples = rows.stop - rows.start
+        compiled.lib.sensitivity_run(request)
+    return Motion(columns, y, dy, x)
+
+
+def _slopes(model: Model, p: Array) -> tuple[Array, Array]:
+    """d(lower stop)/dp and d(upper stop)/dp of each axis, (axes, parameters)."""
+    entries = _stop_slopes(model)
+    result = np.zeros((2, max(1, len(model.axes)), p.size))
+    for side, axis, column, slope in entries:
+        known = slope if slope.is_Number else slope.subs(dict(zip(model.parameter_symbols, p, strict=True)))
+        result[side, axis, column] = float(known)
+    return result[0], result[1]
+
+
+@lru_cache(maxsize=64)
+def _stop_slopes(model: Model) -> tuple[tuple[int, int, int, sympy.Expr], ...]:
+    found = []
+    for number, axis in enumerate(model.axes):
+        for side, stop in enumerate((axis.lower, axis.upper)):
+            for column, symbol in enumerate(model.parameter_symbols):
+                slope = sympy.diff(stop, symbol) if stop is not None else sympy.Integer(0)
+                if slope != 0:
+                    found.append((side, number, column, slope))
+    return tuple(found)

@@ -1,0 +1,167 @@
+"""What an identification hands on: a plant file with earned sd and correlations, and all that is to be told about how it came about."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from identification.belief import Belief
+from identification.estimate import Estimate, interval_factor
+from identification.uncertainty import BLIND, Direction
+from records.correlation import Correlation
+from records.plant import Parameter, Plant, coefficient_names
+
+SCHEMA = "identification/1"
+CORRELATION_DIGITS = 9
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """One coefficient: where it started, its estimate with sd and 95 % interval, and whether the data told it at all."""
+
+    name: str
+    unit: str
+    start: float
+    value: float
+    sd: float
+    lower: float
+    upper: float
+    identified: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides."""
+
+    plant: Plant
+    estimates: tuple[Estimated, ...]
+    belief: Belief
+    stages: tuple[tuple[str, Estimate], ...]
+    aids: tuple[Estimated, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """One sentence for each thing that the data cannot tell or tell twice in different ways."""
+        return (*self._unidentified(), *(note for title, stage in self.stages for note in stage_notes(title, stage)))
+
+    def _unidentified(self) -> tuple[str, ...]:
+        return tuple(
+            f"{entry.name}: these data are too poor for it (sd {entry.sd:.2g} {entry.unit} about {entry.value:.3g}); "
+            "the plant file's value is kept"
+            for entry in self.estimates
+            if not entry.identified
+        )
+
+
+def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
+    """What one stage cannot tell, by direction; what contradicts earlier data, by parameter; residuals that are no sensor's errors."""
+    blind = [f"{title}: {_direction(entry)} is known to {entry.relative_sd:.1g} only" for entry in stage.unseen]
+    pulled = [
+        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {entry.after:.4g} now, "
+        f"{entry.sds:.0f} sd apart"
+        for entry in stage.contradictions[:3]
+    ]
+    coloured = [
+        f"{title}: residuals of {test.channel} are correlated (p = {test.whiteness_p:.1g}, rms {test.rms:.2g}); "
+        "its samples count for fewer"
+        for test in stage.residuals
+        if not test.white
+    ]
+    return (*blind, *pulled, *coloured)
+
+
+def _direction(entry: Direction) -> str:
+    parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
+    return f"not identifiable alone: the direction {parts} (each relative to its size)"
+
+
+def identification(
+    plant: Plant, stages: Sequence[tuple[str, Estimate]], belief: Belief, aids: Sequence[tuple[Belief, float]] = ()
+) -> Identification:
+    """Put the final belief into the plant; what the data do not tell keeps the file's value and sd."""
+    starts = _numbers(plant)
+    factors: dict[str, float] = {}
+    scales: dict[str, float] = {}
+    for _, stage in stages:
+        for name in stage.own:
+            factors.setdefault(name, interval_factor(stage.dof))
+    for name in belief.names:
+        scales[name] = max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1])
+    estimates = tuple(
+        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), BLIND * scales[name])
+        for name in belief.names
+    )
+    found = tuple(
+        _estimated(name, "", 0.0, part, interval_factor(dof), np.inf) for part, dof in aids for name in part.names
+    )
+    return Identification(_with_belief(plant, estimates, belief), estimates, belief, tuple(stages), found)
+
+
+def _estimated(name: str, unit: str, start: float, belief: Belief, factor: float, most_sd: float) -> Estimated:
+    value, sd = belief.value(name), float(belief.sd[belief.names.index(name)])
+    told = sd < most_sd or start == 0.0
+    return Estimated(name, unit, start, value, sd, value - factor * sd, value + factor * sd, told)
+
+
+def _numbers(plant: Plant) -> dict[str, tuple[float, float, str]]:
+    """Value, sd and unit of each coefficient."""
+    values = [value for entry in plant.parameters.values() for value in entry.values]
+    sds = [sd for entry in plant.parameters.values() for sd in entry.sds]
+    units = [unit for entry in plant.parameters.values() for unit in _units(entry)]
+    return dict(zip(coefficient_names(plant.parameters), zip(values, sds, units, strict=True), strict=True))
+
+
+def _units(entry: Parameter) -> list[str]:
+    parts = entry.unit.strip("[]").split(",") if entry.unit.startswith("[") else [entry.unit]
+    return [part.strip() for part in parts] * (len(entry.values) // len(parts))
+
+
+def _with_belief(plant: Plant, estimates: Sequence[Estimated], belief: Belief) -> Plant:
+    """The plant file's content with estimates, sd and correlation of what was identified."""
+    told = {entry.name: entry for entry in estimates if entry.identified}
+    parameters = {name: _parameter(name, entry, told) for name, entry in plant.parameters.items()}
+    names = tuple(told)
+    rows = np.round(belief.part(names).correlation, CORRELATION_DIGITS)
+    correlation = Correlation(names, tuple(tuple(row) for row in rows.tolist()))
+    return replace(plant, parameters=parameters, correlation=correlation if names else None)
+
+
+def _parameter(name: str, entry: Parameter, told: Mapping[str, Estimated]) -> Parameter:
+    """A parameter with the estimates of those of its coefficients that were identified."""
+    keys = [f"{name}_{k}" for k in range(len(entry.values))] if isinstance(entry.value, tuple) else [name]
+    if not any(key in told for key in keys):
+        return entry
+    values = tuple(told[key].value if key in told else old for key, old in zip(keys, entry.values, strict=True))
+    sds = tuple(told[key].sd if key in told else old for key, old in zip(keys, entry.sds, strict=True))
+    many = isinstance(entry.value, tuple)
+    source = "identified from recorded experiments; see the section [correlation]"
+    return Parameter(values if many else values[0], sds if many else sds[0], entry.unit, source)
+
+
+def facts(result: Identification) -> dict[str, Any]:
+    """The result as plain values for identification.json."""
+    return {
+        "schema": SCHEMA,
+        "plant": result.plant.name,
+        "model": result.plant.model,
+        "estimates": [asdict(entry) for entry in result.estimates],
+        "aids": [asdict(entry) for entry in result.aids],
+        "correlation": {"names": list(result.belief.names), "rows": result.belief.correlation.round(9).tolist()},
+        "stages": [_stage_facts(title, stage) for title, stage in result.stages],
+        "notes": list(result.notes),
+    }
+
+
+def _stage_facts(title: str, stage: Estimate) -> dict[str, Any]:
+    return {
+        "data": title,
+        "parameters": list(stage.own),
+        "degrees_of_freedom": stage.dof,
+        "cost": stage.cost,
+        "residuals": [{**asdict(test), "white": test.white} for test in stage.residuals],
+        "not_identifiable": [
+            {"weights": dict(entry.weights), "relative_sd": entry.relative_sd} for entry in stage.unseen
+        ],
+        "contradictions": [asdict(entry) for entry in stage.contradictions],
+    }

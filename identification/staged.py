@@ -1,0 +1,139 @@
+"""The stages of the paper: each subsystem from the experiment made for it, what is known handed on with its covariance."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.belief import NOTHING, Belief
+from identification.estimate import Estimate, Range, estimate
+from identification.experiments.table import KINDS, Kind
+from identification.ranges import ranges_of
+from identification.run import Run, coefficient_names, known_names
+from records.errors import BadInput
+from records.experiment import Experiment
+from sim.bind import BoundPlant
+
+ANGLE_SIZE_RAD = 0.1
+Watch = Callable[[str, int, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """One experiment's estimate; `belief` is over the plant's parameters alone, `aids` over what the experiment needed besides."""
+
+    kind: str
+    result: Estimate
+    belief: Belief
+    aids: Belief
+
+
+def identify_staged(
+    bound: BoundPlant,
+    experiments: Sequence[Experiment],
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    watch: Watch | None = None,
+    done: Callable[[Stage], None] | None = None,
+) -> tuple[Stage, ...]:
+    """All stages in the order of the experiments' numbers, from the plant's values; `done` is told each finished stage.
+
+    A parameter that an experiment needs but none before has informed is estimated with it from the plant's value, so a set of
+    experiments with gaps works and says what it cannot tell. Raises BadInput for a wrong plant, mount or lock.
+    """
+    stages: list[Stage] = []
+    belief = NOTHING
+    for experiment in sorted(experiments, key=lambda entry: _kind(entry).number):
+        check_setup(experiment, bound)
+        stage = _stage(bound, experiment, belief, limits, watch)
+        belief = stage.belief
+        stages.append(stage)
+        if done is not None:
+            done(stage)
+    return tuple(stages)
+
+
+def _kind(experiment: Experiment) -> Kind:
+    if experiment.kind not in KINDS:
+        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(KINDS)}", "correct its file")
+    return KINDS[experiment.kind]
+
+
+def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
+    """Refuse a record of another plant, or of a rig that stood otherwise than the experiment's equations say; raises BadInput."""
+    kind, where = _kind(experiment), f"experiment {experiment.kind}"
+    if experiment.plant != bound.model.name:
+        raise BadInput(
+            "plant", where, repr(experiment.plant), repr(bound.model.name), "give the record and the plant of one rig"
+        )
+    informs = ", ".join(kind.own)
+    if experiment.mount != kind.mount:
+        raise BadInput("mount", where, repr(experiment.mount), repr(kind.mount),
+                       f"run it again on that mount: gravity acts differently on this one, and {informs} would come out wrong")  # fmt: skip
+    if set(experiment.locked) != set(kind.locked):
+        raise BadInput("locked axes", where, repr(list(experiment.locked)), repr(list(kind.locked)),
+                       f"lock these and run it again: {informs} follow from the equations of the other axis alone")  # fmt: skip
+
+
+def _stage(
+    bound: BoundPlant,
+    experiment: Experiment,
+    belief: Belief,
+    limits: Mapping[str, tuple[float, float]] | None,
+    watch: Watch | None,
+) -> Stage:
+    kind = _kind(experiment)
+    run = kind.run(experiment, bound)
+    own = needed(run, kind, belief)
+    ranges = ranges_of(bound, [*belief.names, *own], limits) | _aid_ranges(kind, experiment)
+    before = _with_aids(belief, kind, experiment)
+    unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
+    told = None if watch is None else lambda step, cost: watch(experiment.kind, step, cost)
+    result = estimate([run], (*own, *unknown), ranges, before, told)
+    names = tuple(name for name in result.belief.names if name not in kind.aids)
+    return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
+
+
+def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
+    """The experiment's own parameters, and those of the paper that its model has but no stage before has informed."""
+    every = tuple(dict.fromkeys(name for entry in KINDS.values() for name in entry.own))
+    has = {every[place] for place, _ in known_names(run, every)}
+    excited = {name for name in every if name in has and _excited(run, name)}
+    return tuple(name for name in every if name in kind.own or (name in excited and name not in belief.names))
+
+
+def _excited(run: Run, name: str) -> bool:
+    """Whether the run's inputs move what the parameter acts on: without voltage a rotor's parameters are not asked for."""
+    inputs = [str(variable) for variable in run.bound.model.inputs]
+    acts = {"M": "u_M_V", "T": "u_T_V"}
+    rotor = name.split("_")[1][-1:] if name.startswith(("p_b", "p_F")) else name[2:] if name in ("K_M", "K_T") else ""
+    column = "turning_rad_s" if name == "K_E" else acts.get(rotor)
+    return column not in inputs or bool(np.any(run.u[:, inputs.index(column)]))
+
+
+def _aid_ranges(kind: Kind, experiment: Experiment) -> dict[str, Range]:
+    found = {}
+    for name, facts in kind.aids.items():
+        start = experiment.facts[facts[0]] if facts else 0.0
+        size = abs(start) or ANGLE_SIZE_RAD
+        found[name] = Range(start, -math.inf, math.inf, size)
+    return found
+
+
+def _with_aids(belief: Belief, kind: Kind, experiment: Experiment) -> Belief:
+    """The belief with what was measured beside the record, independent of all before."""
+    known = [(name, facts) for name, facts in kind.aids.items() if facts]
+    if not known:
+        return belief
+    size = belief.mean.size
+    covariance = np.zeros((size + len(known), size + len(known)))
+    covariance[:size, :size] = belief.covariance
+    for place, (_, (_, sd)) in enumerate(known, start=size):
+        covariance[place, place] = experiment.facts[sd] ** 2
+    mean = np.array([experiment.facts[value] for _, (value, _) in known])
+    return Belief((*belief.names, *(name for name, _ in known)), np.concatenate([belief.mean, mean]), covariance)
+
+
+def coefficient(bound: BoundPlant, name: str) -> float:
+    """The plant's own value of a coefficient."""
+    return float(bound.p[coefficient_names(bound.model).index(name)])
