@@ -4,8 +4,8 @@ import pytest
 
 from rig.hostile_line import HostileLine
 from rig.hostile_line_faults import AtByte, Direction
-from tests.rig.hostile_sessions import SOAK, complete_or_one_line, counted_steps, session
-from tests.rig.timed_box import TimedBox
+from tests.rig.hostile_sessions import SOAK, complete_or_one_line, connect, counted_steps, session
+from tests.rig.timed_box import BYTE_S, TICK_S, TimedBox
 
 SAMPLES = 200
 # One lost byte costs one frame, which is sent again; only a line that stays dead may end a session.
@@ -42,3 +42,12 @@ def test_a_session_attacked_at_its_nth_byte_ends_well_or_in_one_line_and_the_nex
 def test_so_does_a_long_session_at_every_397th_byte(direction, how):
     struck = [attacked(direction, how, n, SAMPLES) for n in range(40, 8_000, 397)]
     assert sum(struck) > 10
+
+
+def test_telemetry_of_an_earlier_host_is_not_taken_for_that_of_the_next():
+    port = TimedBox()
+    connect(port).arm("FLYING")
+    port.wait(2 * TICK_S - port.time_s % TICK_S - 5 * BYTE_S)  # the next tick falls into the next host's first request
+    client = connect(port)
+    client.disarm()
+    assert client.telemetry() is None
