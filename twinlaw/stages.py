@@ -67,7 +67,7 @@ def design_controller(plant: Path) -> Designed:
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
                 table, report = design(bound, read_settings(bound))
-        except (ArithmeticError, np.linalg.LinAlgError) as error:
+        except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
             got = f"numbers that cannot be computed with ({error})"
             remedy = "look for a wrong power of ten among the parameters"
             raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
