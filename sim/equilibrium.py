@@ -45,10 +45,7 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
         _check_stops(bound, axis, positions.get(axis.position, 0.0), values)
     x = np.array([positions.get(state, 0.0) for state in model.states])
     u = np.array([_middle(model.input_limits[variable], values) for variable in model.inputs])
-    found = _solve(bound, x, u)
-    if found is None and bound.effects:  # a dead band is flat in the middle: begin where the nominal plant rests
-        nominal = equilibrium(without_effects(bound), *positions_rad)
-        found = _solve(bound, start_state(bound, nominal.x0), nominal.u0)
+    found = _solve(bound, *_begin(bound, x, u, positions_rad))
     if found is None:
         raise BadInput(
             "equilibrium",
@@ -60,6 +57,17 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     x0, u0 = found
     _check_inputs(bound, u0, values, positions_rad)
     return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
+
+
+def _begin(bound: BoundPlant, x: Array, u: Array, positions_rad: tuple[float, ...]) -> tuple[Array, Array]:
+    """Where to begin: with effects, where the nominal plant rests, as a dead band is flat and a sagging supply has two answers."""
+    if not bound.effects:
+        return x, u
+    try:
+        nominal = equilibrium(without_effects(bound), *positions_rad)
+    except BadInput:
+        return x, u
+    return start_state(bound, nominal.x0), nominal.u0
 
 
 def _solve(bound: BoundPlant, x: Array, u: Array) -> tuple[Array, Array] | None:

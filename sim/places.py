@@ -90,6 +90,14 @@ class Places:
         """The axis that gravity turns (elevation, pitch), whose angle the level axis' lever depends on; "" where there is none."""
         return next((name for name, axis in self.axes.items() if not axis.level), "") if self.level else ""
 
+    def driven_by(self, variable: sympy.Symbol) -> str:
+        """The rotor that an input drives; "" where none is declared."""
+        return next((name for name, rotor in self.rotors.items() if rotor.variable == variable), "")
+
+    def rotor_of(self, axis: str) -> str:
+        """The rotor that is there to turn an axis; "" where none is declared."""
+        return next((rotor for rotor in self.rotors if self.pushed_by(rotor) == axis), "")
+
     def pushed_by(self, rotor: str) -> str:
         """The axis that a rotor is there to turn: the first that it pushes, the level one for a tail rotor."""
         return self.level if rotor == "tail_rotor" else next(iter(self.rotors[rotor].thrusts))

@@ -133,16 +133,7 @@ def _of_equations(
         "dy": np.empty((times.size, len(model.outputs), len(columns))),
         "x": np.empty((times.size, len(model.states))),
     }
-    shapes = {
-        "p": (len(known) - 2 * len(model.inputs) - len(model.states),),
-        "x0": (len(model.states),),
-        "input": (times.size, len(model.inputs)),
-    }
-    for name, shape in shapes.items():
-        if arrays[name].shape != shape:
-            raise BadInput(
-                name, "sensitivities", f"shape {arrays[name].shape}", f"shape {shape}", "check the arguments' order"
-            )
+    _check_shapes(model, arrays)
     request = compiled.ffi.new("sensitivity_request *")
     for name, array in arrays.items():
         setattr(request, name, compiled.pointer(array))
@@ -183,3 +174,16 @@ def _check_columns(bound: BoundPlant, columns: tuple[str, ...], known: tuple[str
             )
     if len(columns) > MAX_COLUMNS:
         raise BadInput("columns", "sensitivities", f"{len(columns)}", f"at most {MAX_COLUMNS}", "ask in two calls")
+
+
+def _check_shapes(model: Model, arrays: Mapping[str, NDArray[np.float64] | NDArray[np.int32]]) -> None:
+    shapes = {
+        "p": (len(model.parameter_symbols),),
+        "x0": (len(model.states),),
+        "input": (arrays["t_s"].size, len(model.inputs)),
+    }
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            raise BadInput(
+                name, "sensitivities", f"shape {arrays[name].shape}", f"shape {shape}", "check the arguments' order"
+            )

@@ -127,4 +127,4 @@ class _OutputWays:
     def rounded(self, steps: Array) -> tuple[float, ...]:
         """The last outputs in steps; 0 stands for none."""
         pairs = zip(self._y.tolist(), steps.tolist(), strict=True)
-        return tuple(float(step * np.rint(value / step)) if step > 0.0 else value for value, step in pairs)
+        return tuple(float(step * np.rint(value / step) + 0.0) if step > 0.0 else value for value, step in pairs)

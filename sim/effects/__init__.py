@@ -6,6 +6,7 @@ on the way of a signal know their own order.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 from sim.effects import (
@@ -88,4 +89,10 @@ FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
 @lru_cache(maxsize=64)
 def effects_for(model: Model) -> Mapping[str, Effect]:
     """Every effect whose place exists in `model`, the nominal one of a plant, by name; in the order in which they are added."""
-    return {effect.name: effect for family in FAMILIES for effect in family(model)}
+    effects = {effect.name: effect for family in FAMILIES for effect in family(model)}
+    return {name: replace(effect, twins=_present(effect.twins, effects)) for name, effect in effects.items()}
+
+
+def _present(twins: Mapping[str, str], effects: Mapping[str, Effect]) -> Mapping[str, str]:
+    """Those twins that this plant has too; "parameters" are the plant's own."""
+    return {name: reason for name, reason in twins.items() if name in effects or name.startswith("parameters")}

@@ -45,8 +45,10 @@ def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, s
 
 
 def without_effects(bound: BoundPlant) -> BoundPlant:
-    """The nominal plant."""
-    return bind(replace(bound.plant, effects={}))
+    """The nominal plant: its parameters come first."""
+    nominal = MODELS[bound.plant.model]()
+    count = len(nominal.parameter_symbols)
+    return BoundPlant(replace(bound.plant, effects={}), nominal, bound.p[:count], bound.sd[:count])
 
 
 def linear_part(bound: BoundPlant) -> BoundPlant:

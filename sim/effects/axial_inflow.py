@@ -27,7 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("c", f"{entry.torque_unit} s^2", -20.0 * unit, 20.0 * unit, unit, 0.0),),
             equation=f"torque on {axis} - c |omega_{rotor.letter}| {angle}'",
             story="A propeller moving along its own axis meets more air from ahead and pushes less: it brakes the motion.",
-            source="gap catalogue 18, 19",
+            source="blade element theory, to first order in the inflow",
             edit=lambda model, c, place=place, axis=axis: with_torque(
                 model, axis, -c * sympy.Abs(model.places.rotors[place].speed) * axis_of(model, axis).velocity
             ),

@@ -22,7 +22,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("width", sensor.unit, 0.0, 0.3 * size, 0.006 * size, 0.0, grid),),
             equation="y follows the angle through a play of the given width",
             story="The encoder's coupling has play: after a reversal it stands still for a moment.",
-            source="contract; gap catalogue 47",
+            source="play operator",
             on_output=lambda values, output=output: Play(output, values["width"]),
             smooth=False,
             twins={f"{place}.quantization": "both hold the reading still near a reversal"},

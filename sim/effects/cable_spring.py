@@ -32,7 +32,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- k ({angle} - angle_0)",
             story="The cables to the moving part bend and pull it back to one angle.",
-            source="contract; gap catalogue 32, 34",
+            source="Hooke's law",
             edit=lambda model, k, angle_0, axis=axis: with_torque(
                 model, axis, -k * (axis_of(model, axis).position - angle_0)
             ),

@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- b sgn({angle}')",
             story="The bearing rubs with a constant force: the axis stops early and sticks until pushed hard enough.",
-            source="contract",
+            source="Coulomb friction",
             edit=lambda model, b, axis=axis: with_friction(model, axis, b),
             twins={f"{axis}.stribeck": "with little motion at the Stribeck speed only the level shows"},
             same_as="" if level == 0 else str(level),

@@ -24,7 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
-            source="contract; gap catalogue 1, 2",
+            source="static driver nonlinearity (H bridge, dry motor)",
             applied=lambda d, u=u: {u: sympy.sign(u) * positive(sympy.Abs(u) - d)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",

@@ -36,7 +36,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(SECOND,),
             equation="y(t) = angle(t - tau)",
             story="The reading is old when it arrives.",
-            source="contract; gap catalogue 52",
+            source="transport delay",
             on_output=lambda values, output=output: OutputDelay(output, values["tau"]),
             twins={
                 f"{place}.lag": "slow motion shows only the mean time by which both are late",
@@ -52,7 +52,7 @@ def _input_delay(place: str, depends: str, columns: tuple[int, ...], twins: dict
         parameters=(SECOND,),
         equation="u(t - tau)",
         story="The command takes a while to arrive.",
-        source="contract; gap catalogue 51, 57",
+        source="transport delay",
         on_input=lambda values: Delay(columns, values["tau"]),
         twins=twins,
     )

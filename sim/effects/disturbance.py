@@ -24,7 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"+ torque for t_0 <= t < t_0 + duration, edges {EDGE_S:g} s",
             story="Someone or something pushed the arm during the run.",
-            source="contract",
+            source="a push by hand",
             edit=lambda model, torque, t_0, duration, axis=axis: with_torque(
                 model, axis, torque * (step(t_0) - step(t_0 + duration))
             ),

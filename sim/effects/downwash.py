@@ -24,10 +24,11 @@ def effects(model: Model) -> Iterator[Effect]:
         parameters=(EffectParameter("a", "-", -1.0, 1.0, 0.05, 0.0),),
         equation="F_T -> F_T (1 - a omega_M / (600 rad/s))",
         story="The main rotor's wake hits the tail rotor, which pushes less the faster the main rotor turns.",
-        source="contract; gap catalogue 22",
+        source="wake of the main rotor, to first order in its speed",
         edit=_edit,
         twins={
-            "azimuth.quadratic_reaction": "at a nearly constant tail speed both are a torque that grows with the main rotor's speed",
+            f"{model.places.level}.quadratic_reaction": "at a constant tail speed both are a torque that grows with "
+            "the main rotor's speed",
             "tail_input.offset": "at nearly constant speeds both are a constant torque on the azimuth",
             "tail_input.supply_sag": "both weaken the tail rotor when the main rotor works harder",
         },

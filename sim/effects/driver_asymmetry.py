@@ -24,7 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("r", "-", 0.0, 3.0, 0.85, 1.0),),
             equation=f"{u} -> r {u} for {u} < 0",
             story="The driver's bridge is stronger in one direction than in the other.",
-            source="gap catalogue 11",
+            source="an H bridge that brakes one way and coasts the other",
             applied=lambda r, u=u: {u: u * (1 + (r - 1) * (1 - sympy.sign(u)) / 2)},
             twins={f"{place.replace('input', 'rotor')}.reverse_asymmetry": "both scale what a reversed rotor does"},
         )

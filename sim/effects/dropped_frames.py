@@ -12,13 +12,15 @@ from sim.paths_input import DroppedFrames
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on all inputs together."""
+    if not model.places.inputs:
+        return
     yield Effect(
         name="loop.dropped_frames",
         depends="lost updates of " + " and ".join(str(entry.variable) for entry in model.places.inputs.values()),
         parameters=(EffectParameter("p", "-", 0.0, 0.9, 0.1, 0.0, (0.05, 0.1, 0.2)),),
         equation="u(k) = u(k - 1) with probability p",
         story="Now and then a command gets lost and the rotor keeps the last one.",
-        source="contract; gap catalogue 55",
+        source="a lossy line with zero-order hold",
         on_input=lambda values: DroppedFrames(values["p"]),
         smooth=False,
         twins={"loop.delay": "on average, a lost frame makes the input late by a share of a sample"},

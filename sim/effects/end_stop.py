@@ -27,7 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="- k times the way into a bumper of thickness a before each stop",
             story="A rubber bumper before the stop pushes the arm back.",
-            source="gap catalogue 43",
+            source="a one-sided spring",
             edit=lambda model, k, a, axis=axis: _edit(model, k, a, axis),
             smooth=False,
         )

@@ -27,7 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="y = angle + gain d, d'' + 2 zeta omega_n d' + omega_n^2 d = - angle''",
             story="Between the axis and its encoder something is springy and rings after every jolt.",
-            source="contract; gap catalogue 42",
+            source="two masses and a spring",
             edit=lambda model, gain, omega_n, zeta, axis=axis: _edit(model, gain, omega_n, zeta, axis),
             twins={f"{axis}.rotor_acceleration": "both answer to fast changes of the drive"} if entry.spun_by else {},
         )

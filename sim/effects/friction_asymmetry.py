@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("difference", entry.torque_unit, -0.5 * size, 0.5 * size, 0.005 * size, 0.0),),
             equation=f"- (b_c + difference/2 sgn({angle}')) sgn({angle}')",
             story="The bearing rubs harder one way than the other.",
-            source="contract; gap catalogue 27, 28",
+            source="Coulomb friction by direction",
             edit=lambda model, difference, axis=axis: _edit(model, difference, axis),
             twins={f"{axis}.offset_force": "while the axis moves, both are one constant torque"},
         )

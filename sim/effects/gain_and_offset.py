@@ -6,8 +6,6 @@
 
 from collections.abc import Iterator
 
-import sympy
-
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
@@ -22,9 +20,12 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("gain", "-", 0.2, 3.0, 0.9, 1.0),),
             equation=f"{u} -> gain {u}",
             story="The driver gives a constant share more or less than it is told, as with another battery voltage.",
-            source="contract (other plants); gap catalogue 6",
+            source="a driver's calibration",
             applied=lambda gain, u=u: {u: gain * u},
-            twins={f"{_rotor(model, u)}.warmup": "once warm, the drive is down by a constant share"} | _tuned(model, u),
+            twins={
+                f"{model.places.driven_by(u)}.warmup": "once warm, the drive is down by a constant share",
+                f"parameters of {model.places.driven_by(u)}": "identical: the gain from input to torque is one number",
+            },
         )
         yield Effect(
             name=f"{place}.offset",
@@ -34,15 +35,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"{u} -> {u} + offset",
             story="The driver's zero is off: the rotor is pushed a little even when it is told nothing.",
-            source="gap catalogue 7",
+            source="a driver's calibration",
             applied=lambda offset, u=u: {u: u + offset},
             twins={f"{place}.deadzone": "while the input keeps its sign, both add or take away a constant"},
         )
-
-
-def _rotor(model: Model, variable: sympy.Symbol) -> str:
-    return next(name for name, rotor in model.places.rotors.items() if rotor.variable == variable)
-
-
-def _tuned(model: Model, variable: sympy.Symbol) -> dict[str, str]:
-    return {f"parameters of {_rotor(model, variable)}": "identical: the gain from input to torque is one number"}

@@ -12,6 +12,7 @@ import sympy
 from sim.effects.edits import EDGE_S, axis_of, short, step, with_torque
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.places import AxisPlace
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -19,44 +20,49 @@ def effects(model: Model) -> Iterator[Effect]:
     for axis, entry in model.places.axes.items():
         if entry.gravity is None:
             continue
-        angle, size = short(entry.angle), entry.torque_size
+        angle = short(entry.angle)
         yield Effect(
             name=f"{axis}.centre_of_gravity",
             depends=f"torque({angle})",
             parameters=(EffectParameter("delta", "rad", -0.7, 0.7, 0.05, 0.0),),
             equation=f"gravity torque at {angle} + delta",
             story="The centre of gravity lies above or below the arm's line, so gravity pulls hardest at another angle.",
-            source="contract; gap catalogue 35",
+            source="seed 000 eq (11) against its (8)",
             edit=lambda model, delta, axis=axis: _turned(model, delta, axis),
             twins={
                 f"{axis}.cable_spring": "near the horizontal, both are straight in the angle",
                 f"{entry.angle.removesuffix('_rad')}_sensor.offset": "gravity sees the true angle: both shift one against the other",
             },
         )
-        yield Effect(
-            name=f"{axis}.weight_shift",
-            depends="torque(t)",
-            parameters=(
-                EffectParameter("Delta", entry.torque_unit, -0.5 * size, 0.5 * size, 0.02 * size, 0.0),
-                EffectParameter("t_1", "s", 0.0, 1.0e5, 10.0),
-            ),
-            equation=f"gravity moment + Delta for t > t_1, over {EDGE_S:g} s",
-            story="The balancing weight slipped during the run.",
-            source="contract",
-            edit=lambda model, Delta, t_1, axis=axis: _with_moment(model, Delta * step(t_1), axis),
-            smooth=False,
-            twins={f"{axis}.disturbance": "a push that does not end"},
-        )
-        yield Effect(
-            name=f"{axis}.balance_weight",
-            depends=f"torque({angle})",
-            parameters=(EffectParameter("b", "-", -0.5, 0.5, 0.03, 0.0),),
-            equation="gravity moment times (1 + b)",
-            story="The balancing weight sits elsewhere than when the plant was measured.",
-            source="gap catalogue 37",
-            edit=lambda model, b, axis=axis: _with_moment(model, b * model.places.axes[axis].gravity_moment, axis),
-            twins={f"parameters of {axis}": "identical: it is another value of the gravity moment"},
-        )
+        yield from _weights(axis, entry)
+
+
+def _weights(axis: str, entry: AxisPlace) -> Iterator[Effect]:
+    angle, size = short(entry.angle), entry.torque_size
+    yield Effect(
+        name=f"{axis}.weight_shift",
+        depends="torque(t)",
+        parameters=(
+            EffectParameter("Delta", entry.torque_unit, -0.5 * size, 0.5 * size, 0.02 * size, 0.0),
+            EffectParameter("t_1", "s", 0.0, 1.0e5, 10.0),
+        ),
+        equation=f"gravity moment + Delta for t > t_1, over {EDGE_S:g} s",
+        story="The balancing weight slipped during the run.",
+        source="seed 000, balancing weight",
+        edit=lambda model, Delta, t_1: _with_moment(model, Delta * step(t_1), axis),
+        smooth=False,
+        twins={f"{axis}.disturbance": "a push that does not end"},
+    )
+    yield Effect(
+        name=f"{axis}.balance_weight",
+        depends=f"torque({angle})",
+        parameters=(EffectParameter("b", "-", -0.5, 0.5, 0.03, 0.0),),
+        equation="gravity moment times (1 + b)",
+        story="The balancing weight sits elsewhere than when the plant was measured.",
+        source="seed 000 eq (10), counterweights",
+        edit=lambda model, b: _with_moment(model, b * model.places.axes[axis].gravity_moment, axis),
+        twins={f"parameters of {axis}": "identical: it is another value of the gravity moment"},
+    )
 
 
 def _turned(model: Model, delta: sympy.Symbol, axis: str) -> Model:

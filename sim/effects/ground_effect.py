@@ -28,7 +28,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="F -> F (1 + a exp(-(Psi + Psi_lim)/psi_0))",
             story="Low over the bench the rotor stands on its own air cushion and lifts more.",
-            source="contract; gap catalogue 17",
+            source="Cheeseman and Bennett, R&M 3021, 1955, as an exponential",
             edit=lambda model, a, psi_0, place=place, axis=axis: _edit(model, a, psi_0, place, axis),
             twins={f"{axis}.cable_spring": "near one angle both are a torque that changes with the angle"},
         )

@@ -17,20 +17,22 @@ from sim.model import Model
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eqs (1) to (4) where one axis sits on the other."""
-    level, tilting = model.places.level, model.places.tilting
-    if not level:
-        return
+    if model.places.level:
+        yield from _on_level_axis(model, model.places.level, model.places.tilting)
+        yield from _on_tilting_axis(model, model.places.level, model.places.tilting)
+
+
+def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
     over, base = model.places.axes[tilting], model.places.axes[level]
     psi, phi, size = short(over.angle), short(base.angle), base.torque_size
-    spin = 0.3 * size / 600.0
-    unit = f"{base.torque_unit} s^2"
+    spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
     yield Effect(
         name=f"{level}.gyroscopic",
         depends=f"torque({psi}_dot, omega_M, {psi})",
         parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
         equation=f"- K {psi}' omega_M sin({psi})",
         story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
-        source="contract; gap catalogue D4, 40",
+        source="reciprocal of a term in seed 000 eq (8)",
         edit=lambda model, K: with_torque(
             model, level, -K * _rate(model, tilting) * _speed(model, "main_rotor") * sympy.sin(_angle(model, tilting))
         ),
@@ -42,19 +44,25 @@ def effects(model: Model) -> Iterator[Effect]:
         parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
         equation=f"+ c sin(2 {psi}) {psi}' {phi}'",
         story="Pulling the arm in while it turns makes it turn faster, as a skater does.",
-        source="gap catalogue D4, 38",
+        source="Lagrange: reciprocal of the centrifugal term in seed 000 eq (8)",
         edit=lambda model, c: with_torque(
             model, level, c * sympy.sin(2 * _angle(model, tilting)) * _rate(model, tilting) * _rate(model, level)
         ),
         twins={f"{level}.inertia_shape": "both make the azimuth's inertia depend on the elevation"},
     )
+
+
+def _on_tilting_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
+    over, base = model.places.axes[tilting], model.places.axes[level]
+    psi, phi, size = short(over.angle), short(base.angle), base.torque_size
+    spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
     yield Effect(
         name=f"{tilting}.centrifugal",
         depends=f"torque({phi}_dot, {psi})",
         parameters=(EffectParameter("c", unit, -size, size, 0.05 * size, 0.0),),
         equation=f"+ c {phi}'^2 sin(2 {psi})",
         story="Turning fast throws the arm towards the horizontal, with another strength than the model says.",
-        source="gap catalogue D2, D3, 41",
+        source="seed 000 eq (8), whose factor and sign are doubtful",
         edit=lambda model, c: with_torque(
             model, tilting, c * _rate(model, level) ** 2 * sympy.sin(2 * _angle(model, tilting))
         ),
@@ -65,7 +73,7 @@ def effects(model: Model) -> Iterator[Effect]:
         parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
         equation=f"+ K omega_T {phi}'",
         story="Turning the arm with the tail rotor spinning tips it up or down.",
-        source="gap catalogue 16",
+        source="Euler's equations",
         edit=lambda model, K: with_torque(model, tilting, K * _speed(model, "tail_rotor") * _rate(model, level)),
         twins={f"{tilting}.tail_coupling": "both carry the tail rotor's speed to the elevation"},
     )

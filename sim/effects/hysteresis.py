@@ -2,6 +2,9 @@
 
 (1)  z' = v - |v| z / z_0,   torque - k z            (Bouc-Wen's form, Dahl's model: z stays within +-z_0)
 (2)  the same with k = b / z_0 and a small z_0: a bearing before it slides
+(3)  z' = (v - |v| z / z_0) / sqrt(1 + (|v| T / z_0)^2),  T = SETTLING_S
+
+Eq (3) is what is integrated: at a fast sweep, where z has long been at its end, (1) would be too stiff for the step of a sample.
 """
 
 from collections.abc import Iterator
@@ -11,6 +14,8 @@ import sympy
 from sim.effects.edits import axis_of, short, with_state, with_torque
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model, symbol
+
+SETTLING_S = 0.008  # the shortest time in which z settles
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -30,7 +35,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- k z, z' = {angle}' - |{angle}'| z/z_0",
             story="The cable resists a turn, then slips in its clamp; on the way back it resists the other way.",
-            source="gap catalogue 31 (Bouc-Wen)",
+            source="Bouc 1967, Wen 1976, with exponent 1",
             edit=lambda model, k, z_0, axis=axis: _edit(model, k, z_0, axis, "cable"),
             twins={
                 f"{axis}.cable_spring": "over small angles a cable that does not slip is a spring",
@@ -46,7 +51,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- b z/z_0, z' = {angle}' - |{angle}'| z/z_0",
             story="The bearing gives a little like a brush before it slides.",
-            source="gap catalogue 30 (Dahl, LuGre)",
+            source="Dahl 1968",
             edit=lambda model, b, z_0, axis=axis: _edit(model, b / z_0, z_0, axis, "bearing"),
             twins={
                 f"{axis}.coulomb": "identical but for the tiny motion before it slides",
@@ -58,5 +63,6 @@ def effects(model: Model) -> Iterator[Effect]:
 def _edit(model: Model, stiffness: sympy.Expr, z_0: sympy.Symbol, axis: str, what: str) -> Model:
     z = symbol(f"{what}_{axis}_{model.places.axes[axis].length_unit}")
     velocity = axis_of(model, axis).velocity
-    model = with_state(model, z, velocity - sympy.Abs(velocity) * z / z_0)
+    rate = sympy.Abs(velocity) / z_0
+    model = with_state(model, z, (velocity - rate * z) / sympy.sqrt(1 + (SETTLING_S * rate) ** 2))
     return with_torque(model, axis, -stiffness * z)

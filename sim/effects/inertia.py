@@ -30,7 +30,7 @@ def effects(model: Model) -> Iterator[Effect]:
         ),
         equation=f"inertia + J_0 + J_1 cos({angle})^2",
         story="The arm is harder or easier to turn at another height than the model says.",
-        source="gap catalogue D5, 39",
+        source="rigid body",
         edit=lambda model, J_1, J_0: _edit(model, level, J_0 + J_1 * sympy.cos(_angle(model)) ** 2),
         twins={f"{level}.coriolis": "both make the azimuth's inertia depend on the elevation"},
     )
@@ -43,7 +43,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("a", "-", -1.0, 2.0, 0.5, 0.0),),
             equation=f"inertia + a {whole} (1 - cos({angle}))",
             story="The arm is as hard to turn when it points up as when it is level.",
-            source="gap catalogue D1; seed 000 eq (15)",
+            source="seed 000 eq (15), against its (9)",
             edit=lambda model, a: _edit(model, level, a * whole * (1 - cosine)),
             twins={f"{level}.inertia_shape": "both make the azimuth's inertia depend on the elevation"},
         )

@@ -17,17 +17,15 @@ LATE = "slow motion shows only the mean time by which both are late"
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each input, on each rotor without a lag of its own, and on each sensor."""
     for column, (place, entry) in enumerate(model.places.inputs.items()):
-        rotor_place, rotor = next(
-            (name, rotor) for name, rotor in model.places.rotors.items() if rotor.variable == entry.variable
-        )
-        immediate = rotor.drive is None
+        rotor_place = model.places.driven_by(entry.variable)
+        immediate = bool(rotor_place) and model.places.rotors[rotor_place].drive is None
         yield _lag(
             f"{place}.lag",
             f"lag of {entry.variable}",
             column,
             0.02,
             "The driver or the motor's winding follows its command with a lag.",
-            "contract; gap catalogue 8, 9 (motor inductance)",
+            "inductance of the winding, L/R",
             {f"{place}.delay": LATE} | ({f"{rotor_place}.lag": SAME} if immediate else {}),
         )
         if immediate:
@@ -37,7 +35,7 @@ def effects(model: Model) -> Iterator[Effect]:
                 column,
                 0.05,
                 "The rotor takes its time to reach the speed that the command asks for.",
-                "contract (other plants)",
+                "inertia of the rotor",
                 {f"{place}.lag": SAME, f"{place}.delay": LATE},
             )
     for output, (place, sensor) in enumerate(model.places.sensors.items()):
@@ -47,7 +45,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15)),),
             equation="tau y' = angle - y",
             story="The reading is smoothed and so comes late.",
-            source="contract; gap catalogue 48",
+            source="a sensor's filter",
             on_output=lambda values, output=output: OutputLag(output, values["tau"]),
             twins={f"{place}.delay": LATE, "loop.delay": LATE},
         )

@@ -33,7 +33,7 @@ def _offset(axis: str, entry: AxisPlace) -> Effect:
         parameters=(EffectParameter("offset", entry.torque_unit, -0.5 * size, 0.5 * size, 0.02 * size, 0.0),),
         equation="- offset",
         story="Something pulls the axis one way all the time.",
-        source="contract (other plants)",
+        source="a constant torque",
         edit=lambda model, offset: with_torque(model, axis, -offset),
         twins={f"{axis}.friction_asymmetry": "while the axis moves, both are one constant torque"},
     )
@@ -52,7 +52,7 @@ def _periodic(axis: str, entry: AxisPlace) -> Iterator[Effect]:
         ),
         equation=f"- m sin({angle} - Phi_0)",
         story="The base is not level: the arm wants to swing to the low side.",
-        source="contract; gap catalogue 33",
+        source="pendulum on a tilted base",
         edit=lambda model, m, Phi_0: with_torque(model, axis, -m * sympy.sin(axis_of(model, axis).position - Phi_0)),
         twins={f"{axis}.wind": same, f"{axis}.cable_spring": near},
     )
@@ -65,7 +65,7 @@ def _periodic(axis: str, entry: AxisPlace) -> Iterator[Effect]:
         ),
         equation=f"+ c cos({angle} - Phi_w)",
         story="A steady draught in the room blows against the arm.",
-        source="gap catalogue 23",
+        source="drag of a steady wind, to first order",
         edit=lambda model, c, Phi_w: with_torque(model, axis, c * sympy.cos(axis_of(model, axis).position - Phi_w)),
         twins={f"{axis}.tilt": same, f"{axis}.cable_spring": near},
     )

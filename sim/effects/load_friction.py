@@ -26,7 +26,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("c", unit, 0.0, size, 0.015 * size, 0.0, (0.015 * size, 0.05 * size)),),
             equation=f"- c |{letter}| sgn({short(entry.angle)}')",
             story="The bearing rubs more the harder the rotor pulls at it.",
-            source="gap catalogue 29",
+            source="Coulomb friction in proportion to the bearing's load",
             edit=lambda model, c, axis=axis, rotor_name=rotor_name: with_friction(
                 model, axis, c * sympy.Abs(model.places.rotors[rotor_name].speed)
             ),

@@ -26,16 +26,12 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- c |{angle}'| {angle}'",
             story="The air resists the moving arm, four times as much at twice the speed.",
-            source="contract; gap catalogue 20, 21",
+            source="drag of a bluff body",
             edit=lambda model, c, axis=axis: _edit(model, c, axis),
-            twins={f"{_rotor(model, axis)}.axial_inflow": "both damp fast motion more"},
+            twins={f"{model.places.rotor_of(axis)}.axial_inflow": "both damp fast motion more"},
         )
 
 
 def _edit(model: Model, c: sympy.Symbol, axis: str) -> Model:
     velocity = axis_of(model, axis).velocity
     return with_torque(model, axis, -c * sympy.Abs(velocity) * velocity)
-
-
-def _rotor(model: Model, axis: str) -> str:
-    return next(rotor for rotor in model.places.rotors if model.places.pushed_by(rotor) == axis)

@@ -26,7 +26,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="q round(u/q)",
             story="The driver knows only coarse steps of voltage.",
-            source="contract; gap catalogue 4",
+            source="a converter's or PWM's resolution",
             on_input=lambda values, column=column: Quantised(column, values["q"]),
             smooth=False,
         )
@@ -42,7 +42,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="y = q round(angle/q)",
             story="The encoder's steps are coarser than stated.",
-            source="contract; gap catalogue 49",
+            source="an encoder's resolution",
             on_output=lambda values, output=output: OutputSteps(output, values["q"]),
             smooth=False,
         )

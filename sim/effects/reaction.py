@@ -31,7 +31,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("J", f"{entry.torque_unit} s^2", -20.0 * size, 20.0 * size, size, 0.0),),
             equation=f"- J d(omega_{rotor.letter})/dt" + (" cos(Psi)" if axis == level else ""),
             story="Revving a rotor up turns the arm the other way for a moment.",
-            source="contract; gap catalogue 13, 16",
+            source="conservation of angular momentum",
             edit=lambda model, J, axis=axis: _accelerating(model, J, axis),
             twins={f"{axis}.flexible_mode": "both answer to fast changes of a rotor's speed"},
         )
@@ -51,12 +51,14 @@ def _coupling(model: Model, level: str, tilting: str) -> Iterator[Effect]:
             story="The tail rotor does not stand square and lifts the arm a little."
             if sign > 0
             else "The air's drag on the main rotor turns the arm, more than in proportion to its speed.",
-            source="contract; gap catalogue 15" if sign > 0 else "gap catalogue D6, 14",
+            source="a share of the tail rotor's thrust"
+            if sign > 0
+            else "blade element theory: drag torque goes with the square",
             edit=lambda model, k, axis=axis, place=place, sign=sign: _pushed(model, sign * k, axis, place),
             twins={f"{axis}.{twin}": "both carry the tail rotor's speed to the elevation"}
             if twin
             else {
-                "tail_rotor.downwash": "at a nearly constant tail speed both are a torque that grows with the main rotor's speed"
+                "tail_rotor.downwash": "at a constant tail speed both are a torque that grows with the main rotor's speed"
             },
         )
 

@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("r", "-", -2.0, 3.0, 0.85, 1.0, (0.7, -1.0)),),
             equation="F -> r F for omega < 0",
             story="Turning backwards, the propeller pushes with another strength than forwards.",
-            source="contract; gap catalogue 11",
+            source="cambered blades",
             edit=lambda model, r, place=place: _edit(model, r, place),
             twins={f"{place.replace('rotor', 'input')}.driver_asymmetry": "both scale what a reversed rotor does"},
         )

@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("c", "rad s^-2", 0.0, 2000.0, 30.0, 0.0, (30.0, 150.0)),),
             equation="omega' = ... - c sgn(omega), at rest within +-c",
             story="The rotor's bearing rubs: it starts late and runs a little slower than it should.",
-            source="contract; gap catalogue 12",
+            source="Coulomb friction",
             edit=lambda model, c, place=place: _edit(model, c, place),
             twins={
                 f"{place.replace('rotor', 'input')}.deadzone": "a constant loss of torque is a constant loss of voltage, "

@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid),),
             equation=f"{u} -> max(-limit, min(limit, {u}))",
             story="The driver or its supply gives out before the controller's own limit is reached.",
-            source="contract; gap catalogue 3",
+            source="static driver nonlinearity",
             applied=lambda limit, u=u: {u: positive(u + limit) - positive(u - limit) - limit},
             smooth=False,
         )

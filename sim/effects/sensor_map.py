@@ -32,7 +32,7 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         parameters=(EffectParameter("offset", unit, -0.5 * size, 0.5 * size, 0.02 * size, 0.0),),
         equation="y = angle + offset",
         story="The sensor's zero is not where the model thinks it is.",
-        source="contract; gap catalogue 36",
+        source="an encoder's index",
         edit=lambda model, offset: with_output(model, y, lambda output: output + offset),
     )
     yield Effect(
@@ -41,7 +41,7 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         parameters=(EffectParameter("scale", "-", 0.5, 1.5, 1.03, 1.0),),
         equation="y = scale angle",
         story="The sensor reads a constant share too much or too little.",
-        source="contract; gap catalogue 45, 46",
+        source="a wrong count per turn",
         edit=lambda model, scale: with_output(model, y, lambda output: scale * output),
         twins={
             "parameters": "where nothing depends on the true angle, inertia, friction and thrust scale along with it"
@@ -56,7 +56,7 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         ),
         equation="y = angle + jump for t > t_s",
         story="The encoder lost or gained counts at one moment and reads wrong by them ever after.",
-        source="gap catalogue 50",
+        source="lost counts",
         edit=lambda model, jump, t_s: with_output(model, y, lambda output: output + jump * step(t_s)),
         smooth=False,
     )
@@ -69,6 +69,6 @@ def _crossed(place: str, entry: SensorPlace, other: str) -> Effect:
         parameters=(EffectParameter("eps", "-", -0.3, 0.3, 0.02, 0.0),),
         equation=f"y = angle + eps {short(other)}",
         story="The two axes do not stand square: turning one also turns the other's sensor a little.",
-        source="gap catalogue 44",
+        source="small-angle geometry of two axes",
         edit=lambda model, eps: with_output(model, entry.output, lambda output: output + eps * model.outputs[other]),
     )

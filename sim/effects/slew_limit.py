@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("r", unit, 0.02 * size, never, size, never, grid),),
             equation="|du/dt| <= r",
             story="The driver changes its voltage only so fast and trails behind quick commands.",
-            source="contract",
+            source="a driver's ramp",
             on_input=lambda values, column=column: SlewLimit(column, values["r"]),
             smooth=False,
             twins={f"{place}.lag": "both trail behind quick commands; only a limit spares small ones"},

@@ -32,7 +32,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation=f"- b_s exp(-({angle}'/v_s)^2) sgn({angle}')",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",
-            source="contract; gap catalogue 25, 26",
+            source="Armstrong, Dupont and Canudas de Wit, Automatica 30(7), 1994",
             edit=lambda model, b_s, v_s, axis=axis: with_friction(
                 model, axis, b_s * sympy.exp(-((axis_of(model, axis).velocity / v_s) ** 2))
             ),

@@ -25,7 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("s", "-", -0.5 * upper, upper, 0.1 * upper, 0.0),),
             equation=f"{u} -> {u} (1 - s (sum of |u|) / 10)",
             story="The power supply weakens under load: pushing one rotor harder leaves less for this one.",
-            source="contract; gap catalogue 5",
+            source="a source's inner resistance",
             applied=lambda s, u=u: {u: u * (1 - s * load / NOMINAL)},
             twins={f"{place}.gain": "at a nearly constant load, the loss is a constant share"},
         )

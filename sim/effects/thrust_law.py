@@ -25,7 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(EffectParameter("a", "-", -2.0, 2.0, 0.2, 0.0, (0.5, 1.0)),),
             equation="F -> F (1 + a (|u|/U - 1))" if rotor.linear else "F -> F (1 - a + a U/|u|)",
             story=f"The thrust follows the command by a {law} law rather than by the {other} one of the model.",
-            source="contract (other plants); gap catalogue D6",
+            source="blade element theory: thrust goes with the square of the speed",
             edit=lambda model, a, place=place: _edit(model, a, place),
         )
 

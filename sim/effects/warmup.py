@@ -24,7 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
             ),
             equation="K -> K (1 - a (1 - exp(-t/T)))",
             story="The motor's winding warms up and its resistance grows, so the same command gives less and less.",
-            source="contract; gap catalogue 10",
+            source="copper's resistance grows by 0.39 % per kelvin",
             edit=lambda model, a, T, place=place: with_drive(model, place, 1 - a * (1 - sympy.exp(-TIME / T))),
             twins={f"{place.replace('rotor', 'input')}.gain": "once warm, the drive is down by a constant share"},
         )
