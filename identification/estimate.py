@@ -10,6 +10,7 @@ from scipy.stats import t as student
 from identification.belief import Belief, prior, widened
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, known_names, with_sd
+from identification.search import search
 from identification.solve import Point, Problem, Watch, solve
 from identification.uncertainty import Direction, inflations, pieces, unseen
 
@@ -63,14 +64,17 @@ def estimate(
     ranges: Mapping[str, Range],
     before: Belief,
     watch: Watch | None = None,
+    search_seed: int | None = None,
 ) -> Estimate:
     """Fit the parameters `own` to the runs, with those of `before` re-estimated from what is known of them.
 
     Earlier stages enter as a normal distribution, so the joint covariance carries their uncertainty on; after the last stage it is that
     of one fit to all runs, to first order. Channels are weighted by their own residuals, Q_V = diag(1 / rms^2), and a run whose
-    residuals are correlated counts for fewer samples.
+    residuals are correlated counts for fewer samples. `search_seed` asks for a search over the whole range of `own` first.
     """
     problem = problem_of(tuple(runs), tuple(own), ranges, before)
+    if search_seed is not None:
+        problem = search(problem, [problem.names.index(name) for name in own], search_seed)
     point = solve(problem, watch)
     for weigh in (_by_channel, _by_correlation):
         problem = _weighed(problem, point, weigh)

@@ -1,8 +1,8 @@
 """The stages of the paper: each subsystem from the experiment made for it, what is known handed on with its covariance."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from records.experiment import Experiment
 from sim.bind import BoundPlant
 
 ANGLE_SIZE_RAD = 0.1
-Watch = Callable[[str, int, float], None]
+POOR = 5.0  # residuals so many times above what the sensor leaves call for a look at the mount
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,27 +30,25 @@ class Stage:
 
 
 def identify_staged(
-    bound: BoundPlant,
-    experiments: Sequence[Experiment],
-    limits: Mapping[str, tuple[float, float]] | None = None,
-    watch: Watch | None = None,
-    done: Callable[[Stage], None] | None = None,
+    bound: BoundPlant, experiments: Sequence[Experiment], limits: Mapping[str, tuple[float, float]] | None = None
 ) -> tuple[Stage, ...]:
-    """All stages in the order of the experiments' numbers, from the plant's values; `done` is told each finished stage.
-
-    A parameter that an experiment needs but none before has informed is estimated with it from the plant's value, so a set of
-    experiments with gaps works and says what it cannot tell. Raises BadInput for a wrong plant, mount or lock.
-    """
+    """All stages in order, from the plant's values; raises BadInput for a wrong plant, mount or lock."""
     stages: list[Stage] = []
-    belief = NOTHING
-    for experiment in sorted(experiments, key=lambda entry: _kind(entry).number):
-        check_setup(experiment, bound)
-        stage = _stage(bound, experiment, belief, limits, watch)
-        belief = stage.belief
-        stages.append(stage)
-        if done is not None:
-            done(stage)
+    for experiment in in_order(experiments):
+        belief = stages[-1].belief if stages else NOTHING
+        stages.append(identify_stage(bound, experiment, belief, limits))
     return tuple(stages)
+
+
+def in_order(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """The experiments in the order of the paper's numbers; raises BadInput for an unknown kind."""
+    return tuple(sorted(experiments, key=lambda entry: _kind(entry).number))
+
+
+def title(experiment: Experiment) -> str:
+    """Number and name of an experiment."""
+    kind = _kind(experiment)
+    return f"experiment {kind.number}, {kind.title}"
 
 
 def _kind(experiment: Experiment) -> Kind:
@@ -75,23 +73,60 @@ def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
                        f"lock these and run it again: {informs} follow from the equations of the other axis alone")  # fmt: skip
 
 
-def _stage(
+def identify_stage(
     bound: BoundPlant,
     experiment: Experiment,
     belief: Belief,
-    limits: Mapping[str, tuple[float, float]] | None,
-    watch: Watch | None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    search_seed: int | None = None,
 ) -> Stage:
+    """One experiment added to what is known.
+
+    A parameter that it needs but none before has informed is estimated with it from the plant's value, so a set of experiments with
+    gaps works and says what it cannot tell. `search_seed` asks for a search over the whole range of its parameters first. Raises
+    BadInput for a wrong plant, mount or lock, also where only the motion shows it.
+    """
+    check_setup(experiment, bound)
     kind = _kind(experiment)
     run = kind.run(experiment, bound)
     own = needed(run, kind, belief)
     ranges = ranges_of(bound, [*belief.names, *own], limits) | _aid_ranges(kind, experiment)
     before = _with_aids(belief, kind, experiment)
     unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
-    told = None if watch is None else lambda step, cost: watch(experiment.kind, step, cost)
-    result = estimate([run], (*own, *unknown), ranges, before, told)
+    result = estimate([run], (*own, *unknown), ranges, before, search_seed=search_seed)
+    check_mount(run, kind, result, ranges, before)
     names = tuple(name for name in result.belief.names if name not in kind.aids)
     return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
+
+
+def check_mount(run: Run, kind: Kind, result: Estimate, ranges: Mapping[str, Range], before: Belief) -> None:
+    """Raise BadInput where the motion is badly predicted on the stated mount and far better on the other."""
+    poor = any(test.floor > 0.0 and test.rms > POOR * test.floor for test in result.residuals)
+    other = _on_other_mount(run)
+    if not poor or other is None:
+        return
+    there = estimate([other], result.own, ranges, before)
+    own_rms, other_rms = (max(test.rms for test in found.residuals) for found in (result, there))
+    if other_rms < own_rms / POOR:
+        moved = {"turned": "upright", "upright": "turned"}[kind.mount]
+        raise BadInput(
+            "mount", f"experiment {run.name}", f"a motion as on the mount {moved!r} (residuals {other_rms:.2g} there, {own_rms:.2g} here)",
+            f"one as on the mount {kind.mount!r}", f"run it again on that mount: {', '.join(kind.own)} cannot come from this record",
+        )  # fmt: skip
+
+
+def _on_other_mount(run: Run) -> Run | None:
+    """The run as it would be with gravity in the other direction; None where no axis moves."""
+    names, p = list(coefficient_names(run.bound.model)), run.bound.p.copy()
+    if "mount_rad" in names:
+        place = names.index("mount_rad")
+        p[place] = 0.0 if p[place] else -math.pi / 2
+    elif "turned" in names:
+        place = names.index("turned")
+        p[place] = 1.0 - p[place]
+    else:
+        return None
+    return replace(run, bound=replace(run.bound, p=p))
 
 
 def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
@@ -132,8 +167,3 @@ def _with_aids(belief: Belief, kind: Kind, experiment: Experiment) -> Belief:
         covariance[place, place] = experiment.facts[sd] ** 2
     mean = np.array([experiment.facts[value] for _, (value, _) in known])
     return Belief((*belief.names, *(name for name, _ in known)), np.concatenate([belief.mean, mean]), covariance)
-
-
-def coefficient(bound: BoundPlant, name: str) -> float:
-    """The plant's own value of a coefficient."""
-    return float(bound.p[coefficient_names(bound.model).index(name)])

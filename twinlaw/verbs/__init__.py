@@ -20,6 +20,8 @@ VERBS: Mapping[str, str] = {
     "flash": "flash",
     "validate": "validate",
     "import": "import_record",
+    "experiments": "experiments",
+    "identify": "identify",
     "blind": "blind",
     "bench": "bench",
     "doctor": "doctor",

@@ -1,0 +1,42 @@
+"""An identification as rows of text."""
+
+from collections.abc import Sequence
+
+from identification.estimate import Estimate
+from identification.result import Estimated
+
+HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
+FIT_HEADING = ("data", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
+
+
+def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
+    """One row for each coefficient."""
+    return [
+        (
+            entry.name,
+            entry.unit,
+            f"{entry.start:.4g}",
+            f"{entry.value:.5g}",
+            f"{entry.lower:.5g} .. {entry.upper:.5g}",
+            f"{100.0 * entry.sd / abs(entry.value):.2g} %" if entry.value else f"{entry.sd:.2g}",
+            "" if entry.identified else "not identified",
+        )
+        for entry in estimates
+    ]
+
+
+def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:
+    """One row for each channel of each stage."""
+    return [
+        (
+            title,
+            test.channel,
+            f"{test.samples}",
+            f"{test.rms:.3g}",
+            f"{test.floor:.3g}" if test.floor else "",
+            f"{100.0 * test.fit:.2f} %",
+            "" if test.white else f"p = {test.whiteness_p:.1g}",
+        )
+        for title, stage in stages
+        for test in stage.residuals
+    ]

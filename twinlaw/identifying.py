@@ -1,0 +1,145 @@
+"""What `twinlaw identify` does between its files: tell experiments from logs, go stage by stage, leave what was found so far."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from identification.belief import NOTHING, Belief
+from identification.estimate import Estimate
+from identification.logs import identify_logs
+from identification.result import Identification, facts, identification
+from identification.run import coefficient_names
+from identification.staged import identify_stage, in_order, title
+from records import checks
+from records.errors import BadInput
+from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
+from records.experiment import Experiment, load_experiment
+from records.files import write_atomic
+from records.log import RunLog, load_log
+from records.plant import plant_text
+from records.reading import read_toml
+from sim.bind import BoundPlant
+from sim.columns import log_columns
+from twinlaw import console
+
+Limits = Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """Experiments in the paper's order, and logs by the name of their file."""
+
+    experiments: tuple[Experiment, ...]
+    logs: Mapping[str, RunLog]
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the user asks of the estimation: coefficients (for logs), limits, seed of a search, length of the logs' windows."""
+
+    names: tuple[str, ...]
+    limits: Limits
+    search_seed: int | None
+    window_s: float | None
+
+
+def read_inputs(paths: Sequence[Path], bound: BoundPlant) -> Inputs:
+    """Read experiments and run logs, told apart by the schema of their TOML; a folder stands for the experiments in it."""
+    experiments, logs = [], {}
+    for path in _files(paths):
+        sidecar = path.with_suffix(".toml")
+        if read_toml(sidecar, "experiment or sidecar of a run log").get("schema") == EXPERIMENT_SCHEMA:
+            experiments.append(load_experiment(sidecar))
+        else:
+            logs[path.stem] = load_log(path.with_suffix(".csv"), log_columns(bound.model))
+    kinds = [entry.kind for entry in experiments]
+    for kind in kinds:
+        if kinds.count(kind) > 1:
+            raise BadInput("experiments", kind, "given twice", "each once", "leave one of them out")
+    return Inputs(in_order(experiments), logs)
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    found: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        inside = [
+            name for name in sorted(path.glob("*.toml"))
+            if read_toml(name, "TOML file").get("schema") == EXPERIMENT_SCHEMA
+        ]  # fmt: skip
+        if not inside:
+            raise BadInput(
+                "experiments", str(path), "none in this folder", "files of `twinlaw experiments`", "name another folder"
+            )
+        found += inside
+    return found
+
+
+def read_limits(path: Path | None) -> Limits:
+    """Bounds by coefficient from a TOML file of `NAME = [lowest, highest]`; raises BadInput."""
+    if path is None:
+        return {}
+    found = {}
+    for name, pair in read_toml(path, "bounds").items():
+        lowest, highest = checks.numbers(pair, f"{path}: {name}", 2)
+        if lowest >= highest:
+            raise BadInput(
+                f"bounds of {name}", str(path), f"[{lowest:g}, {highest:g}]", "lowest < highest", "swap them"
+            )
+        found[name] = (lowest, highest)
+    return found
+
+
+def free_names(bound: BoundPlant, wanted: str | None) -> tuple[str, ...]:
+    """Coefficients to estimate from logs: those named (a parameter stands for all its coefficients), or all with an sd above 0."""
+    known = coefficient_names(bound.model)
+    if wanted is None:
+        return tuple(name for name, sd in zip(known, bound.sd, strict=True) if sd > 0.0)
+    found: list[str] = []
+    for name in filter(None, (part.strip() for part in wanted.split(","))):
+        own = [
+            entry
+            for entry in known
+            if entry == name or (entry.rpartition("_")[0] == name and entry[len(name) + 1 :].isdigit())
+        ]
+        if not own:
+            raise BadInput(f"parameter {name!r}", "--free", "an unknown name", f"of {', '.join(known)}", "correct it")
+        found += own
+    return tuple(found)
+
+
+def identify(
+    bound: BoundPlant, inputs: Inputs, wishes: Wishes, save: Callable[[Identification], None]
+) -> Identification:
+    """Stage by stage; `save` is told the result after each, so that an interrupted run leaves what it has."""
+    stages: list[tuple[str, Estimate]] = []
+    aids: list[tuple[Belief, float]] = []
+    belief = NOTHING
+    for experiment in inputs.experiments:
+        with console.stage(title(experiment)):
+            stage = identify_stage(bound, experiment, belief, wishes.limits, wishes.search_seed)
+        belief = stage.belief
+        stages.append((title(experiment), stage.result))
+        if stage.aids.names:
+            aids.append((stage.aids, stage.result.dof))
+        save(identification(bound.plant, stages, belief, aids))
+    if inputs.logs:
+        names = tuple(name for name in wishes.names if name not in belief.names) if belief.names else wishes.names
+        with console.stage(f"{len(inputs.logs)} run logs, {len(names) + len(belief.names)} parameters"):
+            found = identify_logs(
+                bound, inputs.logs, names or belief.names, window_s=wishes.window_s, limits=wishes.limits,
+                before=belief, search_seed=wishes.search_seed,
+            )  # fmt: skip
+        belief = found.belief
+        stages.append((", ".join(inputs.logs), found))
+        save(identification(bound.plant, stages, belief, aids))
+    return identification(bound.plant, stages, belief, aids)
+
+
+def save_result(folder: Path, result: Identification) -> None:
+    """DIR/plant.toml and DIR/identification.json."""
+    write_atomic(folder / "plant.toml", plant_text(result.plant))
+    write_atomic(folder / "identification.json", json.dumps(facts(result), indent=1) + "\n")

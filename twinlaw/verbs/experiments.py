@@ -1,0 +1,81 @@
+"""Perform the nine identification experiments of the CE150 on a simulated rig whose true parameters differ from the plant file's.
+
+Writes DIR/NN-KIND.toml with a CSV for each instrument, and DIR/truth.toml, the rig's own parameters. The rig is drawn from the
+uncertainties that the plant file states; the same seed gives the same rig and the same readings. With --repetitions each of so many
+rigs is also identified from its own experiments, and DIR/repetitions.json tells how often the truth lay within the 95 % intervals.
+"""
+
+import argparse
+import json
+from dataclasses import asdict
+
+from identification.experiments.table import KINDS, perform
+from identification.monte_carlo import Repetition, coverage, other_rig, repetition
+from records.errors import BadInput
+from records.experiment import save_experiment
+from records.files import write_atomic
+from records.plant import plant_text
+from sim.bind import BoundPlant
+from twinlaw import console, options
+from twinlaw.stages import load_bound
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --seed, --repetitions, --out, --json."""
+    options.plant(parser)
+    parser.add_argument(
+        "--seed", type=options.count, default=1, help="of the rig and its readings; default: %(default)s"
+    )
+    parser.add_argument("--repetitions", type=options.count, metavar="N", help="identify N rigs, seeds from --seed on")
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Perform and write, or repeat and count."""
+    bound = load_bound(chosen.plant)
+    if bound.model.name != "ce150":
+        raise BadInput(
+            "plant", str(chosen.plant), repr(bound.model.name), "'ce150'", "the experiments are made for it alone"
+        )
+    if chosen.repetitions is not None:
+        return _repeat(bound, chosen)
+    truth = other_rig(bound, chosen.seed)
+    files = []
+    for kind, entry in KINDS.items():
+        with console.stage(f"experiment {entry.number}: {entry.title}"):
+            files.append(chosen.out / f"{entry.number:02d}-{kind}.toml")
+            save_experiment(files[-1], perform(kind, truth, chosen.seed))
+    files.append(chosen.out / "truth.toml")
+    write_atomic(files[-1], plant_text(truth.plant))
+    print(json.dumps([str(path) for path in files]) if chosen.json else "\n".join(map(str, files)))
+    return 0
+
+
+def _repeat(bound: BoundPlant, chosen: argparse.Namespace) -> int:
+    found: list[Repetition] = []
+    for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
+        with console.stage(f"rig {seed}: nine experiments, 27 parameters"):
+            found.append(repetition(bound, seed))
+        covered = coverage(tuple(found))
+        facts = {
+            "coverage": covered,
+            "least": min(covered.values()),
+            "mean": sum(covered.values()) / len(covered),
+            "all_inside": sum(entry.all_inside for entry in found) / len(found),
+            "repetitions": [asdict(entry) for entry in found],
+        }
+        # After each rig, so that an interrupted count leaves what it has.
+        write_atomic(chosen.out / "repetitions.json", json.dumps(facts, indent=1) + "\n")
+    if chosen.json:
+        print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean", "all_inside")}))
+        return 0
+    print(
+        console.table(
+            [(name, f"{share:.0%}") for name, share in covered.items()], ("parameter", "within its 95 % interval")
+        )
+    )
+    print(
+        f"\n{len(found)} rigs; least {facts['least']:.0%}, mean {facts['mean']:.1%}, all 27 at once {facts['all_inside']:.0%}"
+    )
+    return 0

@@ -1,0 +1,74 @@
+"""Identify a plant's parameters from recorded experiments and run logs, with 95 % intervals, correlations and tests.
+
+FILES are experiments (TOML of `twinlaw experiments`, or a folder of them) and run logs of the plant (CSV with sidecar). Experiments are
+taken in the order of the paper, each for its own subsystem, and what one tells goes on to the next with its covariance; logs come last
+and are cut into windows with free starts, so that closed loops and unstable plants are welcome. Writes DIR/plant.toml, which every verb
+takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what is done.
+With --truth the controller designed from the result flies that plant, and the report lays both flights over one another.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+from identification.result import facts
+from identification.validation import compare_flights
+from records.errors import BadInput
+from records.files import write_atomic
+from sim.bind import bind
+from twinlaw import console, options
+from twinlaw.identify_report import identify_page
+from twinlaw.identify_summary import HEADING, estimate_rows
+from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits, save_result
+from twinlaw.page import page_text
+from twinlaw.stages import load_bound
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --out, --free, --bounds, --search, --window, --truth, --json, FILES."""
+    options.plant(parser)
+    options.out(parser)
+    parser.add_argument(
+        "--free", metavar="NAMES", help="from logs estimate these, with commas; default: all whose sd is above 0"
+    )
+    parser.add_argument(
+        "--bounds", type=Path, metavar="BOUNDS.toml", help="NAME = [lowest, highest]; default: a fifth to five times"
+    )
+    parser.add_argument(
+        "--search", type=int, metavar="SEED", help="search the whole range first, for a start that may be far off"
+    )
+    parser.add_argument(
+        "--window",
+        type=float,
+        metavar="SECONDS",
+        help="length of the windows of logs; default: the one that tells most",
+    )
+    parser.add_argument(
+        "--truth", type=Path, metavar="PLANT.toml", help="fly this plant with the controller designed from the result"
+    )
+    options.as_json(parser)
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILES", help="experiments, folders of them, run logs")
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Read everything, estimate, write, tell."""
+    if chosen.window is not None and not chosen.window > 0.0:
+        raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
+    bound = load_bound(chosen.plant)
+    truth = None if chosen.truth is None else load_bound(chosen.truth)
+    wishes = Wishes(free_names(bound, chosen.free), read_limits(chosen.bounds), chosen.search, chosen.window)
+    inputs = read_inputs(chosen.files, bound)
+    result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
+    comparison = None
+    if truth is not None:
+        with console.stage("flying the real plant and the identified one"):
+            comparison = compare_flights(bind(result.plant), truth)
+    write_atomic(chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, comparison)))
+    if chosen.json:
+        print(json.dumps(facts(result)))
+        return 0
+    print(console.table(estimate_rows(result.estimates), HEADING))
+    for note in result.notes:
+        print(f"- {note}")
+    print(f"\n{chosen.out / 'plant.toml'}")
+    return 0
