@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 SCHEMA = "verification/1"
@@ -59,7 +59,7 @@ def equality_table(equality: Equality) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class RoundingBound:
-    """A proved bound on what one step in float32 can differ from real arithmetic, per output [V], and how it was proved."""
+    """A proved bound on what one step can differ from real arithmetic, per output [V], and how it was proved."""
 
     u_M: float
     u_T: float
@@ -99,8 +99,22 @@ class SelfTest:
 
 
 @dataclass(frozen=True)
+class ProofResult:
+    """What became of one proof: "proved", "failed" or "skipped", with its figure (or the reason) in words.
+
+    `detail` lists what a reader may want to see one by one (findings, survivors); `figures` are the same as numbers, for a program.
+    """
+
+    name: str
+    outcome: str
+    figure: str
+    detail: tuple[str, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Verification:
-    """All checks of one table."""
+    """All checks of one table; `rounding` is the bound of the arithmetic that was asked for, `roundings` has that of each."""
 
     table_digest: str
     equality: tuple[Equality, ...]
@@ -108,6 +122,8 @@ class Verification:
     rounding: RoundingBound
     poles: tuple[PoleMigration, ...]
     target: tuple[TargetCost, ...]
+    roundings: Mapping[str, RoundingBound] = field(default_factory=dict)
+    proofs: tuple[ProofResult, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -126,7 +142,8 @@ class Verification:
             for row in self.target
             if row.cycles_max > row.cycles_bound
         )
-        return (*unequal, *self_tests, *unstable, *slow)
+        unproved = (f"{row.name}: {row.figure}" for row in self.proofs if row.outcome == "failed")
+        return (*unequal, *self_tests, *unstable, *slow, *unproved)
 
     @property
     def passed(self) -> bool:
@@ -145,7 +162,9 @@ def verification_text(verification: Verification) -> str:
         "equality": [equality_table(row) for row in verification.equality],
         "self_test": content["self_tests"],
         "rounding_bound_V": content["rounding"],
+        "rounding_bounds_V": content["roundings"],
         "poles": content["poles"],
         "target": content["target"],
+        **({"proofs": content["proofs"]} if verification.proofs else {}),
     }
     return json.dumps(ordered, indent=1) + "\n"

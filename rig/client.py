@@ -60,6 +60,11 @@ class BoardClient:
             raise
         return cls(line, identity, numbers)
 
+    @property
+    def numbers(self) -> Numbers:
+        """How the board's law writes its numbers."""
+        return self._numbers
+
     def arm(self, mode: str) -> None:
         """Arm in `mode` ("FLYING" or "LOOP"); the board refuses a host whose table is not its own."""
         head = bytes.fromhex(self.identity.table_digest)[:DIGEST_HEAD_BYTES]

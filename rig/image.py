@@ -1,18 +1,26 @@
 """The firmware image: generated law and protocol, control path and board layer, compiled and linked."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from codegen.protocol_source import protocol_source
+from records.errors import BadInput
 from records.files import write_atomic
 from records.protocol import PROTOCOL
+from toolchain.calls import callers_of
 from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
 from toolchain.host import CText, Source
 from toolchain.target import TARGET_FLAGS, build_image
 
 FIRMWARE_DIR = Path(__file__).resolve().parent.parent / "firmware"
 LINKER_SCRIPT = FIRMWARE_DIR / "board" / "link.ld"
+# Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
+SOFT_ARITHMETIC = re.compile(
+    r"__aeabi_(?:[fd](?!iv0)\w+|c[fd]\w+|[iul]+2[fd]|[a-z]*div[a-z]*)|__u?(?:div|mod|divmod)[sdt]i[34]|soft_float_\w+"
+    r"|__(?:add|sub|mul|div|neg|eq|ne|lt|le|gt|ge|un)[sd]f[23]|__(?:fix|float)\w+|__(?:extend|trunc)\w+"
+)
 INCLUDE_DIRS = (FIRMWARE_DIR / "control", FIRMWARE_DIR / "board")
 
 
@@ -43,10 +51,26 @@ def build_firmware(
     flags = (optimisation, *(flag for flag in TARGET_FLAGS if not flag.startswith("-O")))
     elf = build_image("firmware", sources, LINKER_SCRIPT, include_dirs=INCLUDE_DIRS, flags=flags).read_bytes()
     image = describe_image(elf, "firmware.elf")
+    if "#define LAW_ARITHMETIC_CODE 1 " in texts.get("law.h", ""):
+        refuse_soft_arithmetic(image)
     if out_dir is not None:
         write_atomic(out_dir / "firmware.elf", image.elf)
         write_atomic(out_dir / "firmware.bin", image.binary)
     return image
+
+
+def refuse_soft_arithmetic(image: FirmwareImage) -> None:
+    """Raise BadInput, naming routine and caller, when an image of integers alone carries float arithmetic or a division in software."""
+    for name, symbol in sorted(image.symbols.items()):
+        if SOFT_ARITHMETIC.fullmatch(name):
+            callers = callers_of(image.elf, symbol.address) or ("a pointer",)
+            raise BadInput(
+                what="fixed-point image",
+                where=f"called by {', '.join(callers)}",
+                got=f"{name} linked in",
+                expected="integer arithmetic without float or division in software",
+                remedy="mend the caller: shifts, products and comparisons of integers are what this core has",
+            )
 
 
 def describe_image(elf: bytes, where: str) -> FirmwareImage:

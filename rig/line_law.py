@@ -12,9 +12,9 @@ class LineLaw:
     """As verification.stateless.Stateless: angles [lanes, 2] stand for the state. `cycles_max` are by the board's own counter."""
 
     name = "board"
-    arithmetic = "float32"
 
     def __init__(self, client: BoardClient) -> None:
+        self.arithmetic = client.numbers.name
         self.cycles_max = 0
         self._client = client
 
@@ -29,14 +29,14 @@ class LineLaw:
 
     def _lane(self, angles: Bits, inputs: Bits) -> Bits:
         self._client.arm("LOOP")
-        self._client.reset_law(*_floats(angles))
+        self._client.reset_law(*self._values(angles))
         return np.array([self._step(row) for row in inputs])
 
     def _step(self, row: Bits) -> Bits:
-        answer = self._client.sample(*_floats(row))
+        answer = self._client.sample(*self._values(row))
         self.cycles_max = max(self.cycles_max, answer.law_cycles)
-        return np.array([answer.u_M_V, answer.u_T_V], np.float32).view(np.uint32)
+        to_word = self._client.numbers.to_word
+        return np.array([to_word(answer.u_M_V, "V"), to_word(answer.u_T_V, "V")], np.uint32)
 
-
-def _floats(bits: Bits) -> list[float]:
-    return [float(value) for value in np.ascontiguousarray(bits).view(np.float32)]
+    def _values(self, words: Bits) -> list[float]:
+        return [self._client.numbers.from_word(int(word), "rad") for word in words]

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-ARITHMETICS = ("float32",)
+from twinlaw.arithmetics import ARITHMETICS
 
 
 def plant(parser: argparse.ArgumentParser) -> None:

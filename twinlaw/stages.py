@@ -8,7 +8,6 @@ import numpy as np
 
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
-from codegen.twin import Float32Twin
 from design.report import DesignReport
 from design.settings import read_settings
 from design.table import design, report_on
@@ -19,12 +18,13 @@ from records.plant import load_plant
 from records.protocol import PROTOCOL
 from records.table import ControllerTable
 from records.validation import Validation
-from records.verification import Equality, PoleMigration, SelfTest, TargetCost, Verification
+from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
 from rig.client import BoardClient
 from rig.controller import BoardController
 from rig.emulator.board import EmulatedBoard
 from rig.image import FirmwareImage, build_firmware
 from rig.line_law import LineLaw
+from rig.numbers import numbers_of
 from rig.target_law import TargetLaw
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
@@ -33,15 +33,15 @@ from sim.loop import fly, fly_law
 from sim.manoeuvres import flight
 from sim.plants import MODELS
 from sim.tracking import Tracking, tracking
+from twinlaw.arithmetics import ARITHMETICS, BY_NAME
 from twinlaw.console import stage
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
 from verification.ranges import Motion
 from verification.replay import Replay, replay_of, replayed_equality
-from verification.rounding import rounding_bound
 from verification.stateless import Stateless
 from verification.static_bound import kept_bound
-from verification.stimuli import Stimulus, sequences, standard_stimuli
+from verification.stimuli import Stimulus
 
 STEPS = 100_000
 
@@ -97,32 +97,71 @@ def verify_table(
     image: FirmwareImage,
     recorded: Sequence[Replay] = (),
     steps: int = STEPS,
+    arithmetic: str = "float32",
 ) -> Verification:
-    """All checks of one table: twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
-    twin, host, target = Float32Twin(table), HostLaw(law), TargetLaw(EmulatedBoard(image.elf))
-    stimuli = (*standard_stimuli(table, steps), *(replay.stimulus for replay in recorded))
+    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
+    checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
+    for other in ARITHMETICS:
+        if other not in checks:
+            texts = generate_law(table, other)
+            with stage(f"building the firmware in {other} as well"):
+                built = build_firmware(texts)
+            checks[other] = _check(bound, table, other, texts, built, (), steps)
+    ordered = [checks[name] for name in ARITHMETICS]
+    return Verification(
+        table_digest=table.digest,
+        equality=tuple(row for check in ordered for row in check.equality),
+        self_tests=tuple(row for check in ordered for row in check.self_tests),
+        rounding=checks[arithmetic].rounding,
+        poles=tuple(poles),
+        target=tuple(check.cost for check in ordered),
+        roundings={name: checks[name].rounding for name in ARITHMETICS},
+    )
+
+
+@dataclass(frozen=True)
+class _Check:
+    """What was found of a table in one arithmetic."""
+
+    equality: tuple[Equality, ...]
+    self_tests: tuple[SelfTest, ...]
+    rounding: RoundingBound
+    cost: TargetCost
+
+
+def _check(
+    bound: BoundPlant,
+    table: ControllerTable,
+    arithmetic: str,
+    law: Mapping[str, str],
+    image: FirmwareImage,
+    recorded: Sequence[Replay],
+    steps: int,
+) -> _Check:
+    """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
+    chosen = BY_NAME[arithmetic]
+    twin, host = chosen.twin(table), HostLaw(law, arithmetic)
+    target = TargetLaw(EmulatedBoard(image.elf), arithmetic)
+    stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
     equality = [_equal(one, other, stimuli) for one, other in ((twin, host), (host, target))]
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
-    with stage("proving a bound on rounding"):
-        rounding = rounding_bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
+    with stage(f"proving a bound on rounding in {arithmetic}"):
+        rounding = chosen.bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
     with stage("bounding cycles and stack from the image"):
         cost = kept_bound(image.elf, "law_step")
-    return Verification(
-        table_digest=table.digest,
+    tests = (("host", host.self_test()), ("target", target.self_test()))
+    return _Check(
         equality=tuple(equality),
-        self_tests=(SelfTest("host", "float32", host.self_test()), SelfTest("target", "float32", target.self_test())),
+        self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        poles=tuple(poles),
-        target=(
-            TargetCost(
-                arithmetic="float32",
-                cycles_max=target.cycles_max,
-                cycles_bound=cost.cycles_bound,
-                stack_bytes=cost.stack_bytes,
-                flash_bytes=image.sizes.flash_bytes,
-                ram_bytes=image.sizes.ram_bytes,
-            ),
+        cost=TargetCost(
+            arithmetic=arithmetic,
+            cycles_max=target.cycles_max,
+            cycles_bound=cost.cycles_bound,
+            stack_bytes=cost.stack_bytes,
+            flash_bytes=image.sizes.flash_bytes,
+            ram_bytes=image.sizes.ram_bytes,
         ),
     )
 
@@ -158,12 +197,14 @@ def board_url(port: str, elf: Path) -> str:
     return f"emulated://{elf.resolve()}"
 
 
-def validate_board(table: ControllerTable, url: str, steps: int) -> Validation:
+def validate_board(table: ControllerTable, url: str, steps: int, arithmetic: str = "float32") -> Validation:
     """Identity, self-test and `steps` replayed steps of the board at `url` against the host's C; raises BadInput for another table."""
-    with BoardClient.connect(url, table_digest=table.digest) as client:
+    numbers = numbers_of(table, arithmetic)
+    with BoardClient.connect(url, table_digest=table.digest, numbers=numbers) as client:
         law = LineLaw(client)
         mismatches = client.self_test()
-        equality = _equal(Stateless(HostLaw(generate_law(table))), law, sequences(table, steps))
+        host = HostLaw(generate_law(table, arithmetic), arithmetic)
+        equality = _equal(Stateless(host), law, BY_NAME[arithmetic].sequences(table, steps))
         client.disarm()
         return Validation(
             port=url.split(":")[0] if url.startswith("emulated") else url,
@@ -176,10 +217,10 @@ def validate_board(table: ControllerTable, url: str, steps: int) -> Validation:
         )
 
 
-def fly_board(bound: BoundPlant, table: ControllerTable, url: str) -> Flight:
+def fly_board(bound: BoundPlant, table: ControllerTable, url: str, arithmetic: str = "float32") -> Flight:
     """Fly the plant with the board at `url` in the loop, angles to the board and voltages back, one frame each per sample."""
     with (
-        BoardClient.connect(url, table_digest=table.digest) as client,
+        BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client,
         stage("flying the firmware through its serial line"),
     ):
         log = fly(bound, BoardController(client), flight(bound, table.sample_period_s), table_digest=table.digest)
@@ -192,6 +233,14 @@ def fly_double(bound: BoundPlant, table: ControllerTable) -> Flight:
     """Fly the plant under the table's law in double precision."""
     with stage("flying the law in double precision"):
         log = fly_law(bound, table, flight(bound, table.sample_period_s))
+    return Flight(log, _tracking(log), {})
+
+
+def fly_host(bound: BoundPlant, table: ControllerTable, arithmetic: str) -> Flight:
+    """Fly the plant under the table's generated law, compiled for this computer."""
+    law = HostLaw(generate_law(table, arithmetic), arithmetic)
+    with stage(f"flying the generated law in {arithmetic}"):
+        log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
     return Flight(log, _tracking(log), {})
 
 
@@ -223,8 +272,8 @@ def table_poles(bound: BoundPlant, table: ControllerTable) -> tuple[PoleMigratio
         return poles_of(report_on(bound, settings, table))
 
 
-def recorded_replay(path: Path, table: ControllerTable) -> Replay:
-    """A run log of any known plant, to be replayed; raises BadInput."""
+def recorded_replay(path: Path, table: ControllerTable, arithmetic: str = "float32") -> Replay:
+    """A run log of any known plant, to be replayed in an arithmetic; raises BadInput."""
     plant = plant_of_log(path)
     if plant not in MODELS:
         raise BadInput(
@@ -234,4 +283,4 @@ def recorded_replay(path: Path, table: ControllerTable) -> Replay:
             f"one of {', '.join(MODELS)}",
             "name a known plant",
         )
-    return replay_of(load_log(path, log_columns(MODELS[plant]())), table, path)
+    return replay_of(load_log(path, log_columns(MODELS[plant]())), table, path, arithmetic)

@@ -1,12 +1,15 @@
 """The generated C, compiled for this computer and called through cffi: a controller, and many lanes at once."""
 
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from codegen.fixed_formats import value_of, word_of
 from codegen.law import generate_law
 from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
@@ -28,6 +31,14 @@ _DECLARATIONS = """
 """
 
 
+@dataclass(frozen=True)
+class Places:
+    """Places of angles and voltages of a fixed-point law."""
+
+    angle: int
+    voltage: int
+
+
 class HostLaw:
     """A compiled law: `reset` and `step` for the closed loop, `start` and `run` on bits of many lanes for comparisons."""
 
@@ -40,21 +51,25 @@ class HostLaw:
         sources = [CText(name, text) for name, text in texts.items()]
         library = build_shared(f"law-{arithmetic}", [*sources, _BATCH_DRIVER], flags=flags)
         self.arithmetic = arithmetic
+        self._places = _places(texts["law.h"]) if arithmetic == "fixed" else None
         self._ffi, self._lib = load_shared(_DECLARATIONS, library)
         if self._lib.law_batch_state_words() != STATE_WORDS:
             raise ValueError(f"law_state of the C has other words than the twin's {STATE_WORDS}")
-        self._state = self.start(_bits((0.0, 0.0)))
+        self._state = self.start(self._angles(0.0, 0.0))
 
     def reset(self, psi_rad: float, phi_rad: float) -> None:
         """Start afresh at these angles."""
-        self._state = self.start(_bits((psi_rad, phi_rad)))
+        self._state = self.start(self._angles(psi_rad, phi_rad))
 
     def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
         """One sample; returns (u_M_V, u_T_V) within their limits."""
-        inputs = _bits((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
+        inputs = self._angles(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
         self._state, outputs = self.run(self._state, inputs[np.newaxis])
-        u_M_V, u_T_V = outputs.view(np.float32)[0, 0]
-        return float(u_M_V), float(u_T_V)
+        if self._places is None:
+            u_M_V, u_T_V = outputs.view(np.float32)[0, 0].tolist()
+        else:
+            u_M_V, u_T_V = (value_of(word, self._places.voltage) for word in outputs.view(np.int32)[0, 0].tolist())
+        return u_M_V, u_T_V
 
     def start(self, angles: Bits) -> Bits:
         """States at rest, bits [lanes, STATE_WORDS], for angles psi, phi as bits [lanes, 2]."""
@@ -90,6 +105,11 @@ class HostLaw:
         """The digest compiled into the law."""
         return bytes(self._lib.LAW_TABLE_DIGEST).hex()
 
+    def _angles(self, *angles_rad: float) -> Bits:
+        if self._places is None:
+            return np.array([angles_rad], dtype=np.float32).view(np.uint32)
+        return np.array([[word_of(angle, self._places.angle) % 2**32 for angle in angles_rad]], dtype=np.uint32)
+
     def _pointer(self, array: NDArray[Any]) -> Any:
         # The C would read a strided view, or numbers of another width, as if they were dense 32-bit words.
         if not array.flags["C_CONTIGUOUS"] or array.itemsize != 4:
@@ -102,5 +122,11 @@ def host_law(table: ControllerTable, arithmetic: str = "float32") -> HostLaw:
     return HostLaw(generate_law(table, arithmetic), arithmetic)
 
 
-def _bits(numbers: tuple[float, ...]) -> Bits:
-    return np.array([numbers], dtype=np.float32).view(np.uint32)
+def _places(header: str) -> Places:
+    """The formats of the numbers that cross the border of a fixed-point law."""
+    angle, voltage = (
+        int(found.group(1))
+        for name in ("ANGLE", "VOLTAGE")
+        if (found := re.search(rf"#define LAW_{name}_PLACES (\d+)", header))
+    )
+    return Places(angle, voltage)

@@ -6,14 +6,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from codegen.fixed_formats import law_formats
 from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from records.verification import Equality
 from verification.equality import BatchStepper, first_output
-from verification.stimuli import Stimulus, replayed
+from verification.fixed_stimuli import words_from_floats
+from verification.stimuli import Stimulus
 
 Array = NDArray[np.float64]
+Bits = NDArray[np.uint32]
 
 # Measured angles, whatever the rig calls them: elevation (pitch) first, azimuth (yaw) second.
 ANGLES = (("psi_rad", "phi_rad"), ("theta_rad", "psi_rad"))
@@ -21,14 +24,17 @@ ANGLES = (("psi_rad", "phi_rad"), ("theta_rad", "psi_rad"))
 
 @dataclass(frozen=True)
 class Replay:
-    """A log's references and angles, and the inputs u [n, 2] that it says `table` sent; None where another law, or none, flew."""
+    """A log's references and angles, and the inputs [n, 2] that it says `table` sent, all as the arithmetic's words.
+
+    `sent` is None where another law, or none, flew.
+    """
 
     stimulus: Stimulus
-    u_V: Array | None
+    sent: Bits | None
 
 
-def replay_of(log: RunLog, table: ControllerTable, path: Path) -> Replay:
-    """The log at `path` as a replay; a log without references is replayed with references at zero.
+def replay_of(log: RunLog, table: ControllerTable, path: Path, arithmetic: str = "float32") -> Replay:
+    """The log at `path` as a replay in an arithmetic; a log without references is replayed with references at zero.
 
     Raises BadInput when it names another controller table, or has no two measured angles.
     """
@@ -42,21 +48,31 @@ def replay_of(log: RunLog, table: ControllerTable, path: Path) -> Replay:
         )
     psi, phi = _angles(log, path)
     references = [log.extra.get(name, np.zeros(len(log.t_s))) for name in ("psi_ref_rad", "phi_ref_rad")]
-    stimulus = replayed(path.name, *(np.asarray(values, np.float32) for values in (*references, psi, phi)))
     is_own = log.table_digest is not None and {"psi_ref_rad", "phi_ref_rad"} <= log.extra.keys()
-    return Replay(stimulus, log.u if is_own else None)
+    inputs, sent = _as_words(np.stack([*references, psi, phi], axis=-1), log.u, table, arithmetic)
+    stimulus = Stimulus(path.name, inputs[:1, 2:].copy(), inputs[:, np.newaxis].copy())
+    return Replay(stimulus, sent if is_own else None)
 
 
 def replayed_equality(replay: Replay, law: BatchStepper) -> Equality | None:
     """Rows of the log whose inputs are not, bit for bit, what `law` sends from rest at the first row; None without such inputs."""
-    if replay.u_V is None:
+    if replay.sent is None:
         return None
     _, outputs = law.run(law.start(replay.stimulus.angles), replay.stimulus.inputs)
-    sent = np.asarray(replay.u_V, np.float32).view(np.uint32)[:, np.newaxis]
+    sent = replay.sent[:, np.newaxis]
     unequal: NDArray[np.bool_] = np.not_equal(sent, outputs)
     mismatches = int(unequal.any(axis=(1, 2)).sum())
     first = first_output(replay.stimulus, unequal, (sent, outputs)) if mismatches else None
     return Equality(("log", law.name), law.arithmetic, len(unequal), mismatches, first)
+
+
+def _as_words(angles_rad: Array, u_V: Array, table: ControllerTable, arithmetic: str) -> tuple[Bits, Bits]:
+    if arithmetic == "float32":
+        as_floats = (np.ascontiguousarray(values, np.float32).view(np.uint32) for values in (angles_rad, u_V))
+        inputs, sent = as_floats
+        return inputs, sent
+    formats = law_formats(table)
+    return words_from_floats(angles_rad, formats.angle_places), words_from_floats(u_V, formats.voltage_places)
 
 
 def _angles(log: RunLog, path: Path) -> tuple[Array, Array]:

@@ -26,8 +26,9 @@ from twinlaw.stages import (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --out, --json."""
+    """--plant, --arithmetic, --out, --json."""
     options.plant(parser)
+    options.arithmetic(parser)
     options.out(parser)
     options.as_json(parser)
 
@@ -39,12 +40,14 @@ def run(chosen: argparse.Namespace) -> int:
     # Whatever stops this run, no verdict or flight of an earlier one is to lie beside the new table.
     remove_all(out / name for name in ("verification.json", "run.csv", "run.toml", "report.html"))
     write_atomic(out / "controller.json", table_text(designed.table))
-    law = generate_sources(designed.table, "float32", out / "generated")
+    law = generate_sources(designed.table, chosen.arithmetic, out / "generated")
     image = build_image(law, out)
-    verification = verify_table(designed.bound, designed.table, poles_of(designed.report), law, image)
+    verification = verify_table(
+        designed.bound, designed.table, poles_of(designed.report), law, image, arithmetic=chosen.arithmetic
+    )
     write_atomic(out / "verification.json", verification_text(verification))
     demand(verification)
-    flight = fly_board(designed.bound, designed.table, board_url("emulated", out / "firmware.elf"))
+    flight = fly_board(designed.bound, designed.table, board_url("emulated", out / "firmware.elf"), chosen.arithmetic)
     save_log(out / "run.csv", flight.log)
     page = run_page(
         chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, flight.counters

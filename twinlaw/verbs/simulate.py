@@ -1,4 +1,4 @@
-"""Simulate a flight of the nonlinear plant under a controller table's law in double precision, without any board.
+"""Simulate a flight of the nonlinear plant under a controller table's law, in double precision or as generated, without any board.
 
 Writes DIR/simulation.csv and .toml. Without --table the controller is designed from the plant file. The error of the integration is
 told by the same flight with steps of half the length.
@@ -11,13 +11,17 @@ from pathlib import Path
 from records.log import save_log
 from records.table import load_table
 from twinlaw import console, options, summary
-from twinlaw.stages import design_controller, fly_double, halved_step, load_bound
+from twinlaw.arithmetics import ARITHMETICS
+from twinlaw.stages import design_controller, fly_double, fly_host, halved_step, load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --table, --out, --json."""
+    """--plant, --table, --arithmetic, --out, --json."""
     options.plant(parser)
     parser.add_argument("--table", type=Path, metavar="TABLE.json", help="fly this table instead of designing one")
+    parser.add_argument(
+        "--arithmetic", choices=("float64", *ARITHMETICS), default="float64", help="of the law; default: %(default)s"
+    )
     options.out(parser)
     options.as_json(parser)
 
@@ -29,7 +33,8 @@ def run(chosen: argparse.Namespace) -> int:
         bound, table = designed.bound, designed.table
     else:
         bound, table = load_bound(chosen.plant), load_table(chosen.table)
-    flight = fly_double(bound, table)
+    generated = chosen.arithmetic in ARITHMETICS
+    flight = fly_host(bound, table, chosen.arithmetic) if generated else fly_double(bound, table)
     error_rad = dict(zip(bound.model.outputs, halved_step(bound, table).estimate.tolist(), strict=True))
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)

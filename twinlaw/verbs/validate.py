@@ -17,10 +17,11 @@ from twinlaw.stages import board_url, fly_board, load_bound, validate_board
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --plant, --table, --steps, --out, --json."""
+    """--port, --plant, --table, --arithmetic, --steps, --out, --json."""
     options.port(parser)
     options.plant(parser)
     options.table(parser)
+    options.arithmetic(parser)
     parser.add_argument("--steps", type=options.count, default=10_000, help="replayed at least; default: %(default)s")
     options.out(parser)
     options.as_json(parser)
@@ -30,12 +31,12 @@ def run(chosen: argparse.Namespace) -> int:
     """Ask, replay, fly, write, and fail where a check does not hold."""
     bound, table = load_bound(chosen.plant), load_table(chosen.table)
     url = board_url(chosen.port, chosen.out / "firmware.elf")
-    validation = validate_board(table, url, chosen.steps)
+    validation = validate_board(table, url, chosen.steps, chosen.arithmetic)
     text = validation_text(validation)
     write_atomic(chosen.out / "validation.json", text)
     if not validation.passed:
         raise VerificationFailed("; ".join(validation.failures))
-    flight = fly_board(bound, table, url)
+    flight = fly_board(bound, table, url, chosen.arithmetic)
     save_log(chosen.out / "validation.csv", flight.log)
     if chosen.json:
         print(text)

@@ -24,9 +24,10 @@ from twinlaw.stages import (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --table, --log, --steps, --out, --json."""
+    """--plant, --table, --arithmetic, --log, --steps, --out, --json."""
     options.plant(parser)
     options.table(parser)
+    options.arithmetic(parser)
     parser.add_argument(
         "--log", type=Path, action="append", default=[], metavar="LOG.csv", help="replay it too; may be repeated"
     )
@@ -38,12 +39,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
     table = load_table(chosen.table)
-    recorded = [recorded_replay(path, table) for path in chosen.log]
+    recorded = [recorded_replay(path, table, chosen.arithmetic) for path in chosen.log]
     bound = load_bound(chosen.plant)
     poles = table_poles(bound, table)
-    law = generate_sources(table, "float32", chosen.out / "generated")
+    law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
     image = build_image(law, chosen.out)
-    verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps)
+    verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps, chosen.arithmetic)
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(summary.verification_rows(verification)))

@@ -1,0 +1,41 @@
+"""The arithmetics of the law: what each is verified with."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from codegen.fixed_twin import FixedTwin
+from codegen.law import ARITHMETIC_CODES
+from codegen.twin import Float32Twin
+from records.table import ControllerTable
+from records.verification import RoundingBound
+from verification.equality import BatchStepper
+from verification.fixed_rounding import fixed_rounding_bound
+from verification.fixed_stimuli import fixed_sequences, fixed_stimuli
+from verification.ranges import Motion
+from verification.rounding import rounding_bound
+from verification.stimuli import Stimulus, sequences, standard_stimuli
+
+ARITHMETICS = tuple(ARITHMETIC_CODES)
+
+
+class Bound(Protocol):
+    """A proof of how far one step is from real arithmetic."""
+
+    def __call__(self, table: ControllerTable, motion: Motion) -> RoundingBound: ...
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """The exact model of one arithmetic, stimuli for it with and without set states, and its proof."""
+
+    twin: Callable[[ControllerTable], BatchStepper]
+    stimuli: Callable[[ControllerTable, int], Sequence[Stimulus]]
+    sequences: Callable[[ControllerTable, int], Sequence[Stimulus]]
+    bound: Bound
+
+
+BY_NAME: Mapping[str, Arithmetic] = {
+    "float32": Arithmetic(Float32Twin, standard_stimuli, sequences, rounding_bound),
+    "fixed": Arithmetic(FixedTwin, fixed_stimuli, fixed_sequences, fixed_rounding_bound),
+}

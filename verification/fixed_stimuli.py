@@ -1,0 +1,110 @@
+"""Inputs and states on which executions of the fixed-point law are compared: those of the float32 law as words, and any words at all."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.fixed_formats import MISSING, law_formats
+from codegen.law_equations import STATE_WORDS
+from records.table import ControllerTable
+from verification import stimuli
+from verification.stimuli import Stimulus
+
+Bits = NDArray[np.uint32]
+
+# Missing, the outermost, and the least words, a few powers of two and their neighbours.
+SPECIAL_WORDS = np.array(
+    [
+        MISSING,
+        MISSING + 1,
+        2**31 - 1,
+        0,
+        1,
+        -1,
+        0x55555555,
+        -(2**30),
+        2**30,
+        2**28 - 1,
+        -(2**27),
+        2**27,
+        2**16,
+        -(2**16),
+    ],
+    dtype=np.int32,
+).view(np.uint32)
+
+
+def fixed_stimuli(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
+    """At least `steps` control steps: reference jumps, saturation, missing and special words, broken and random states."""
+    rng = np.random.default_rng(seed)
+    share = -(-steps // 5)
+    lanes = -(-share // 250)
+    return (
+        as_words(table, stimuli.reference_jumps(table, rng, 250, lanes)),
+        as_words(table, stimuli.saturating(table, rng, 250, lanes)),
+        with_special_words(table, rng, 250, lanes),
+        from_random_states(table, rng, 2 * lanes, 125),
+        from_random_words(rng, share),
+    )
+
+
+def fixed_sequences(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
+    """The same kinds without set states, for a board that can only be reset and stepped."""
+    rng = np.random.default_rng(seed)
+    lanes = -(-steps // (3 * 250))
+    return (
+        as_words(table, stimuli.reference_jumps(table, rng, 250, lanes)),
+        as_words(table, stimuli.saturating(table, rng, 250, lanes)),
+        with_special_words(table, rng, 250, lanes),
+    )
+
+
+def as_words(table: ControllerTable, stimulus: Stimulus) -> Stimulus:
+    """A stimulus of float32 angles and references, without set states, in the words of the fixed-point law."""
+    places = law_formats(table).angle_places
+    return Stimulus(stimulus.name, _words(stimulus.angles, places), _words(stimulus.inputs, places))
+
+
+def with_special_words(table: ControllerTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
+    """Reference jumps in which one word in thirty is missing, outermost, least, or any."""
+    plain = as_words(table, stimuli.reference_jumps(table, rng, steps, lanes))
+    inputs = _sprinkled(plain.inputs, rng, 30)
+    return Stimulus("special words", inputs[0, :, 2:].copy(), inputs)
+
+
+def from_random_states(table: ControllerTable, rng: np.random.Generator, lanes: int, steps: int) -> Stimulus:
+    """States of all sizes, one word in fifty special, then ordinary inputs: broken states must heal alike."""
+    plain = as_words(table, stimuli.reference_jumps(table, rng, steps, lanes))
+    states = _sprinkled(_any_size(rng, (lanes, STATE_WORDS)), rng, 50)
+    return Stimulus("random states", plain.angles, plain.inputs, states)
+
+
+def from_random_words(rng: np.random.Generator, lanes: int) -> Stimulus:
+    """One step from states and inputs of any 32 bits, in half of the lanes of all sizes."""
+    words = rng.integers(0, 2**32, (lanes, STATE_WORDS + 4), dtype=np.uint32)
+    words[::2] = _sprinkled(_any_size(rng, words[::2].shape), rng, 16)
+    inputs = words[np.newaxis, :, STATE_WORDS:].copy()
+    return Stimulus("random words", inputs[0, :, 2:].copy(), inputs, words[:, :STATE_WORDS].copy())
+
+
+def words_from_floats(values: NDArray[np.float64], places: int) -> Bits:
+    """The nearest words; MISSING for what is not finite."""
+    steps = np.round(np.where(np.isfinite(values), values, 0.0) * 2.0**places)
+    held = np.clip(steps, MISSING + 1, -MISSING - 1).astype(np.int64)
+    return np.where(np.isfinite(values), held, MISSING).astype(np.int32).view(np.uint32)
+
+
+def _words(bits: Bits, places: int) -> Bits:
+    with np.errstate(invalid="ignore"):
+        return words_from_floats(bits.view(np.float32).astype(np.float64), places)
+
+
+def _any_size(rng: np.random.Generator, shape: Sequence[int]) -> Bits:
+    words = rng.integers(-(2**31), 2**31, tuple(shape), dtype=np.int32)
+    return (words >> rng.integers(0, 32, words.shape, dtype=np.int32)).view(np.uint32)
+
+
+def _sprinkled(words: Bits, rng: np.random.Generator, one_in: int) -> Bits:
+    special = rng.choice(SPECIAL_WORDS, words.shape)
+    return np.where(rng.integers(0, one_in, words.shape) == 0, special, words)
