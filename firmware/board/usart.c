@@ -46,7 +46,6 @@ static void clear_errors(uint32_t status)
     USART2->ICR = USART_ICR_ORECF | USART_ICR_FECF | USART_ICR_NECF;
 }
 
-/* More than the ring holds: an index is damaged. Empty is the only state that is known to be true. */
 static void keep(uint8_t byte)
 {
     const uint32_t head = rx.head;
@@ -93,7 +92,7 @@ bool usart_read(uint8_t *byte)
 {
     const uint32_t tail = rx.tail;
     if (rx.head - tail > RX_ROOM) {
-        rx.tail = rx.head;
+        rx.tail = rx.head; /* an index is damaged: empty is the only state that is known to be true */
         return false;
     }
     if (tail == rx.head) {
@@ -104,24 +103,30 @@ bool usart_read(uint8_t *byte)
     return true;
 }
 
+static void start_sending(uint32_t head)
+{
+    interrupts_off(); /* the handler clears the same register's bit */
+    tx.head = head;
+    USART2->CR1 |= USART_CR1_TXEIE;
+    interrupts_on();
+}
+
 void usart_write(const uint8_t *line, size_t length)
 {
     const uint32_t head = tx.head;
+    const uint32_t waiting = head - tx.tail;
     if (length == 0u) {
         return;
     }
-    const uint32_t waiting = head - tx.tail;
     if (waiting <= TX_ROOM && TX_ROOM - waiting < length) {
         frames_dropped++;
+        start_sending(head); /* a ring that a damaged index makes full must still run empty */
         return;
     }
     for (uint32_t i = 0; i < length; i++) {
         tx.bytes[(head + i) & (TX_ROOM - 1u)] = line[i];
     }
-    interrupts_off(); /* the handler clears the same register's bit */
-    tx.head = head + (uint32_t)length;
-    USART2->CR1 |= USART_CR1_TXEIE;
-    interrupts_on();
+    start_sending(head + (uint32_t)length);
 }
 
 void usart_faults(board_faults *faults)

@@ -111,6 +111,22 @@ def test_every_bit_of_the_incoming_bytes_costs_a_frame_at_most_and_no_flight(sta
         assert plane.counters["frames_accepted"] - before in (2, 3), (byte, bit)  # two references, this question
 
 
+@pytest.mark.parametrize("ring", ["rx", "tx"])
+def test_every_bit_of_an_index_of_a_ring_costs_some_frames_and_no_conversation(stand_in, ring):
+    plane, source = Plane(stand_in), random.Random(3)
+    address, size = plane.board.symbol(ring)
+    for byte in range(size - 8, size):  # head and tail come last
+        for bit in range(8):
+            plane.restart()
+            plane.run(source.uniform(0.0, TICK_S))
+            plane.flip(address + byte, bit)
+            plane.run(1.5 * TICK_S)  # at 512 bytes each, what the ring pours out again is over in 6 ms
+            plane.board.uart_read()
+            plane.receiver.pending.clear()
+            assert plane.take_off() == "DONE", (byte, bit)
+            assert plane.drives, (byte, bit)
+
+
 def test_a_board_whose_seal_broke_is_reset_by_the_watchdog_and_says_so(stand_in):
     plane = Plane(stand_in)
     plane.restart()

@@ -1,6 +1,10 @@
-"""Frames by the thousand over a line in changing weather, and an account of every one of them."""
+"""Frames by the thousand over a line in changing weather, and an account of every one of them.
+
+`.venv/bin/python -m tests.rig.campaign 1000000` prints the account that docs/faults.md shows.
+"""
 
 import struct
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from random import Random
@@ -25,6 +29,17 @@ from tests.firmware.box import DIGEST, word
 from tests.rig.line_box import LineBox
 
 SAMPLE = PROTOCOL.message("SAMPLE").code
+BATCH = 500
+REFUSALS = (
+    "cobs_errors",
+    "too_long",
+    "too_short",
+    "crc_errors",
+    "wrong_version",
+    "unknown_type",
+    "wrong_length",
+    "stale",
+)
 KINDS = (DropFrames, DoubleFrames, SwapFrames, TruncateFrames, DropBytes, DoubleBytes, SpoilBytes, Babble)
 WRONG_SPEEDS = (0.7, 0.94, 0.97, 1.03, 1.06, 1.5)
 
@@ -147,3 +162,39 @@ class Campaign:
             return frame.message.name in ("IDENTITY", "RESULT", "COUNTERS") and code != SAMPLE
         (psi_ref_rad,) = struct.unpack("<f", reference.to_bytes(4, "little"))
         return code == SAMPLE and frame.number("u_M_V") == word(10.0 * psi_ref_rad)
+
+
+def told(campaign: Campaign, counted: dict[str, int]) -> str:
+    """The account as the table of docs/faults.md; `counted` are the board's counters at the end."""
+    account, heard = campaign.account, campaign.host.received
+    refused = [name for name in REFUSALS if counted[name]]
+    rows = [
+        ("frames sent", account.sent),
+        ("taken by the board", account.accepted),
+        ("counted as lost (`frames_lost`)", counted["frames_lost"]),
+        ("taken although never sent like that", account.false_at_board),
+        ("copies recognised (`repeated`)", counted["repeated"]),
+        ("pieces that the board heard", campaign.at_board.pieces),
+        ("of these accepted", counted["frames_accepted"]),
+        *((f"of these `{name}`", counted[name]) for name in refused),
+        ("answers sent", account.answers),
+        ("pieces that the host heard", campaign.at_host.pieces),
+        ("of these frames", heard.frames),
+        ("of these noise (`cobs_errors`, `too_long`, `too_short`, `crc_errors`)", heard.noise),
+        ("answers taken that are false", account.false_at_host),
+        ("clear frames after a weather that were not answered at once", account.deaf),
+    ]
+    return "\n".join(f"| {name} | {f'{count:,}'.replace(',', ' ')} |" for name, count in rows)
+
+
+def flown(frames: int) -> Campaign:
+    """A campaign of at least so many frames."""
+    campaign = Campaign(seed=5)
+    while campaign.account.sent < frames:
+        campaign.batch(BATCH)
+    return campaign
+
+
+if __name__ == "__main__":
+    asked = flown(int(sys.argv[1]))
+    print(told(asked, asked.counters()))
