@@ -116,7 +116,7 @@ def verification_rows(verification: Verification) -> list[Row]:
         )
         for row in verification.target
     ]
-    return rows
+    return rows + [(row.name, row.figure, _OUTCOMES[row.outcome]) for row in verification.proofs]
 
 
 TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|", "pushed by the other axis")
@@ -163,6 +163,9 @@ def validation_rows(validation: Validation) -> list[Row]:
 def degrees(angle_rad: float) -> str:
     """An angle as a person reads it."""
     return f"{math.degrees(angle_rad):.1f} deg" if math.isfinite(angle_rad) else "any"
+
+
+_OUTCOMES = {"proved": "proved", "failed": "FAILS", "skipped": "skipped"}
 
 
 def _held(condition: bool) -> str:

@@ -1,16 +1,20 @@
 """Verify a controller table: twin, compiled C and firmware image step by step, bit by bit; bounds; cost on the target.
 
 Writes DIR/verification.json, with the generated C and the image that were verified. --log replays what a run log recorded through
-all three as well; a log that another table flew is refused. Exit status 1 when a check does not hold.
+all three as well; a log that another table flew is refused. --proofs adds what the tools of docs/proofs.md prove; one that is
+absent is named and skipped. Exit status 1 when a check does not hold or a proof fails.
 """
 
 import argparse
 from pathlib import Path
 
+from codegen.protocol_source import protocol_source
 from records.files import write_atomic
+from records.protocol import PROTOCOL
 from records.table import load_table
 from records.verification import verification_text
 from twinlaw import console, options, summary
+from twinlaw.proving import with_proofs
 from twinlaw.stages import (
     STEPS,
     build_image,
@@ -21,10 +25,12 @@ from twinlaw.stages import (
     table_poles,
     verify_table,
 )
+from verification.proofs import Subject
+from verification.ranges import Motion
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --table, --arithmetic, --log, --steps, --out, --json."""
+    """--plant, --table, --arithmetic, --log, --steps, --proofs, --all, --out, --json."""
     options.plant(parser)
     options.table(parser)
     options.arithmetic(parser)
@@ -32,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--log", type=Path, action="append", default=[], metavar="LOG.csv", help="replay it too; may be repeated"
     )
     parser.add_argument("--steps", type=options.count, default=STEPS, help="compared at least; default: %(default)s")
+    parser.add_argument("--proofs", action="store_true", help="run the proofs as well")
+    parser.add_argument("--all", action="store_true", help="with --proofs: every mutant, not a sample of them")
     options.out(parser)
     options.as_json(parser)
 
@@ -45,6 +53,11 @@ def run(chosen: argparse.Namespace) -> int:
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
     image = build_image(law, chosen.out)
     verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps, chosen.arithmetic)
+    if chosen.proofs:
+        motion = Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim"))
+        generated = {**law, **protocol_source(PROTOCOL)}
+        subject = Subject(table, generated, image.elf, motion, chosen.arithmetic, chosen.all)
+        verification = with_proofs(verification, subject)
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(summary.verification_rows(verification)))

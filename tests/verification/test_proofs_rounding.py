@@ -1,0 +1,115 @@
+"""The rounding bound by Gappa: a second proof of what the ball arithmetic proves, from a script that is a pure text."""
+
+from dataclasses import replace
+
+import pytest
+
+from codegen.law_constants import law_constants
+from codegen.law_equations import LawInput, state_from_words, words_from_state
+from records.table import ControllerTable
+from records.verification import ProofResult, RoundingBound
+from tests.law_tables import ce150_table
+from verification.proofs import PROOFS, Proof, Subject, run_proof
+from verification.proofs.gappa_script import GappaArithmetic, Prover
+from verification.proofs.rounding import ask_gappa, gappa_bound, prove, tighter_bound
+from verification.proofs.tools import GAPPA, Tool
+from verification.ranges import Motion, declared_ranges
+from verification.rounding import restricted_voltages, rounding_bound
+
+needs_gappa = pytest.mark.skipif(not GAPPA.found(), reason=f"gappa is not installed ({GAPPA.remedy})")
+
+
+def _scripts(table: ControllerTable, prover: Prover) -> list[str]:
+    """The scripts that a proof of `table` asks, each answered by `prover`."""
+    asked: list[str] = []
+
+    def keep(script: str) -> float:
+        asked.append(script)
+        return prover(script)
+
+    arithmetic, ranges = GappaArithmetic(keep), declared_ranges(table, Motion())
+    state = state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)])
+    given = LawInput(*(arithmetic.within(*limits) for limits in words_of(ranges.given)))
+    law = law_constants(table, arithmetic.constant)
+    restricted_voltages(law, arithmetic, state, given, ranges, arithmetic.restricted)
+    return asked
+
+
+def words_of(given: LawInput[tuple[float, float]]) -> list[tuple[float, float]]:
+    return [getattr(given, name) for name in LawInput.__dataclass_fields__]
+
+
+def test_the_scripts_are_the_same_bytes_for_the_same_table_and_hold_what_their_goal_needs() -> None:
+    scripts = _scripts(ce150_table(), lambda _: 1e-9)
+    assert scripts == _scripts(ce150_table(), lambda _: 1e-9)
+    assert all(script.startswith("@rnd = float<ieee_32, ne>;\n") for script in scripts)
+    first = scripts[0]
+    assert first.count("*") == 2, "the first limit holds the filter's one product, in float32 and in real numbers"
+
+
+def test_an_implausible_voltage_within_the_ranges_is_no_proof() -> None:
+    with pytest.raises(ValueError, match="implausible"):
+        _scripts(ce150_table(), lambda script: 1e9 if " - r" not in script.rsplit("->", 1)[-1] else 1e-9)
+
+
+@needs_gappa
+def test_gappa_proves_a_known_half_ulp() -> None:
+    """Numbers of 1..2 rounded once are off by at most 2^-24."""
+    assert ask_gappa("@rnd = float<ieee_32, ne>;\n{ x in [1, 2] -> rnd(x) - x in ? }\n") == pytest.approx(
+        2.0**-24, rel=1e-9
+    )
+
+
+@needs_gappa
+def test_gappa_s_answer_without_a_bound_is_refused() -> None:
+    with pytest.raises(ValueError, match="Gappa finds no bound"):
+        ask_gappa("@rnd = float<ieee_32, ne>;\n{ x in [1, 2] -> rnd(y) - y in ? }\n")
+
+
+@needs_gappa
+def test_both_bounds_are_near_each_other_and_a_coarser_table_is_not_within_them() -> None:
+    """Truth: two sound bounds of one error; each is at most six times the other."""
+    table = ce150_table()
+    gappa, balls = gappa_bound(table, Motion()), rounding_bound(table)
+    for one, other in ((gappa.u_M, balls.u_M), (gappa.u_T, balls.u_T)):
+        assert 1 / 6 <= one / other <= 6
+    larger = gappa_bound(replace(table, psi_min_rad=-1.5, psi_max_rad=1.5), Motion(psi_limit_rad=1.5))
+    assert larger.u_M > gappa.u_M
+
+
+@needs_gappa
+def test_the_row_tells_both_bounds_and_which_is_tighter() -> None:
+    result = prove(Subject(ce150_table(), {}, b""))
+    assert result.outcome == "proved"
+    assert "by Gappa" in result.figure
+    assert "tighter" in result.figure
+    assert set(result.figures) == {"u_M_V", "u_T_V", "balls_u_M_V", "balls_u_T_V"}
+
+
+def test_the_smaller_bound_is_taken_per_output_and_named() -> None:
+    balls = RoundingBound(2e-3, 1e-3, "balls")
+    proved = ProofResult("rounding bound", "proved", "", figures={"u_M_V": 1e-3, "u_T_V": 5e-3})
+    taken = tighter_bound(balls, proved)
+    assert (taken.u_M, taken.u_T) == (1e-3, 1e-3)
+    assert "Gappa" in taken.method
+    assert tighter_bound(balls, replace(proved, outcome="failed")) == balls
+    assert tighter_bound(balls, ProofResult("totality", "proved", "")) == balls
+
+
+def test_a_missing_tool_skips_with_what_to_do_and_a_foreign_arithmetic_says_so() -> None:
+    subject = Subject(ce150_table(), {}, b"")
+    absent = Proof("x", "nothing", (Tool("nosuchtool", "Debian: apt install nosuchtool", ("nosuchtool",)),), prove)
+    skipped = run_proof(absent, subject)
+    assert (skipped.outcome, skipped.figure) == (
+        "skipped",
+        "nosuchtool is not installed (Debian: apt install nosuchtool)",
+    )
+    foreign = run_proof(replace(absent, tools=(), arithmetics=("float32",)), replace(subject, arithmetic="fixed"))
+    assert foreign.outcome == "skipped"
+    assert "not in fixed" in foreign.figure
+
+
+def test_every_proof_has_its_own_name_and_says_what_it_shows() -> None:
+    names = [proof.name for proof in PROOFS]
+    assert len(set(names)) == len(names)
+    assert all(proof.shows for proof in PROOFS)

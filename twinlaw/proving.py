@@ -1,0 +1,24 @@
+"""`verify --proofs`: the table of proofs run on one table, and what they add to its verification."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from records.verification import ProofResult, Verification
+from twinlaw.console import stage
+from verification.proofs import PROOFS, Subject, run_proof
+from verification.proofs.rounding import tighter_bound
+
+
+def with_proofs(verification: Verification, subject: Subject) -> Verification:
+    """The verification with a row for each proof, and with the smaller rounding bound where a second one was proved."""
+    results = tuple(_run_all(subject))
+    rounding = verification.rounding
+    for result in results:
+        rounding = tighter_bound(rounding, result)
+    return replace(verification, rounding=rounding, proofs=results)
+
+
+def _run_all(subject: Subject) -> Iterator[ProofResult]:
+    for proof in PROOFS:
+        with stage(f"proving: {proof.name}"):
+            yield run_proof(proof, subject)

@@ -1,0 +1,78 @@
+"""The rounding bound of both outputs, proved by Gappa over the same ranges as the ball arithmetic, and held against it.
+
+Gappa (G. Melquiond, https://gappa.gitlabpages.inria.fr) finds an enclosure of float32 minus real and checks its own derivation;
+the ball arithmetic (verification/rounding.py) is another program on another principle. Each bound is sound by itself, so that
+the smaller one holds.
+"""
+
+import math
+import re
+
+from codegen.law_constants import law_constants
+from codegen.law_equations import LawInput, state_from_words, words_from_state
+from records.table import ControllerTable
+from records.verification import ProofResult, RoundingBound
+from verification.proofs.gappa_script import GappaArithmetic
+from verification.proofs.subject import Subject
+from verification.proofs.tools import run_tool
+from verification.ranges import Motion, declared_ranges
+from verification.rounding import restricted_voltages, rounding_bound, stated_motion
+
+NAME = "rounding bound"
+METHOD = "Gappa script generated from the table, {motion}"
+_ENCLOSURE = re.compile(r" in \[([^ ,\]]+)[^,\]]*?(?:\{[^}]*\})?, ([^ ,\]]+)")
+
+
+def prove(subject: Subject) -> ProofResult:
+    """Both bounds in volt; fails where Gappa finds none."""
+    try:
+        gappa = gappa_bound(subject.table, subject.motion)
+    except ValueError as error:
+        return ProofResult(NAME, "failed", str(error))
+    balls = rounding_bound(subject.table, subject.motion)
+    figures = {"u_M_V": gappa.u_M, "u_T_V": gappa.u_T, "balls_u_M_V": balls.u_M, "balls_u_T_V": balls.u_T}
+    tighter = "Gappa" if max(gappa.u_M / balls.u_M, gappa.u_T / balls.u_T) <= 1.0 else "not both by Gappa"
+    told = f"u_M within {1e3 * gappa.u_M:.2f} mV, u_T within {1e3 * gappa.u_T:.2f} mV by Gappa"
+    against = f"{1e3 * balls.u_M:.2f} and {1e3 * balls.u_T:.2f} mV by ball arithmetic; tighter: {tighter}"
+    return ProofResult(NAME, "proved", f"{told}, {against}", figures=figures)
+
+
+def gappa_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
+    """The bound per output [V]; raises ValueError where Gappa finds none or a voltage may be implausible."""
+    arithmetic = GappaArithmetic(ask_gappa)
+    ranges = declared_ranges(table, motion)
+    output = restricted_voltages(
+        law_constants(table, arithmetic.constant),
+        arithmetic,
+        state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
+        LawInput(*(arithmetic.within(*getattr(ranges.given, name)) for name in LawInput.__dataclass_fields__)),
+        ranges,
+        arithmetic.restricted,
+    )
+    if output.u_M_V.error is None or output.u_T_V.error is None:
+        raise ValueError("an output left the law without a limit")
+    return RoundingBound(output.u_M_V.error, output.u_T_V.error, METHOD.format(motion=stated_motion(motion)))
+
+
+def tighter_bound(bound: RoundingBound, result: ProofResult) -> RoundingBound:
+    """`bound`, or per output what Gappa proved where that is smaller; the method names both then."""
+    u_M, u_T = (result.figures.get(name, math.inf) for name in ("u_M_V", "u_T_V"))
+    if result.outcome != "proved" or (u_M >= bound.u_M and u_T >= bound.u_T):
+        return bound
+    return RoundingBound(min(u_M, bound.u_M), min(u_T, bound.u_T), f"the smaller of: Gappa script; {bound.method}")
+
+
+def ask_gappa(script: str) -> float:
+    """The bound of |x| that Gappa finds for the goal `x in ?`; raises ValueError where it finds none."""
+    done = run_tool("gappa", [], given=script)
+    found = _ENCLOSURE.search(done.stdout + done.stderr)
+    if done.returncode != 0 or found is None:
+        raise ValueError(f"Gappa finds no bound: {' '.join((done.stderr or done.stdout).split())[-120:]}")
+    return max(_size(found[1]), _size(found[2]))
+
+
+def _size(dyadic: str) -> float:
+    """|m b e| = |m| 2^e as a float that is not below it."""
+    mantissa, _, exponent = dyadic.partition("b")
+    size = math.ldexp(abs(int(mantissa)), int(exponent or 0))
+    return math.nextafter(size, math.inf) if size else 0.0
