@@ -106,9 +106,10 @@ def law_formats(table: ControllerTable) -> LawFormats:
     # The third difference of an error is up to eight times the error.
     error_rad_bits = bits_of(widest_reference_rad + angle_limit_rad)
     angle_places = WORD_BITS - 3 - error_rad_bits
-    w_V_bits = HEADROOM_BITS + bits_of(max(max(abs(axis.u_min_V), abs(axis.u_max_V)) for axis in axes))
-    voltage_places = WORD_BITS - 2 - w_V_bits
     s_V_bits = bits_of(max(_widest_s(table, axis) for axis in axes))
+    limit_V_bits = bits_of(max(max(abs(axis.u_min_V), abs(axis.u_max_V)) for axis in axes))
+    w_V_bits = max(HEADROOM_BITS + limit_V_bits, 2 + s_V_bits)
+    voltage_places = WORD_BITS - 2 - w_V_bits
     schedule_bits = max(0, bits_of(max(abs(table.psi_min_rad), abs(table.psi_max_rad))))
     reference_bits = max(0, bits_of(_widest_reference(table.elevation)))
     shared = _Shared(
@@ -181,7 +182,7 @@ def _term(shared: _Shared, letter: str, index: int, polynomial: Polynomial, sum_
     places = sum_places - _factor_places(shared, letter)
     bound = _bound(polynomial, shared)
     wanted = COEFFICIENT_BITS - bits_of(bound) if letter != "a" else places
-    excess = max(0, min(wanted, room_for(bound), WORD_BITS) - places)
+    excess = max(0, min(wanted, room_for(bound), places + WORD_BITS) - places)
     coefficient = f"{letter}_{index}"
     widest = bound * 2.0 ** (places + excess) + 2.0 ** (_factor_word_bits(shared, letter) + index)
     return TermFormat(
@@ -230,6 +231,22 @@ def _widest_s(table: ControllerTable, axis: AxisLaw) -> float:
 def widest_feedforward(table: ControllerTable, axis: AxisLaw) -> float:
     """Bound of the feed-forward voltage over the range of the elevation's reference [V]."""
     return polynomial_bound(axis.feedforward_V, _widest_reference(table.elevation))
+
+
+@dataclass(frozen=True)
+class CountFormat:
+    """How an encoder's counts become an angle: held within +-limit, times the step's word, divided by 2^shift to the nearest."""
+
+    limit: int
+    step: int
+    shift: int
+
+
+def count_format(formats: LawFormats, axis: AxisLaw) -> CountFormat:
+    """Counts beyond the limit are of angles that the law would hold anyway; the step has as many bits as a word."""
+    limit = min(2**31 - 1, int(formats.angle_limit_rad / axis.resolution_rad) + 1)
+    places = max(formats.angle_places + 1, room_for(axis.resolution_rad))
+    return CountFormat(limit, word_of(axis.resolution_rad, places), places - formats.angle_places)
 
 
 def gain_word(axis: AxisLaw, sample_period_s: float) -> float:

@@ -5,10 +5,10 @@ from typing import Any
 
 from codegen.fixed_constants import FixedAxis, FixedLaw, FixedPolynomial, FixedTerm, fixed_constants, word_number
 from codegen.fixed_equations import AXIS_STATE_FIELDS
-from codegen.fixed_formats import FILTERED_BITS, AxisFormats, LawFormats, law_formats, word_of
+from codegen.fixed_formats import FILTERED_BITS, AxisFormats, CountFormat, LawFormats, count_format, law_formats
 from codegen.fixed_polynomials import PolynomialFormat
 from codegen.fixed_ranges import OverflowProof, Range, prove_no_overflow
-from codegen.fixed_twin import COUNT_PLACES, counts_limit, duty_ratio
+from codegen.fixed_twin import duty_ratio
 from codegen.law_equations import LAST_ACCEPTED_FIELDS
 from codegen.twin import FULL_SCALE_V
 from records.table import AxisLaw, ControllerTable
@@ -66,8 +66,7 @@ class Axis:
     reference_doublings: int
     half_step: int
     steps: int
-    counts_limit: int
-    count_step: int
+    counts: CountFormat
 
 
 def fixed_context(table: ControllerTable) -> dict[str, Any]:
@@ -93,7 +92,6 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "places": {
             "schedule": formats.angle_places + law.schedule_doublings,
             "reference": formats.elevation.reference_places + law.reference_doublings,
-            "count": COUNT_PLACES,
         },
         "degree": formats.degree,
         "bits": {"filtered": FILTERED_BITS, "error": law.error_bits, "s": law.s_bits, "w": law.w_bits},
@@ -101,8 +99,6 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "reference_steps": 2**law.reference_doublings,
         "v_min": law.v_min_V,
         "v_max": law.v_max_V,
-        "count_shift": COUNT_PLACES - formats.angle_places,
-        "count_half": 2 ** (COUNT_PLACES - formats.angle_places - 1),
         "full_scale": word_number(FULL_SCALE_V, formats.voltage_places),
         "duty_factor": factor,
         "duty_shift": shift,
@@ -139,8 +135,7 @@ def _axis(law: AxisLaw, axis: FixedAxis[int], formats: LawFormats, own: AxisForm
         reference_doublings=axis.reference_doublings,
         half_step=2 ** (axis.reference_doublings - 1),
         steps=2**axis.reference_doublings,
-        counts_limit=counts_limit(formats.angle_limit_rad, law),
-        count_step=word_of(law.resolution_rad, COUNT_PLACES),
+        counts=count_format(formats, law),
     )
 
 

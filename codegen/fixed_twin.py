@@ -8,14 +8,12 @@ from numpy.typing import NDArray
 from codegen.fixed_arithmetic import LaneWords, Scalars
 from codegen.fixed_constants import fixed_constants, word_number
 from codegen.fixed_equations import LawState, law_reset, law_step, state_from_words, words_from_state
-from codegen.fixed_formats import MISSING, law_formats, value_of, word_of
+from codegen.fixed_formats import MISSING, count_format, law_formats, value_of, word_of
 from codegen.law_equations import STATE_WORDS, LawInput
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import AxisLaw, ControllerTable
 
 Bits = NDArray[np.uint32]
-
-COUNT_PLACES = 31  # of an encoder's step, so that it fits one word
 
 
 class FixedTwin:
@@ -88,15 +86,9 @@ class FixedTwin:
         return word_of(angle_rad, self.formats.angle_places)
 
     def _angle_from_counts(self, axis: AxisLaw, counts: int) -> float:
-        limit = counts_limit(self.formats.angle_limit_rad, axis)
-        product = Scalars().clamp(counts, -limit, limit) * word_of(axis.resolution_rad, COUNT_PLACES)
-        places = COUNT_PLACES - self.formats.angle_places
-        return value_of((product + (1 << places - 1)) >> places, self.formats.angle_places)
-
-
-def counts_limit(angle_limit_rad: float, axis: AxisLaw) -> int:
-    """Encoder counts beyond this are held there: the law would hold the angle."""
-    return min(2**31 - 1, int(angle_limit_rad / axis.resolution_rad) + 1)
+        form = count_format(self.formats, axis)
+        product = Scalars().held(counts, form.limit) * form.step
+        return value_of((product + (1 << form.shift - 1)) >> form.shift, self.formats.angle_places)
 
 
 def duty_ratio(voltage_places: int) -> tuple[int, int]:
