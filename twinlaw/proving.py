@@ -15,7 +15,8 @@ def with_proofs(verification: Verification, subject: Subject) -> Verification:
     rounding = verification.rounding
     for result in results:
         rounding = tighter_bound(rounding, result)
-    return replace(verification, rounding=rounding, proofs=results)
+    roundings = {**verification.roundings, subject.arithmetic: rounding}
+    return replace(verification, rounding=rounding, roundings=roundings, proofs=results)
 
 
 def _run_all(subject: Subject) -> Iterator[ProofResult]:

@@ -1,12 +1,19 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import cost, rounding
+from verification.proofs import behaviour, cost, rounding
 from verification.proofs.subject import Proof
-from verification.proofs.tools import GAPPA
+from verification.proofs.tools import FRAMA_C, GAPPA
+
+_FLOAT32 = ("float32",)
 
 PROOFS: tuple[Proof, ...] = (
+    Proof(rounding.NAME, "what float32 can differ from real numbers in one step", (GAPPA,), rounding.prove, _FLOAT32),
     Proof(
-        rounding.NAME, "what float32 can differ from real numbers in one step", (GAPPA,), rounding.prove, ("float32",)
+        behaviour.NAME,
+        "no undefined behaviour, overflow or NaN from any step, for all time",
+        (FRAMA_C,),
+        behaviour.prove,
+        _FLOAT32,
     ),
     Proof(cost.NAME, "what one control step takes on the target, worst paths of soft float included", (), cost.prove),
 )
