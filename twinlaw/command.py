@@ -70,7 +70,7 @@ def _parser(asked: Sequence[str]) -> Parser:
         text = verb_text(word)
         sub = verbs.add_parser(
             word,
-            help=text.splitlines()[0],
+            help=text.splitlines()[0].replace("%", "%%"),
             description=text,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )

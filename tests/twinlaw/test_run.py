@@ -5,17 +5,21 @@ import re
 import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from serial import SerialException
 
 from recordings.files import datasets_folder
 from records.log import load_log, save_log
 from records.table import load_table
+from rig.emulator.serial_port import EmulatedSerial
 from sim.columns import log_columns
 from sim.plants import MODELS
 from sim.tracking import tracking
 from twinlaw.command import main
+from twinlaw.stages import fly_board
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PLANT = ROOT / "plants" / "ce150.toml"
@@ -118,7 +122,8 @@ def test_measured_pitch_and_yaw_of_the_quanser_aero_replay_alike_on_twin_host_an
     capsys.readouterr()
     arguments = ["verify", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--json"]
     assert main([*arguments, "--log", str(log), "--steps", "1", "--out", str(tmp_path)]) == 0
-    rows = {tuple(row["between"]): row for row in json.loads(capsys.readouterr().out)["equality"]}
+    equality = json.loads(capsys.readouterr().out)["equality"]
+    rows = {tuple(row["between"]): row for row in equality if row["arithmetic"] == "float32"}
     assert samples > 1000
     for pair in (("twin", "host"), ("host", "target")):
         assert rows[pair]["mismatches"] == 0
@@ -193,6 +198,35 @@ def test_validate_checks_the_emulated_board(out: Path, capsys: pytest.CaptureFix
     assert said["equality"]["mismatches"] == 0
     for name in ("validation.json", "validation.csv", "validation.toml"):
         (out / name).unlink()
+
+
+def test_a_board_that_is_lost_in_its_flight_is_one_clear_line_and_not_validated(
+    out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The cable is pulled after the replay: reading the port fails from the flight's hundredth sample on."""
+    read, flying = EmulatedSerial.read, False
+    reads = 0
+
+    def fly(*arguments: Any) -> Any:
+        nonlocal flying
+        flying = True
+        return fly_board(*arguments)
+
+    def pulled(port: EmulatedSerial, size: int = 1) -> bytes:
+        nonlocal reads
+        reads += flying
+        if reads > 100:
+            raise SerialException("device disconnected")
+        return read(port, size)
+
+    monkeypatch.setattr("twinlaw.verbs.validate.fly_board", fly)
+    monkeypatch.setattr(EmulatedSerial, "read", pulled)
+    arguments = ["validate", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--out", str(out)]
+    assert main([*arguments, "--steps", "100"]) == 2
+    said = capsys.readouterr().err
+    assert "device disconnected" in said
+    assert len(said.splitlines()) == 1
+    assert {path.name for path in out.iterdir()} == FILES
 
 
 def test_simulate_flies_without_a_board(tmp_path: Path) -> None:

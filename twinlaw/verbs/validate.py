@@ -33,10 +33,12 @@ def run(chosen: argparse.Namespace) -> int:
     url = board_url(chosen.port, chosen.out / "firmware.elf")
     validation = validate_board(table, url, chosen.steps, chosen.arithmetic)
     text = validation_text(validation)
-    write_atomic(chosen.out / "validation.json", text)
     if not validation.passed:
+        write_atomic(chosen.out / "validation.json", text)
         raise VerificationFailed("; ".join(validation.failures))
     flight = fly_board(bound, table, url, chosen.arithmetic)
+    # Only now: a board that is lost in its flight has not been validated.
+    write_atomic(chosen.out / "validation.json", text)
     save_log(chosen.out / "validation.csv", flight.log)
     if chosen.json:
         print(text)
