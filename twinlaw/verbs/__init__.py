@@ -22,6 +22,7 @@ VERBS: Mapping[str, str] = {
     "import": "import_record",
     "experiments": "experiments",
     "identify": "identify",
+    "diagnose": "diagnose",
     "blind": "blind",
     "bench": "bench",
     "doctor": "doctor",

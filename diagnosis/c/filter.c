@@ -1,0 +1,349 @@
+/* Extended Kalman filter over a plant's equations, with the slopes of its whitened innovations by the parameters.
+ *
+ * The mean goes the kernel's way, with located friction and stops; the covariance and the slopes go by the Jacobians at the middle of
+ * each step, second order in its length. The slopes leave out how the gain itself moves.
+ */
+#define LANES 1
+#include "events.h"
+#include "step.h"
+
+#include "filter.h"
+
+#define N N_STATES
+#define MAX_COLUMNS 256
+
+typedef struct {
+    double A[N * N], B[N * N_INPUTS], D[N * N_PARAMETERS], H[N_OUTPUTS * N], E[N_OUTPUTS * N_PARAMETERS];
+} jacobians;
+
+typedef struct {
+    filter_request *request;
+    double c[N_CONSTANTS], u[N_INPUTS];
+    plant_body body;
+    double P[N][N], S[N][MAX_COLUMNS];
+} filter_state;
+
+static void start(filter_state *at, filter_request *request)
+{
+    at->request = request;
+    model_constants(request->p, at->c);
+    for (int i = 0; i < N; i++) {
+        at->body.x[i] = request->x0[i];
+        for (int j = 0; j < N; j++)
+            at->P[i][j] = i == j ? request->p0[i] : 0.0;
+        for (int k = 0; k < request->columns; k++)
+            at->S[i][k] = 0.0;
+    }
+    for (int a = 0; a < N_AXES; a++)
+        if (request->locked[a]) {
+            at->c[AXIS_LOWER[a]] = at->c[AXIS_UPPER[a]] = at->body.x[AXIS_POSITION[a]];
+            at->body.x[AXIS_VELOCITY[a]] = 0.0;
+        }
+    for (int a = 0; a < AXES; a++)
+        at->body.sign[a] = at->body.move[a] = 0.0;
+    request->log_likelihood = 0.0;
+}
+
+static void apply(filter_state *at, int64_t step)
+{
+    for (int j = 0; j < N_INPUTS; j++)
+        at->u[j] = lane_clamp(at->request->u[step * N_INPUTS + j], at->c[INPUT_LOWER[j]], at->c[INPUT_UPPER[j]]);
+}
+
+/* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
+static void correct(filter_state *at, int64_t step, int64_t row, int output, double predicted, const double *H, const double *E)
+{
+    filter_request *const r = at->request;
+    const double variance = r->r[step * N_OUTPUTS + output];
+    double PH[N], s = variance;
+    for (int i = 0; i < N; i++) {
+        PH[i] = 0.0;
+        for (int j = 0; j < N; j++)
+            PH[i] += at->P[i][j] * H[j];
+    }
+    for (int i = 0; i < N; i++)
+        s += H[i] * PH[i];
+    const double nu = r->y[step * N_OUTPUTS + output] - predicted, scale = 1.0 / sqrt(s);
+    double K[N];
+    for (int i = 0; i < N; i++)
+        K[i] = PH[i] / s;
+    for (int i = 0; i < N; i++) {
+        at->body.x[i] += K[i] * nu;
+        for (int j = 0; j < N; j++)
+            at->P[i][j] -= K[i] * PH[j];
+    }
+    if (r->K)
+        for (int i = 0; i < N; i++) {
+            r->K[(step * N_OUTPUTS + output) * N + i] = K[i];
+            r->H[(step * N_OUTPUTS + output) * N + i] = H[i];
+        }
+    const int slot = r->slot[output];
+    r->log_likelihood -= 0.5 * (nu * nu / s + log(s));
+    if (row >= 0 && slot >= 0) {
+        r->w[row * r->slots + slot] = nu * scale;
+        r->s[row * r->slots + slot] = s;
+    }
+    if (!r->columns)
+        return;
+    double slope[MAX_COLUMNS];
+    for (int k = 0; k < r->columns; k++)
+        slope[k] = -E[r->column[k]];
+    for (int i = 0; i < N; i++)
+        if (H[i] != 0.0)
+            for (int k = 0; k < r->columns; k++)
+                slope[k] -= H[i] * at->S[i][k];
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < r->columns; k++)
+            at->S[i][k] += K[i] * slope[k];
+    if (row >= 0 && slot >= 0 && r->dw)
+        for (int k = 0; k < r->columns; k++)
+            r->dw[(row * r->slots + slot) * r->columns + k] = slope[k] * scale;
+    if (!r->gram)
+        return;
+    for (int k = 0; k < r->columns; k++) {
+        const double part = slope[k] / s;
+        double *const restrict to = r->gram + (int64_t)k * r->columns;
+        r->pull[k] += part * nu;
+        for (int l = 0; l <= k; l++)
+            to[l] += part * slope[l];
+    }
+}
+
+static void measure(filter_state *at, int64_t step)
+{
+    filter_request *const r = at->request;
+    const int64_t row = r->row[step];
+    double y[N_OUTPUTS];
+    if (row >= 0)
+        for (int i = 0; i < N; i++)
+            r->x[row * N + i] = at->body.x[i];
+    bool any_output = false;
+    for (int o = 0; o < N_OUTPUTS; o++)
+        any_output |= !isnan(r->y[step * N_OUTPUTS + o]);
+    if (any_output) {
+        jacobians j = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
+        model_jacobians(r->t_s[step], at->body.x, at->u, at->c, at->body.sign, j.A, j.B, j.D, j.H, j.E);
+        for (int o = 0; o < N_OUTPUTS; o++) {
+            if (isnan(r->y[step * N_OUTPUTS + o]))
+                continue;
+            model_outputs(r->t_s[step], at->body.x, at->c, y);
+            correct(at, step, row, o, y[o], j.H + o * N, j.E + o * N_PARAMETERS);
+        }
+    }
+    if (row >= 0 && r->filtered)
+        for (int i = 0; i < N; i++)
+            r->filtered[row * N + i] = at->body.x[i];
+}
+
+/* F = 1 + h A + h^2 A^2 / 2, with the rows of a held axis' velocity emptied. */
+static void transition(const jacobians *j, double h_s, double F[N][N])
+{
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < N; k++) {
+            double square = 0.0;
+            for (int m = 0; m < N; m++)
+                square += j->A[i * N + m] * j->A[m * N + k];
+            F[i][k] = (i == k) + h_s * (j->A[i * N + k] + 0.5 * h_s * square);
+        }
+}
+
+static void spread(filter_state *at, const double F[N][N], const double *noise)
+{
+    double FP[N][N];
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < N; k++) {
+            FP[i][k] = 0.0;
+            for (int m = 0; m < N; m++)
+                FP[i][k] += F[i][m] * at->P[m][k];
+        }
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k <= i; k++) {
+            double sum = i == k ? noise[i] : 0.0;
+            for (int m = 0; m < N; m++)
+                sum += FP[i][m] * F[k][m];
+            at->P[i][k] = at->P[k][i] = sum;
+        }
+}
+
+static void rates_of(const filter_state *at, const jacobians *j, double from[N][MAX_COLUMNS], double to[N][MAX_COLUMNS], bool forced)
+{
+    const filter_request *const r = at->request;
+    for (int i = 0; i < N; i++) {
+        if (forced)
+            for (int k = 0; k < r->columns; k++)
+                to[i][k] = j->D[i * N_PARAMETERS + r->column[k]];
+        else
+            for (int k = 0; k < r->columns; k++)
+                to[i][k] = 0.0;
+        for (int m = 0; m < N; m++) {
+            const double a = j->A[i * N + m];
+            if (a != 0.0)
+                for (int k = 0; k < r->columns; k++)
+                    to[i][k] += a * from[m][k];
+        }
+    }
+}
+
+static void move_slopes(filter_state *at, const jacobians *j, double h_s)
+{
+    static _Thread_local double first[N][MAX_COLUMNS], second[N][MAX_COLUMNS];
+    rates_of(at, j, at->S, first, true);
+    rates_of(at, j, first, second, false);
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < at->request->columns; k++)
+            at->S[i][k] += h_s * (first[i][k] + 0.5 * h_s * second[i][k]);
+}
+
+/* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. */
+static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
+{
+    double dx[N], torque[AXES], up[AXES], down[AXES], one[AXES], sign[AXES], without[N];
+    for (int a = 0; a < AXES; a++) {
+        one[a] = 1.0;
+        sign[a] = 0.0;
+    }
+    model_rates(t_s, at->body.x, at->u, at->c, sign, one, without, torque, up, down);
+    for (int a = 0; a < AXES; a++)
+        sign[a] = 1.0;
+    model_rates(t_s, at->body.x, at->u, at->c, sign, one, dx, torque, up, down);
+    for (int a = 0; a < N_AXES; a++) {
+        const int v = AXIS_VELOCITY[a];
+        const double level = fabs(without[v] - dx[v]), width = level * level * h_s * h_s + at->P[v][v];
+        const double rub = at->request->rub[a];
+        if (level > 0.0 && rub > 0.0)
+            noise[v] += level * level * h_s * rub * exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+    }
+}
+
+static void advance(filter_state *at, int64_t step)
+{
+    filter_request *const r = at->request;
+    const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
+    double x[N], middle[N], noise[N], F[N][N];
+    step_stages seen;
+    plant_body before = at->body;
+    for (int i = 0; i < N; i++)
+        noise[i] = r->q[i] * h_s;
+    doubt(at, t_s, h_s, noise);
+    rk4_step(t_s, h_s, &at->body, at->u, at->c, x, &seen);
+    const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, h_s, at->c, &seen));
+    if (suspect)
+        events_advance(at->body.x, at->body.sign, at->body.move, t_s, h_s, at->u, at->c, 0);
+    else
+        for (int i = 0; i < N; i++)
+            at->body.x[i] = x[i];
+    for (int i = 0; i < N; i++)
+        middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
+    jacobians j = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
+    model_jacobians(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j.A, j.B, j.D, j.H, j.E);
+    for (int a = 0; a < N_AXES; a++)
+        if (at->body.move[a] == 0.0) {
+            const int v = AXIS_VELOCITY[a];
+            for (int k = 0; k < N; k++)
+                j.A[v * N + k] = 0.0;
+            for (int k = 0; k < N_PARAMETERS; k++)
+                j.D[v * N_PARAMETERS + k] = 0.0;
+        }
+    transition(&j, h_s, F);
+    if (r->columns)
+        move_slopes(at, &j, h_s);
+    for (int a = 0; a < N_AXES; a++)
+        if (at->body.move[a] == 0.0) {
+            const int v = AXIS_VELOCITY[a];
+            for (int k = 0; k < N; k++)
+                F[v][k] = 0.0;
+            for (int k = 0; k < r->columns; k++)
+                at->S[v][k] = 0.0;
+            if (r->locked[a])
+                noise[v] = 0.0;
+        }
+    spread(at, F, noise);
+    if (r->F)
+        for (int i = 0; i < N; i++)
+            for (int k = 0; k < N; k++)
+                r->F[(step * N + i) * N + k] = F[i][k];
+}
+
+/* Returns the number of instants done; fewer than asked when the state left all bounds. */
+int32_t filter_run(filter_request *request)
+{
+    static _Thread_local filter_state at;
+    if (request->columns > MAX_COLUMNS)
+        return -1;
+    start(&at, request);
+    for (int64_t step = 0; step < request->steps; step++) {
+        apply(&at, step);
+        measure(&at, step);
+        events_settle(at.body.x, at.body.sign, at.body.move, request->t_s[step], at.u, at.c);
+        if (step + 1 < request->steps)
+            advance(&at, step);
+        for (int i = 0; i < N; i++)
+            if (!(fabs(at.body.x[i]) < 1e9))
+                return (int32_t)step;
+    }
+    return (int32_t)request->steps;
+}
+
+/* One output's part of the answer: the disturbance's own innovation, taken up by the gain. */
+static void respond_output(const response_request *r, int64_t step, int output, const double *added, double e[N][MAX_COLUMNS])
+{
+    const double *const H = r->H + (step * N_OUTPUTS + output) * N, *const K = r->K + (step * N_OUTPUTS + output) * N;
+    double nu[MAX_COLUMNS];
+    bool seen = false;
+    for (int i = 0; i < N; i++)
+        seen |= H[i] != 0.0;
+    if (!seen)
+        return;
+    for (int k = 0; k < r->columns; k++)
+        nu[k] = added ? added[k] : 0.0;
+    for (int i = 0; i < N; i++)
+        if (H[i] != 0.0)
+            for (int k = 0; k < r->columns; k++)
+                nu[k] += H[i] * e[i][k];
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < r->columns; k++)
+            e[i][k] -= K[i] * nu[k];
+    const int64_t place = r->row[step] * r->slots + r->slot[output];
+    if (r->row[step] < 0 || r->slot[output] < 0)
+        return;
+    const double scale = 1.0 / sqrt(r->s[place]);
+    for (int k = 0; k < r->columns; k++)
+        r->dw[place * r->columns + k] = nu[k] * scale;
+}
+
+int32_t filter_respond(const response_request *r)
+{
+    static _Thread_local double e[N][MAX_COLUMNS], next[N][MAX_COLUMNS];
+    if (r->columns > MAX_COLUMNS)
+        return -1;
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < r->columns; k++)
+            e[i][k] = 0.0;
+    for (int64_t step = 0; step < r->steps; step++) {
+        const double *const value = r->value + step * r->targets * r->columns;
+        for (int o = 0; o < N_OUTPUTS; o++) {
+            const double *added = 0;
+            for (int t = 0; t < r->targets; t++)
+                if (r->target[t] == N + o)
+                    added = value + t * r->columns;
+            respond_output(r, step, o, added, e);
+        }
+        const double *const F = r->F + step * N * N;
+        for (int i = 0; i < N; i++) {
+            for (int k = 0; k < r->columns; k++)
+                next[i][k] = 0.0;
+            for (int m = 0; m < N; m++)
+                if (F[i * N + m] != 0.0)
+                    for (int k = 0; k < r->columns; k++)
+                        next[i][k] += F[i * N + m] * e[m][k];
+        }
+        for (int t = 0; t < r->targets; t++)
+            if (r->target[t] < N)
+                for (int k = 0; k < r->columns; k++)
+                    next[r->target[t]][k] += value[t * r->columns + k];
+        for (int i = 0; i < N; i++)
+            for (int k = 0; k < r->columns; k++)
+                e[i][k] = next[i][k];
+    }
+    return 0;
+}

@@ -1,0 +1,41 @@
+/* What the filter is asked and what it gives. */
+#ifndef FILTER_H
+#define FILTER_H
+
+#include <stdint.h>
+
+/* A tape of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
+ *
+ * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots; a slot below 0 keeps nothing. */
+typedef struct {
+    int64_t steps;
+    int32_t columns, slots;
+    const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
+    const int64_t *row;                      /* [steps]: where the results go, or -1 */
+    const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
+    const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
+    const uint8_t *locked;                   /* [AXES] */
+    const int32_t *column, *slot;            /* [columns] parameters to differentiate by; [N_OUTPUTS] */
+    double *w, *s, *dw, *x;                  /* [rows][slots] twice, [rows][slots][columns] or NULL, [rows][N_STATES] predicted */
+    double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
+    double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements, or NULL */
+    double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
+    double log_likelihood;
+} filter_request;
+
+/* The filter's linear answer to small disturbances, `columns` of them side by side: added to a state over the step from an instant
+ * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. */
+typedef struct {
+    int64_t steps;
+    int32_t columns, targets, slots;
+    const double *F, *K, *H, *s;    /* as above; s by row and slot */
+    const double *value;            /* [steps][targets][columns] */
+    const int32_t *target, *slot;   /* [targets], [N_OUTPUTS] */
+    const int64_t *row;
+    double *dw;                     /* [rows][slots][columns] */
+} response_request;
+
+int32_t filter_run(filter_request *request);
+int32_t filter_respond(const response_request *request);
+
+#endif

@@ -1,0 +1,108 @@
+"""A diagnosis' material: the plant's kit and its logs as tapes, with where each starts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.kit import Kit
+from diagnosis.tape import Tape, tape_of
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.simulate import simulate
+
+Array = NDArray[np.float64]
+START_S = 0.1
+RUN_UP_S = 4.0
+START_SPEED = 0.3  # how far from rest a speed may be at the start, per s, in units of the output
+START_SHARE = 0.3  # how far from its rest under the first inputs another state may be, as a share
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """One log as the filter takes it: tape, start x0 and its variances p0 (states,), axes held."""
+
+    log: RunLog
+    tape: Tape
+    x0: Array
+    p0: Array
+    locked: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """All flights of one plant, and the slot that each output's innovations take (-1: never measured)."""
+
+    kit: Kit
+    flights: tuple[Flight, ...]
+    slots: tuple[int, ...]
+    free: NDArray[np.int64]
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviations of the plant's coefficients that are not known exactly, in the order of `free`."""
+        return np.asarray(self.kit.bound.sd[self.free])
+
+    @property
+    def nonnegative(self) -> list[int]:
+        """Places in p of uncertain coefficients that have a sign to keep."""
+        signs = [spec.sign for spec in self.kit.bound.model.parameters for _ in range(spec.count)]
+        return [int(place) for place in self.free if signs[place] != "any"]
+
+    def with_flights(self, flights: Sequence[Flight]) -> "Case":
+        """The same plant with other flights."""
+        return replace(self, flights=tuple(flights))
+
+
+def make_case(kit: Kit, logs: Sequence[RunLog], used: Sequence[NDArray[np.bool_] | None] | None = None) -> Case:
+    """The logs ready for the filter; rows not `used` count as not measured."""
+    masks = used or [None] * len(logs)
+    flights = tuple(_flight(kit, log, mask) for log, mask in zip(logs, masks, strict=True))
+    seen = np.any([np.isfinite(flight.tape.y).any(axis=0) for flight in flights], axis=0)
+    slots = tuple(int(np.sum(seen[:place])) if seen[place] else -1 for place in range(len(seen)))
+    return Case(kit, flights, slots, np.flatnonzero(kit.bound.sd > 0.0))
+
+
+def _flight(kit: Kit, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:
+    tape = tape_of(log, kit.bound.plant, kit.outputs, used)
+    x0, p0 = start_of(kit, tape, log.locked)
+    return Flight(log, tape, x0, p0, log.locked)
+
+
+def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Array]:
+    """Where a flight starts: angles as first read, speeds as they then change, other states at rest under the first inputs."""
+    model = kit.bound.model
+    positions, x0 = {}, np.zeros(len(kit.states))
+    p0 = np.full(len(kit.states), 1e-12)
+    early = tape.t_s - tape.t_s[0] <= START_S
+    for place, (name, expression) in enumerate(model.outputs.items()):
+        y = tape.y[early, place]
+        good = np.isfinite(y)
+        if str(expression) not in kit.states or not good.any():
+            continue
+        index = kit.states.index(str(expression))
+        x0[index], p0[index] = y[good][0], 4.0 * tape.r[0, place]
+        slope = np.polyfit(tape.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
+        positions[str(expression)] = (name, float(slope))
+    speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}
+    rest = _rest(kit.bound, tape, x0)
+    for index, state in enumerate(kit.states):
+        if state in positions:
+            continue
+        if state in speeds:
+            x0[index] = positions.get(speeds[state], ("", 0.0))[1]
+            p0[index] = START_SPEED**2
+        else:
+            x0[index] = rest[index]
+            p0[index] = (START_SHARE * max(abs(rest[index]), 0.1 * float(np.max(np.abs(rest))), 1e-3)) ** 2
+    return x0, p0
+
+
+def _rest(bound: BoundPlant, tape: Tape, x0: Array) -> Array:
+    """States after a while under the first inputs with every axis held."""
+    times = np.linspace(0.0, RUN_UP_S, 401)
+    held = np.tile(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), (len(times), 1))
+    run = simulate(bound, times, x0, held, locked=tuple(axis.name for axis in bound.model.axes), keep="x")
+    assert run.x is not None
+    return np.asarray(run.x[-1])

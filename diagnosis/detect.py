@@ -1,0 +1,117 @@
+"""Is there a gap at all? The largest score of all effects and forms, against its law in replicas without gap."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.fit import size_scale
+from diagnosis.generic import Form, forms
+from diagnosis.ground import Ground, Scores
+from diagnosis.hypothesis import passes
+from diagnosis.instants import target_of
+from diagnosis.replicas import Tail, replicas, tail_of
+from diagnosis.screen import Look
+from sim.effects.effect import coefficient
+
+Array = NDArray[np.float64]
+MEAN_GAIN = 0.5  # of white innovations
+ALLOWED = 4.0  # nats that friction and stops a little other than the model's may gain
+LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must leave for it to count
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """`p` the chance of so large a gap without one, the law it comes from, and every form's gain (forms,) with its law's mean and sd."""
+
+    p: float
+    tail: Tail
+    largest: float
+    forms: tuple[Form, ...]
+    scores: Scores
+    null_gain: Array
+
+
+def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
+    """Compare the gains of effects at their best starts, of steps in time and of all forms with replicas."""
+    found = forms(ground)
+    columns = [_effect_columns(case, ground, looks), _form_columns(ground, found)]
+    stacked = np.concatenate(columns, axis=1)
+    drawn = replicas(ground)
+    scores = ground.scores_of(stacked)
+    null = _null_gains(ground, stacked, scores, drawn)
+    usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
+    events, null_events = _events(case, ground, drawn)
+    outside = [entry.gain for entry in looks if entry.effect not in case.kit.names]
+    largest = max([*events, *outside, float(np.max(gains(scores) / usual, initial=0.0))])
+    tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
+    first = columns[0].shape[1]
+    part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
+    return Detection(tail.probability(largest - ALLOWED), tail, largest, tuple(found), part, null[first:].mean(axis=1))
+
+
+def gains(scores: Scores) -> Array:
+    """Gain of the log likelihood by each column alone (k,); 0 where the plant's coefficients imitate it."""
+    norm = np.diag(scores.gram)
+    counts = norm > LEAST_LEFT * np.maximum(scores.raw, 1e-12)
+    return np.where(counts, 0.5 * scores.score**2 / np.maximum(norm, 1e-12), 0.0)
+
+
+def _null_gains(ground: Ground, columns: Array, scores: Scores, drawn: Array) -> Array:
+    """Gains (k, replicas)."""
+    share = ground.solve @ (ground.slopes.T @ columns)
+    score = columns.T @ drawn - share.T @ (ground.slopes.T @ drawn)
+    norm = np.diag(scores.gram)
+    counts = (norm > LEAST_LEFT * np.maximum(scores.raw, 1e-12))[:, None]
+    return np.where(counts, 0.5 * score**2 / np.maximum(norm, 1e-12)[:, None], 0.0)
+
+
+def _events(case: Case, ground: Ground, drawn: Array) -> tuple[list[float], Array]:
+    """The largest gain of steps and pulses in time by target, in the log and in replicas (targets, replicas).
+
+    Each gain counts in units of what that step or pulse usually gains without a gap: rounding at rest looks like steps.
+    """
+    kit = case.kit
+    targets = {target_of(case, kit.effects[name]) for name in kit.candidates}
+    seen, found = [], [np.zeros(drawn.shape[1])]
+    for target in sorted(target for target in targets if target is not None):
+        answers = ground.answers_to_steps(target)
+        _, scores = ground.steps(target)
+        share = ground.solve @ (ground.slopes.T @ answers)
+        score = answers.T @ drawn - share.T @ (ground.slopes.T @ drawn)
+        gram = scores.gram
+        first, last = np.triu_indices(len(gram), 1)
+        norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)
+        null = 0.5 * (score[first] - score[last]) ** 2 / norm[:, None]
+        usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
+        seen.append(float(np.max(0.5 * (scores.score[first] - scores.score[last]) ** 2 / norm / usual)))
+        found.append(np.max(null / usual[:, None], axis=0))
+    return seen, np.array(found)
+
+
+def _effect_columns(case: Case, ground: Ground, looks: Sequence[Look]) -> Array:
+    """Signatures of the effects in the equations, from where they were seen best."""
+    kit, supposed = case.kit, ground.fit.supposed
+    chosen = [entry for entry in looks if entry.effect in kit.names]
+    values = {}
+    for entry in chosen:
+        size = kit.effects[entry.effect].size
+        values[entry.effect] = {**entry.values, size.symbol: size.touched}
+    places = [kit.index[coefficient(name, kit.effects[name].size.symbol)] for name in values]
+    runs = passes(case, supposed.with_effects({**values, **supposed.effects}), places, slopes=True)
+    rows = len(ground.w)
+    if runs is None or not places:
+        return np.zeros((rows, 0))
+    slopes = np.concatenate([run.dw.reshape(-1, len(places)) for run in runs if run.dw is not None])
+    return np.asarray(slopes * [size_scale(kit.effects[name].size) for name in values])
+
+
+def _form_columns(ground: Ground, found: Sequence[Form]) -> Array:
+    columns = np.zeros((len(ground.w), len(found)))
+    for target in sorted({form.target for form in found}):
+        chosen = [index for index, form in enumerate(found) if form.target == target]
+        values = [np.stack([found[i].values[flight] for i in chosen], axis=1) for flight in range(len(ground.tapes))]
+        columns[:, chosen] = ground.answer(values, target)
+    return columns

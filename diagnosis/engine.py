@@ -1,0 +1,213 @@
+"""The diagnosis: from a plant and its logs to what the model lacks, in the order detect, search, weigh, check on the hold-out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case, make_case
+from diagnosis.detect import Detection, detect, gains
+from diagnosis.fit import Fit, fit
+from diagnosis.ground import Ground, ground_of
+from diagnosis.hypothesis import Supposed, nothing_supposed, passes
+from diagnosis.improved import estimates, improved_plant
+from diagnosis.kit import make_kit
+from diagnosis.maps import band_map, region_map, removed_energy, time_map
+from diagnosis.notes import notes_of
+from diagnosis.places import place_shares
+from diagnosis.result import Result
+from diagnosis.screen import Look, look
+from diagnosis.search import Search, Tried, evidence, search
+from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.unknown import Suspect, suspects
+from diagnosis.unrest import FIRST_STEP, with_unrest
+from diagnosis.weigh import Weighed, alike, weigh
+from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+
+ALARM = 0.01
+FIRST_UNREST = -1.5
+ROUNDS = 4
+SETTLED = 0.05
+HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Logs to fit and logs to check on, with their names and the rows that may be used of each."""
+
+    logs: Sequence[RunLog]
+    holdout: Sequence[RunLog]
+    holdout_names: Sequence[str]
+    used: Sequence[NDArray[np.bool_] | None]
+    firmware: Firmware | None = None
+    notes: tuple[str, ...] = ()
+
+
+def diagnose(bound: BoundPlant, material: Material) -> Result:
+    """Find what `bound` lacks to explain the logs. Raises BadInput where the plant as stated cannot be run along them."""
+    kit = make_kit(bound)
+    split = len(material.logs)
+    case = make_case(kit, material.logs, material.used[:split])
+    checked = make_case(kit, material.holdout, material.used[split:]) if material.holdout else None
+    nominal = nominal_fit(case)
+    ground = ground_of(case, nominal)
+    looks = look(case, ground, kit.candidates)
+    detection = detect(case, ground, looks)
+    retuned = Tried((), nominal, evidence(nominal))
+    if detection.p > ALARM:
+        return _no_gap(case, checked, material, detection, retuned, looks)
+    found = search(case, nominal, kit.candidates, ground, looks)
+    best = found.tried[0] if found.tried[0].effects else found.tried[-1]
+    left = detect(case, ground_of(case, best.fit), [])
+    weighed = weigh(found.tried, retuned, _left(left))
+    blamed = suspects(detection)
+    chosen, predicted = _added(checked, material, found, weighed, retuned)
+    return Result(
+        diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks),
+        plant=improved_plant(case, chosen.fit),
+        case=case,
+        detection=detection,
+        search=found,
+        weighed=weighed,
+        suspects=tuple(blamed),
+        chosen=chosen,
+        predicted=predicted,
+    )
+
+
+def nominal_fit(case: Case) -> Fit:
+    """The plant re-tuned within its spread, with the unrest that then remains."""
+    supposed = nothing_supposed(case, FIRST_UNREST)
+    found = fit(case, supposed, rounds=ROUNDS)
+    for turn in range(ROUNDS):
+        if found is None:
+            raise BadInput(
+                "plant",
+                "diagnosis",
+                "states that leave all bounds",
+                "a plant that can follow these logs",
+                "check units",
+            )
+        calmer = with_unrest(case, found.supposed, FIRST_STEP if turn < 2 else 0.1)
+        settled = bool(np.max(np.abs(calmer.unrest - found.supposed.unrest), initial=0.0) < SETTLED)
+        found = fit(case, calmer, rounds=ROUNDS)
+        if settled and found is not None:
+            break
+    assert found is not None
+    return found
+
+
+def _left(detection: Detection) -> float:
+    """Nats that the best class of forms still gains."""
+    ranked = suspects(detection)
+    return max(ranked[0].gain if ranked else 0.0, float(np.max(gains(detection.scores), initial=0.0)))
+
+
+def _added(
+    checked: Case | None, material: Material, found: Search, weighed: Weighed, retuned: Tried
+) -> tuple[Tried, tuple[Predicted, ...]]:
+    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
+    named = bool(weighed.tried) and weighed.probabilities[0] > weighed.unknown
+    first = weighed.tried[0] if named else retuned
+    predicted = _predicted(checked, material, retuned, first)
+    if checked is None or first is retuned:
+        return first, predicted
+    if error(checked, predicted, "after") < HELPS * error(checked, predicted, "before"):
+        return first, predicted
+    return retuned, _predicted(checked, material, retuned, retuned)
+
+
+def _predicted(checked: Case | None, material: Material, retuned: Tried, chosen: Tried) -> tuple[Predicted, ...]:
+    if checked is None:
+        return ()
+    stated = nothing_supposed(checked, FIRST_UNREST)
+    stated = replace(stated, unrest=retuned.fit.supposed.unrest)
+    bars: dict[str, Supposed] = {"nominal": stated, "before": retuned.fit.supposed, "after": chosen.fit.supposed}
+    return predict_all(checked, material.holdout_names, bars)
+
+
+def _gap(
+    case: Case,
+    material: Material,
+    detection: Detection,
+    found: Search,
+    weighed: Weighed,
+    blamed: Sequence[Suspect],
+    chosen: Tried,
+    predicted: tuple[Predicted, ...],
+    checked: Case | None,
+    looks: Sequence[Look],
+) -> Diagnosis:
+    before, after = _innovations(case, found.nominal.fit.supposed), _innovations(case, _best(found).fit.supposed)
+    energy = removed_energy(before, after)
+    first = blamed[0] if blamed else None
+    return Diagnosis(
+        verdict="gap",
+        false_alarm_probability=detection.p,
+        places=place_shares(found, weighed, first.place if first else None),
+        when=time_map(case, energy),
+        regions=region_map(case, energy),
+        bands=band_map(case, before, after),
+        firmware=material.firmware,
+        effects=tuple(
+            _hypothesis(case, weighed, tried, probability)
+            for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True)
+        ),
+        unknown=Unknown(weighed.unknown, first.place if first else None, first.class_text if first else None),
+        found=chosen.effects,
+        shrinkage=shrinkage(checked, predicted) if checked is not None else None,
+        notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
+    )
+
+
+def _best(found: Search) -> Tried:
+    return found.tried[0]
+
+
+def _innovations(case: Case, supposed: Supposed) -> list[NDArray[np.float64]]:
+    runs = passes(case, supposed)
+    return [] if runs is None else [run.w for run in runs]
+
+
+def _hypothesis(case: Case, weighed: Weighed, tried: Tried, probability: float) -> Hypothesis:
+    classes = [case.kit.effects[name].class_text for name in tried.effects]
+    own = estimates(case, tried.fit)
+    single = len(tried.effects) == 1
+    parameters = {
+        symbol if single else f"{name}.{symbol}": entry
+        for name, given in own.items()
+        for symbol, entry in given.items()
+    }
+    same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, tried))
+    return Hypothesis(" + ".join(tried.effects), " + ".join(classes), probability, parameters, same)
+
+
+def _no_gap(
+    case: Case,
+    checked: Case | None,
+    material: Material,
+    detection: Detection,
+    retuned: Tried,
+    looks: Sequence[Look],
+) -> Result:
+    predicted = _predicted(checked, material, retuned, retuned)
+    ranked = suspects(detection)
+    places = (PlaceShare(ranked[0].place, 1.0),) if ranked else ()
+    diagnosis = Diagnosis(
+        verdict="no gap",
+        false_alarm_probability=detection.p,
+        places=places,
+        firmware=material.firmware,
+        shrinkage=shrinkage(checked, predicted) if checked is not None else None,
+        notes=(*material.notes, *notes_of(case, looks, retuned, None)),
+    )
+    return Result(
+        diagnosis, improved_plant(case, retuned.fit), case, detection, None, None, tuple(ranked), retuned, predicted
+    )
+
+
+__all__ = ["Ground", "Material", "diagnose", "nominal_fit"]

@@ -1,0 +1,171 @@
+"""The extended Kalman filter of diagnosis/c, compiled with a plant's equations: whitened innovations and their slopes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from diagnosis.tape import Tape
+from sim.generate import model_header
+from sim.kernel import C_DIR as SIM_C
+from sim.model import Model
+from sim.sincos import sincos_header
+from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
+
+C_DIR = Path(__file__).parent / "c"
+MAX_COLUMNS = 256
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances."""
+
+    q: Array
+    rub: Array
+    p0: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """One pass over a log of n rows: whitened innovations w (n, slots), their variances s, slopes dw (n, slots, columns) or None,
+    their products `gram` = dw'dw and `pull` = dw'w,
+    predicted states x and filtered ones (n, states); NaN where nothing was measured. `gains` as in filter.h: F, K, H by step.
+    """
+
+    w: Array
+    s: Array
+    dw: Array | None
+    x: Array
+    filtered: Array
+    log_likelihood: float
+    gram: Array
+    pull: Array
+    gains: tuple[Array, Array, Array] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Filter:
+    """A model's compiled filter with its numbers of states and outputs and the names of its axes."""
+
+    states: int
+    outputs: int
+    axes: tuple[str, ...]
+    ffi: Any
+    lib: Any
+
+    def run(
+        self,
+        tape: Tape,
+        p: Array,
+        x0: Array,
+        noise: Noise,
+        slots: Sequence[int],
+        *,
+        columns: Sequence[int] = (),
+        keep_slopes: bool = False,
+        locked: Sequence[str] = (),
+        keep_gains: bool = False,
+    ) -> Pass | None:
+        """Filter one tape; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p.
+
+        None where the state left all bounds: the parameters do not fit at all.
+        """
+        rows, width = tape.rows, max(slots) + 1
+        n, outputs, steps = self.states, self.outputs, len(tape.t_s)
+        arrays: dict[str, NDArray[Any] | None] = {
+            "t_s": _double(tape.t_s),
+            "u": _double(tape.u),
+            "y": _double(tape.y),
+            "r": _double(tape.r),
+            "row": np.ascontiguousarray(tape.row, dtype=np.int64),
+            "p": _double(p),
+            "x0": _double(x0),
+            "p0": _double(noise.p0),
+            "q": _double(noise.q),
+            "rub": _double(noise.rub) if self.axes else np.zeros(1),
+            "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
+            "column": np.array(columns, dtype=np.int32),
+            "slot": np.array(slots, dtype=np.int32),
+            "w": np.full((rows, width), np.nan),
+            "s": np.full((rows, width), np.nan),
+            "dw": np.zeros((rows, width, len(columns))) if len(columns) and keep_slopes else None,
+            "gram": np.zeros((len(columns), len(columns))),
+            "pull": np.zeros(len(columns)),
+            "x": np.full((rows, n), np.nan),
+            "filtered": np.full((rows, n), np.nan),
+            "F": np.zeros((steps, n, n)) if keep_gains else None,
+            "K": np.zeros((steps, outputs, n)) if keep_gains else None,
+            "H": np.zeros((steps, outputs, n)) if keep_gains else None,
+        }
+        request = self.ffi.new("filter_request *")
+        for name, array in arrays.items():
+            address = self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+            setattr(request, name, address)
+        request.steps, request.columns, request.slots = steps, len(columns), width
+        if self.lib.filter_run(request) != steps:
+            return None
+        gains = (arrays["F"], arrays["K"], arrays["H"]) if keep_gains else None
+        found = {name: arrays[name] for name in ("w", "s", "dw", "pull", "x", "filtered")}
+        gram = arrays["gram"]
+        assert gram is not None
+        found["gram"] = gram + np.tril(gram, -1).T
+        return Pass(**found, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
+
+    def respond(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:
+        """Change of the whitened innovations, shape (rows, slots, columns), by small disturbances `values` (steps, targets, columns).
+
+        A target below the number of states is a state, disturbed over the step from an instant; beyond, an output at that instant.
+        """
+        assert run.gains is not None
+        F, K, H = run.gains
+        width, columns = max(slots) + 1, values.shape[2]
+        dw = np.zeros((tape.rows, width, columns))
+        arrays: dict[str, NDArray[Any]] = {
+            "F": F,
+            "K": K,
+            "H": H,
+            "s": _double(run.s),
+            "value": _double(values),
+            "target": np.array(targets, dtype=np.int32),
+            "slot": np.array(slots, dtype=np.int32),
+            "row": np.ascontiguousarray(tape.row, dtype=np.int64),
+            "dw": dw,
+        }
+        request = self.ffi.new("response_request *")
+        for name, array in arrays.items():
+            setattr(request, name, self.ffi.cast("void *", array.ctypes.data))
+        request.steps, request.columns, request.targets, request.slots = len(tape.t_s), columns, len(targets), width
+        self.lib.filter_respond(request)
+        return dw
+
+
+def _double(array: ArrayLike) -> Array:
+    return np.ascontiguousarray(array, dtype=float)
+
+
+def compiled_filter(model: Model) -> Filter:
+    """The filter of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
+    sizes = {"states": len(model.states), "outputs": len(model.outputs)}
+    return open_filter(build_filter(model), sizes, tuple(axis.name for axis in model.axes))
+
+
+def build_filter(model: Model) -> Path:
+    """Compile the filter of `model`; returns the library's path."""
+    sources: list[Source] = [
+        CText("model.h", model_header(model)),
+        CText("sincos_coefficients.h", sincos_header()),
+        SIM_C / "events.c",
+        C_DIR / "filter.c",
+    ]
+    return build_shared(f"filter-{model.name}", sources, include_dirs=[C_DIR, SIM_C], flags=FAST_FLAGS)
+
+
+def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...]) -> Filter:
+    """Load a compiled filter whose model has `sizes["states"]` states and `sizes["outputs"]` outputs."""
+    declarations = (C_DIR / "filter.h").read_text(encoding="utf-8").splitlines()
+    ffi, lib = load_shared("\n".join(line for line in declarations if not line.startswith("#")), path)
+    return Filter(sizes["states"], sizes["outputs"], axes, ffi, lib)

@@ -1,0 +1,194 @@
+"""Maximum a posteriori fit of what is supposed: Gauss-Newton with Levenberg's damping on the whitened innovations."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.filter import Pass
+from diagnosis.hypothesis import Supposed, passes
+from sim.effects.effect import EffectParameter
+
+Array = NDArray[np.float64]
+ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
+DAMPINGS = 4
+NUDGE = 1e-3  # finite differences, in units of a parameter's scale
+WIDE = 20.0  # sd of an effect's size before the data, in its reference
+
+
+@dataclass(frozen=True)
+class Free:
+    """One free number of an effect: its effect, its parameter, and the unit in which the fit counts it."""
+
+    effect: str
+    parameter: EffectParameter
+    scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """What fits best, the log of its likelihood and posterior, and the linear problem there: `information` (k, k) v = -`pull` (k,),
+    theta first, then `free`, both with the prior.
+    """
+
+    supposed: Supposed
+    log_likelihood: float
+    log_posterior: float
+    free: tuple[Free, ...]
+    information: Array
+    pull: Array
+
+
+def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[Free, ...]:
+    """The numbers of the supposed effects that a fit may move."""
+    found = []
+    for name, values in supposed.effects.items():
+        for parameter in case.kit.effects[name].parameters:
+            if parameter.is_size:
+                found.append(Free(name, parameter, size_scale(parameter)))
+            elif shapes:
+                found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
+    return tuple(found)
+
+
+def size_scale(parameter: EffectParameter) -> float:
+    """The unit of a size: how far its reference is from nothing."""
+    zero = parameter.zero or 0.0
+    return abs(parameter.reference - zero) or 0.05 * (parameter.upper - parameter.lower)
+
+
+def shape_unit(parameter: EffectParameter) -> float:
+    """The unit of a shape that may be 0."""
+    return abs(parameter.reference) if parameter.reference else 0.1 * min(parameter.upper - parameter.lower, 10.0)
+
+
+def stacked(runs: Sequence[Pass]) -> Array:
+    """All whitened innovations in a row, 0 where nothing was measured."""
+    return np.asarray(np.nan_to_num(np.concatenate([run.w.ravel() for run in runs])))
+
+
+def likelihood(runs: Sequence[Pass]) -> float:
+    """The log likelihood over all flights."""
+    return sum(run.log_likelihood for run in runs)
+
+
+def log_prior(supposed: Supposed, free: Sequence[Free]) -> float:
+    """Of theta, standard normal, and of sizes, wide."""
+    sizes = [
+        (supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
+        for entry in free
+        if entry.parameter.is_size
+    ]
+    return -0.5 * float(supposed.theta @ supposed.theta) - 0.5 * float(np.sum(np.square(sizes)))
+
+
+def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) -> Fit | None:
+    """The best theta and effects from `start`, unrest held; None where the start cannot be filtered."""
+    free = free_numbers(case, start, shapes)
+    at = _linear(case, start, free)
+    damping = 0.0
+    for _ in range(rounds):
+        if at is None:
+            return None
+        if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < ENOUGH:
+            return at
+        for _ in range(DAMPINGS):
+            moved = _moved(case, at, damping)
+            tried = _linear(case, moved, free)
+            if tried is not None and tried.log_posterior > at.log_posterior:
+                break
+            damping = max(4.0 * damping, 0.03)
+        else:
+            return at
+        gain, at = tried.log_posterior - at.log_posterior, tried
+        damping *= 0.2
+        if gain < ENOUGH:
+            break
+    return at
+
+
+def _moved(case: Case, at: Fit, damping: float) -> Supposed:
+    """One damped step, kept within the effects' bounds."""
+    count = len(case.free)
+    theta = at.supposed.theta
+    curvature = at.information + damping * np.diag(np.diag(at.information))
+    step = -np.linalg.solve(curvature, at.pull)
+    effects = {name: dict(values) for name, values in at.supposed.effects.items()}
+    for entry, change in zip(at.free, step[count:], strict=True):
+        symbol, parameter = entry.parameter.symbol, entry.parameter
+        value = effects[entry.effect][symbol] + float(np.clip(change, -30.0, 30.0)) * entry.scale
+        effects[entry.effect][symbol] = float(np.clip(value, parameter.lower, parameter.upper))
+    return replace(at.supposed, theta=theta + step[:count], effects=effects)
+
+
+def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | None:
+    """Likelihood and linear problem at a point; None where the filter fails."""
+    kit = case.kit
+    inside = np.array([entry.effect in kit.names for entry in free], dtype=bool)
+    places = [kit.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in kit.names]
+    runs = passes(case, supposed, [*case.free.tolist(), *places], slopes=not inside.all())
+    if runs is None:
+        return None
+    count = len(case.free)
+    own = np.concatenate([np.arange(count), count + np.flatnonzero(inside)])
+    scale = np.concatenate([case.sd, [entry.scale for entry in free]])
+    information, pull = np.zeros((len(scale), len(scale))), np.zeros(len(scale))
+    information[np.ix_(own, own)] = np.sum([run.gram for run in runs], axis=0)
+    pull[own] = np.sum([run.pull for run in runs], axis=0)
+    if not inside.all():
+        _add_differences(case, supposed, free, runs, own, information, pull)
+    information *= np.outer(scale, scale)
+    pull *= scale
+    _add_prior(supposed, free, information, pull)
+    found = likelihood(runs)
+    return Fit(supposed, found, found + log_prior(supposed, free), free, information, pull)
+
+
+def _add_prior(supposed: Supposed, free: Sequence[Free], information: Array, pull: Array) -> None:
+    count = len(supposed.theta)
+    information[np.diag_indices(count)] += 1.0
+    pull[:count] += supposed.theta
+    for row, entry in enumerate(free, count):
+        away = supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
+        information[row, row] += 1.0 / WIDE**2 if entry.parameter.is_size else 1e-6
+        pull[row] += away / entry.scale / WIDE**2 if entry.parameter.is_size else 0.0
+
+
+def _add_differences(
+    case: Case,
+    supposed: Supposed,
+    free: Sequence[Free],
+    runs: Sequence[Pass],
+    own: NDArray[np.int64],
+    information: Array,
+    pull: Array,
+) -> None:
+    """Rows and columns of numbers that act on the way of a signal, by finite differences."""
+    w = stacked(runs)
+    slopes = np.concatenate([flat_slopes(run) for run in runs])
+    count = len(supposed.theta)
+    outside = np.setdiff1d(np.arange(count, len(pull)), own)
+    columns = np.stack([_difference(case, supposed, free[row - count], w) for row in outside.tolist()], axis=1)
+    information[np.ix_(own, outside)] = slopes.T @ columns
+    information[np.ix_(outside, own)] = information[np.ix_(own, outside)].T
+    information[np.ix_(outside, outside)] = columns.T @ columns
+    pull[outside] = columns.T @ w
+
+
+def flat_slopes(run: Pass) -> Array:
+    """Slopes (rows, columns) of all whitened innovations of a pass."""
+    assert run.dw is not None
+    return run.dw.reshape(-1, run.dw.shape[2])
+
+
+def _difference(case: Case, supposed: Supposed, entry: Free, w: Array) -> Array:
+    """The slope by a number that acts on the way of a signal, from a small step away from its bound."""
+    symbol, parameter = entry.parameter.symbol, entry.parameter
+    value = supposed.effects[entry.effect][symbol]
+    step = NUDGE * entry.scale
+    step = step if value + step <= parameter.upper else -step
+    values = {**supposed.effects[entry.effect], symbol: value + step}
+    runs = passes(case, replace(supposed, effects={**supposed.effects, entry.effect: values}))
+    return np.zeros_like(w) if runs is None else (stacked(runs) - w) / step

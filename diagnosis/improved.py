@@ -1,0 +1,66 @@
+"""The plant as the logs say it is: re-estimated parameters and effects found, with what is then known of each."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.fit import Fit
+from diagnosis.hypothesis import coefficients
+from records.diagnosis import Estimate
+from records.plant import Parameter, Plant
+from sim.effects.api import with_effects
+
+Array = NDArray[np.float64]
+SOURCE = "re-estimated from logs by twinlaw diagnose"
+
+
+def improved_plant(case: Case, fit: Fit) -> Plant:
+    """The plant of a fit: values and standard deviations of its uncertain parameters, and its effects."""
+    nominal = case.kit.bound
+    spread = deviations(fit)
+    p, sd = coefficients(case, fit.supposed)[: case.kit.own], nominal.sd.copy()
+    sd[case.free] = spread[: len(case.free)] * case.sd
+    parameters: dict[str, Parameter] = {}
+    place = 0
+    for spec in nominal.model.parameters:
+        entry = nominal.plant.parameters[spec.name]
+        part = slice(place, place + spec.count)
+        place += spec.count
+        if any(value > 0.0 for value in entry.sds):
+            value, deviation = tuple(map(float, p[part])), tuple(map(float, sd[part]))
+            single = spec.count == 1
+            entry = replace(
+                entry, value=value[0] if single else value, sd=deviation[0] if single else deviation, source=SOURCE
+            )
+        parameters[spec.name] = entry
+    plant = replace(nominal.plant, parameters=parameters, effects={})
+    bound = replace(nominal, plant=plant)
+    if not fit.supposed.effects:
+        return plant
+    sizes = {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
+    return with_effects(bound, fit.supposed.effects, sd=sizes, source="found by twinlaw diagnose").plant
+
+
+def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
+    """Each effect's parameters with one standard deviation."""
+    spread = deviations(fit)[len(fit.supposed.theta) :]
+    sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
+    return {
+        name: {
+            symbol: Estimate(float(value), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
+            for symbol, value in values.items()
+        }
+        for name, values in fit.supposed.effects.items()
+    }
+
+
+def _unit(case: Case, effect: str, symbol: str) -> str:
+    return case.kit.effects[effect].parameter[symbol].unit
+
+
+def deviations(fit: Fit) -> Array:
+    """Standard deviations of all fitted numbers in their own scales."""
+    return np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0))

@@ -1,0 +1,67 @@
+"""When something happened: instants and durations of events, found from the answers to a grid of steps."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.ground import Ground
+from sim.effects.effect import Effect
+
+Array = NDArray[np.float64]
+TIMES = ("t_0", "t_1", "t_s")
+APART_S = 1.5
+MOST = 3
+
+
+def instants(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+    """Starts of an effect whose shapes are instants: the best of a grid; empty for effects without instants."""
+    names = [parameter.symbol for parameter in effect.parameters if not parameter.is_size]
+    target = target_of(ground.case, effect)
+    if target is None or not set(names) & set(TIMES):
+        return []
+    times_s, scores = ground.steps(target)
+    gram, score = scores.gram, scores.score
+    if "duration" in names:
+        return _pulses(times_s, gram, score)
+    power = score**2 / np.maximum(np.diag(gram), 1e-12)
+    power[0] = 0.0
+    symbol = next(name for name in names if name in TIMES)
+    return [{symbol: float(times_s[index])} for index in _peaks(power)]
+
+
+def _pulses(times_s: Array, gram: Array, score: Array) -> list[dict[str, float]]:
+    """Pulses from one step to a later one that take away most."""
+    size = len(times_s)
+    first, last = np.triu_indices(size, 1)
+    norm = gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
+    power = (score[first] - score[last]) ** 2 / np.maximum(norm, 1e-12)
+    power[times_s[last] - times_s[first] > 0.5 * times_s[-1]] = 0.0
+    order = np.argsort(-power)
+    found: list[dict[str, float]] = []
+    for index in order[:200]:
+        start, duration = float(times_s[first[index]]), float(times_s[last[index]] - times_s[first[index]])
+        if all(abs(start - other["t_0"]) > APART_S for other in found):
+            found.append({"t_0": start, "duration": duration})
+        if len(found) == MOST:
+            break
+    return found
+
+
+def _peaks(power: Array, most: int = MOST) -> list[int]:
+    order: list[int] = []
+    for index in np.argsort(-power).tolist():
+        if all(abs(index - other) > 2 for other in order):
+            order.append(index)
+        if len(order) == most:
+            break
+    return order
+
+
+def target_of(case: Case, effect: Effect) -> int | None:
+    """The state, or after the states the output, that an effect disturbs."""
+    kit, model = case.kit, case.kit.bound.model
+    for axis in model.axes:
+        if axis.name == effect.place:
+            return kit.states.index(str(axis.velocity))
+    sensor = model.places.sensors.get(effect.place)
+    return None if sensor is None else len(kit.states) + kit.outputs.index(sensor.output)

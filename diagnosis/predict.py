@@ -1,0 +1,91 @@
+"""Free runs over consecutive windows of a log, each from the state that the model's own filter had from data up to its first row."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case, Flight
+from diagnosis.filter import Noise
+from diagnosis.hypothesis import Supposed, coefficients, noise_of, tape_under
+from diagnosis.tape import Tape
+from sim.effects.effect import Values
+
+Array = NDArray[np.float64]
+WINDOW_S = 1.0
+SETTLE_S = 2.0  # until then the filter cannot tell the speeds well enough
+UNSEEN = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
+
+
+def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0.02) -> Array:
+    """Predicted readings (rows, outputs) of a log by window; NaN where the filter fails or cannot yet tell."""
+    kit = case.kit
+    tape = tape_under(case, flight, supposed.effects)
+    p, noise = coefficients(case, supposed), noise_of(case, flight, supposed, rub_s)
+    plain = not any(name in kit.names for name in supposed.effects)
+    chosen, given = (kit.plain, p[: kit.own]) if plain else (kit.filter, p)
+    whole = Tape(tape.t_s, tape.u, tape.y, tape.r, np.arange(len(tape.t_s)), len(tape.t_s))
+    run = chosen.run(whole, given, flight.x0, noise, case.slots, locked=flight.locked)
+    outputs = len(kit.bound.model.outputs)
+    found = np.full((len(flight.log.t_s), outputs), np.nan)
+    if run is None:
+        return found
+    lateness = _lateness(case, supposed.effects)
+    ahead = Noise(np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0))
+    slots = [place if place < outputs else -1 for place in range(len(kit.outputs))]
+    for first, last in windows(flight.log.t_s):
+        begin = int(np.searchsorted(tape.t_s, flight.log.t_s[first] - max(lateness) + 1e-9, side="right")) - 1
+        end = int(np.searchsorted(tape.t_s, flight.log.t_s[last - 1] + 1e-9, side="right"))
+        if begin < 0 or flight.log.t_s[first] < flight.log.t_s[0] + SETTLE_S:
+            continue
+        part = _unseen(tape, begin, end, outputs)
+        free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
+        if free is None:
+            continue
+        y = -free.w * np.sqrt(free.s)
+        for output in range(outputs):
+            then = flight.log.t_s[first:last] - lateness[output]
+            found[first:last, output] = np.interp(then, part.t_s, y[:, output])
+    for name, values in supposed.effects.items():
+        if name.endswith("_sensor.backlash"):
+            sensor = kit.bound.model.places.sensors[name.split(".")[0]]
+            output = kit.outputs.index(sensor.output)
+            _behind_play(flight, found[:, output], flight.log.y[:, output], values["width"])
+    return found
+
+
+def windows(t_s: Array) -> list[tuple[int, int]]:
+    """First row and row after the last of each window."""
+    number = np.floor((t_s - t_s[0]) / WINDOW_S + 1e-9).astype(int)
+    edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(t_s)]
+    return [(first, last) for first, last in pairwise(edges) if last - first > 1]
+
+
+def _lateness(case: Case, effects: Mapping[str, Values]) -> list[float]:
+    """How old each output's readings are."""
+    kit = case.kit
+    found = [0.0] * len(kit.bound.model.outputs)
+    for name, values in effects.items():
+        place, kind = name.split(".")
+        if place in kit.bound.model.places.sensors and kind in ("delay", "lag"):
+            found[kit.outputs.index(kit.bound.model.places.sensors[place].output)] += values["tau"]
+    return found
+
+
+def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
+    """A stretch of a tape whose readings are nothing but questions."""
+    count = end - begin
+    y = np.full((count, tape.y.shape[1]), np.nan)
+    y[:, :outputs] = 0.0
+    r = np.full_like(y, UNSEEN)
+    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), count)
+
+
+def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:
+    """What a reading behind play follows of the predicted angle, in place; each window starts from its own first reading."""
+    for first, last in windows(flight.log.t_s):
+        stands = read[first] if np.isfinite(read[first]) else predicted[first]
+        for row in range(first, last):
+            stands = min(max(stands, predicted[row] - 0.5 * width), predicted[row] + 0.5 * width)
+            predicted[row] = stands

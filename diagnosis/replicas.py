@@ -1,0 +1,87 @@
+"""What a log without any gap would show: replicas of its innovations with the encoders' own rounding, and the tail of their largest score.
+
+Each replica flies the log's own way, moved by less than an encoder step, under new noise and with coefficients drawn from their spread;
+it goes through the same filter, linearised. So rounding is not taken for white noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.ground import Ground
+from diagnosis.hypothesis import noise_of
+
+Array = NDArray[np.float64]
+COUNT = 64
+SEED = 20
+
+
+@dataclass(frozen=True)
+class Tail:
+    """A Gumbel law for the largest gain of a log without gap: place and scale, by moments of the replicas."""
+
+    place: float
+    scale: float
+
+    def probability(self, gain: float) -> float:
+        """The chance of so large a gain or a larger one."""
+        return float(-np.expm1(-np.exp(-(gain - self.place) / self.scale)))
+
+
+def tail_of(largest: Array) -> Tail:
+    """The law of the largest gains of replicas (count,)."""
+    scale = max(float(np.std(largest)) * np.sqrt(6.0) / np.pi, 0.5)
+    return Tail(float(np.mean(largest)) - 0.5772 * scale, scale)
+
+
+def replicas(ground: Ground, count: int = COUNT) -> Array:
+    """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
+    rng = np.random.default_rng(SEED)
+    parts = [_flight(ground, index, count, rng) for index in range(len(ground.tapes))]
+    drawn = rng.standard_normal((ground.slopes.shape[1], count))
+    return np.asarray(np.concatenate(parts) + ground.slopes @ drawn)
+
+
+def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) -> Array:
+    case, tape, run = ground.case, ground.tapes[index], ground.runs[index]
+    kit, flight = case.kit, case.flights[index]
+    noise = noise_of(case, flight, ground.fit.supposed, 0.0)
+    states = len(kit.states)
+    moving = [kit.states.index(str(axis.velocity)) for axis in kit.bound.model.axes if axis.name not in flight.locked]
+    measured = [place for place, slot in enumerate(case.slots) if slot >= 0]
+    targets = [*moving, *(states + place for place in measured)]
+    values = np.empty((len(tape.t_s), len(targets), count))
+    h = np.append(np.diff(tape.t_s), 0.0)[:, None]
+    for row, state in enumerate(moving):
+        values[:, row] = rng.standard_normal((len(h), count)) * np.sqrt(noise.q[state] * h)
+    for row, place in enumerate(measured, len(moving)):
+        values[:, row] = _read(ground, index, place, count, rng)
+    dw = ground.filter.respond(tape, run, values, targets, case.slots)
+    return dw.reshape(-1, count)
+
+
+def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Generator) -> Array:
+    """Errors of readings (steps, count): rounding along the log's own way, moved at random, and noise beyond it."""
+    kit, tape = ground.case.kit, ground.tapes[index]
+    name = kit.outputs[place]
+    step = kit.bound.plant.sensors.get(name, 0.0)
+    beyond = np.maximum(tape.r[:, place] - step**2 / 12.0, 0.0)[:, None]
+    error = rng.standard_normal((len(tape.t_s), count)) * np.sqrt(np.where(beyond < 1e-3 * step**2, 0.0, beyond))
+    if step <= 0.0 or name not in kit.bound.model.outputs:
+        return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
+    symbol = str(kit.bound.model.outputs[name])
+    column = kit.states.index(symbol) if symbol in kit.states else -1
+    way = tape.y[:, place] if column < 0 else ground.runs[index].filtered[np.maximum(tape.row, 0), column]
+    exact = np.nan_to_num(way)[:, None] + rng.uniform(0.0, step, count) + 0.3 * step * _wander(len(way), count, rng)
+    error += np.round(exact / step) * step - exact
+    return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
+
+
+def _wander(steps: int, count: int, rng: np.random.Generator) -> Array:
+    """A slow random way of about one unit, by straight lines between points a second apart."""
+    points = rng.standard_normal((steps // 100 + 2, count))
+    at = np.linspace(0.0, len(points) - 1.001, steps)
+    low = at.astype(int)
+    share = (at - low)[:, None]
+    return np.asarray(points[low] * (1.0 - share) + points[low + 1] * share)

@@ -1,0 +1,163 @@
+"""A first look at every effect: how much of what is left its signature explains once the plant's own coefficients have had their share."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.filter import Pass
+from diagnosis.fit import likelihood, size_scale, stacked
+from diagnosis.ground import Ground, Scores
+from diagnosis.hypothesis import passes
+from diagnosis.instants import instants
+from sim.effects.effect import Effect, Values
+
+Array = NDArray[np.float64]
+MOST_STARTS = 8
+SMALL = 0.05
+FARTHEST = 30.0  # of a size's reference that a first look may propose
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
+    order, `absorbed` the share of its signature that the plant's coefficients imitate."""
+
+    effect: str
+    values: Values
+    z: float
+    gain: float
+    absorbed: float
+
+
+def look(case: Case, ground: Ground, names: Sequence[str], worth: Sequence[str] | None = None) -> list[Look]:
+    """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
+
+    Effects on the way of the signals cost a pass for each start; `worth` restricts them.
+    """
+    supposed = ground.fit.supposed
+    wanted = [name for name in names if name not in supposed.effects]
+    costly = wanted if worth is None else [name for name in wanted if name in worth]
+    found = [*_smooth(case, ground, wanted), *_first_order(case, ground, costly), *_finite(case, ground, costly)]
+    best: dict[str, Look] = {}
+    for entry in found:
+        if entry.effect not in best or entry.gain > best[entry.effect].gain:
+            best[entry.effect] = entry
+    return sorted(best.values(), key=lambda entry: -entry.gain)
+
+
+def shape_starts(effect: Effect) -> list[dict[str, float]]:
+    """Values of an effect's shapes to start from, its sizes left out."""
+    shapes = [parameter for parameter in effect.parameters if not parameter.is_size]
+    choices = [p.starts or (p.reference,) for p in shapes]
+    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
+
+
+def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
+    """Effects in the kit's equations whose first order counts: all in one pass for each of their starts."""
+    kit, supposed = case.kit, ground.fit.supposed
+    starts: dict[str, list[dict[str, float]]] = {}
+    for name in names:
+        effect = kit.effects[name]
+        if name in kit.names and not _limited(effect):
+            starts[name] = instants(ground, effect) or shape_starts(effect)
+    found = []
+    for turn in range(max((len(values) for values in starts.values()), default=0)):
+        now = {name: values[turn] for name, values in starts.items() if turn < len(values)}
+        touched = {name: {**_touched(kit.effects[name]), **shapes} for name, shapes in now.items()}
+        places = [kit.place(name, kit.effects[name].size.symbol) for name in now]
+        runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), [*case.free.tolist(), *places])
+        if runs is not None:
+            found += _judged(case, ground, touched, runs)
+    return found
+
+
+def _touched(effect: Effect) -> dict[str, float]:
+    return {parameter.symbol: parameter.touched for parameter in effect.parameters}
+
+
+def _limited(effect: Effect) -> bool:
+    """Effects that do nothing at all until a limit is reached: no first order."""
+    return effect.kind in ("saturation", "slew_limit")
+
+
+def _judged(case: Case, ground: Ground, values: Mapping[str, Values], runs: Sequence[Pass]) -> list[Look]:
+    """Looks from a pass whose columns are the plant's coefficients, then one effect's size each."""
+    count = len(case.free)
+    scale = np.concatenate([case.sd, [size_scale(case.kit.effects[name].size) for name in values]])
+    gram = np.sum([run.gram for run in runs], axis=0) * np.outer(scale, scale)
+    pull = np.sum([run.pull for run in runs], axis=0) * scale
+    scores = ground.scores(gram[count:, count:], gram[:count, count:], pull[count:])
+    return _looks(case, values, scores, scale[count:])
+
+
+def _looks(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[Look]:
+    """Looks from the scores of one column for each effect, per unit of its size."""
+    norm = np.sqrt(np.maximum(np.diag(scores.gram), 0.0))
+    found = []
+    for index, (name, given) in enumerate(values.items()):
+        if norm[index] < 1e-3 or not np.isfinite(norm[index]):
+            continue
+        parameter, unit = case.kit.effects[name].size, units[index]
+        score = float(scores.score[index] / norm[index])
+        size = float(np.clip(score / norm[index], -FARTHEST, FARTHEST))
+        value = float(np.clip((parameter.zero or 0.0) + size * unit, parameter.lower, parameter.upper))
+        size = (value - (parameter.zero or 0.0)) / unit
+        gain = float(size * norm[index] * (score - 0.5 * size * norm[index]))
+        absorbed = 1.0 - float(norm[index] ** 2 / max(scores.raw[index], 1e-12))
+        found.append(Look(name, {**given, parameter.symbol: value}, score, gain, absorbed))
+    return found
+
+
+def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
+    """Smooth effects on the way of the signals, by a small size."""
+    found = []
+    supposed = ground.fit.supposed
+    for name in names:
+        effect = case.kit.effects[name]
+        if effect.on_equations or not effect.smooth or len(effect.parameters) != 1:
+            continue
+        unit = size_scale(effect.size)
+        small = {effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}
+        runs = passes(case, supposed.with_effects({**supposed.effects, name: small}))
+        if runs is not None:
+            scores = ground.scores_of(((stacked(runs) - ground.w) / SMALL)[:, None])
+            found += _looks(case, {name: small}, scores, np.array([unit]))
+    return found
+
+
+def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
+    """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
+    found = []
+    for name in names:
+        effect = case.kit.effects[name]
+        if name in case.kit.names and not _limited(effect):
+            continue
+        if name not in case.kit.names and effect.on_equations:
+            continue
+        for value in effect.size.starts or (effect.size.reference,):
+            for shapes in shape_starts(effect):
+                entry = _tried(case, ground, effect, {**shapes, effect.size.symbol: value})
+                if entry is not None:
+                    found.append(entry)
+    return found
+
+
+def _tried(case: Case, ground: Ground, effect: Effect, values: Values) -> Look | None:
+    """An effect at full size: its gain of the log likelihood, with what the fitted numbers would then add to first order."""
+    supposed = ground.fit.supposed
+    runs = passes(case, supposed.with_effects({**supposed.effects, effect.name: values}))
+    if runs is None:
+        return None
+    w = stacked(runs)
+    change = w - ground.w
+    size = float(change @ change)
+    if size < 1e-6:
+        return None
+    gain = likelihood(runs) - ground.fit.log_likelihood + ground.still_to_gain(w) - ground.still_to_gain(ground.w)
+    own = ground.slopes.T @ change
+    absorbed = float(own @ ground.solve @ own) / size
+    return Look(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed)

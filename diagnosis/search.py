@@ -1,0 +1,110 @@
+"""The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
+
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.case import Case
+from diagnosis.fit import WIDE, Fit, fit
+from diagnosis.ground import Ground, ground_of
+from diagnosis.hypothesis import Supposed
+from diagnosis.screen import Look, look
+from diagnosis.unrest import with_unrest
+from sim.effects.effect import Values
+
+SINGLES, PARTNERS, BEAM = 8, 4, (3, 1)
+LEAST_GAIN = 4.0  # of the log likelihood at a first look
+FURTHER_GAIN = 8.0  # that a further effect must promise
+SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
+LEAST_SHARE = 0.01  # of the best first look
+WORTH = 14
+WORKERS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A hypothesis with its fit: `effects` its names in order, `evidence` the log evidence by Laplace, unscaled."""
+
+    effects: tuple[str, ...]
+    fit: Fit
+    evidence: float
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """All that was tried, best evidence first, the nominal plant among it; `ground` and `looks` are those of the nominal plant."""
+
+    tried: tuple[Tried, ...]
+    nominal: Tried
+    ground: Ground
+    looks: tuple[Look, ...]
+
+    def of(self, effects: Iterable[str]) -> Tried | None:
+        """The hypothesis of exactly these effects."""
+        wanted = frozenset(effects)
+        return next((entry for entry in self.tried if frozenset(entry.effects) == wanted), None)
+
+
+def evidence(found: Fit) -> float:
+    """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
+    size = len(found.supposed.theta)
+    sign, volume = np.linalg.slogdet(found.information)
+    prior = sum(-np.log(WIDE) if entry.parameter.is_size else -SHAPE_COST for entry in found.free)
+    shapes = [row for row, entry in enumerate(found.free, size) if not entry.parameter.is_size]
+    own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
+    return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
+
+
+def search(case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks: Sequence[Look]) -> Search:
+    """Fit the nominal plant with single effects, pairs and triples of `names`; `nominal` is its fit without any, `looks` those from it."""
+    worth = [entry.effect for entry in looks if entry.gain > LEAST_GAIN][:WORTH]
+    found: dict[frozenset[str], Tried] = {}
+    first = Tried((), nominal, evidence(nominal))
+    with ThreadPoolExecutor(WORKERS) as pool:
+        chosen = [entry for entry in looks if entry.gain > max(LEAST_GAIN, LEAST_SHARE * looks[0].gain)][:SINGLES]
+        _fit_all(case, pool, [(nominal.supposed, entry) for entry in chosen], found)
+        for beam in BEAM:
+            size = max((len(chosen) for chosen in found), default=0)
+            best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
+            grown = [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best) for job in jobs]
+            if not _fit_all(case, pool, grown, found):
+                break
+    tried = sorted([first, *found.values()], key=lambda entry: -entry.evidence)
+    return Search(tuple(tried), first, ground, tuple(looks))
+
+
+def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[str]) -> list[tuple[Supposed, Look]]:
+    """Further effects that promise most beside those tried."""
+    ground = ground_of(case, tried.fit)
+    looks = look(case, ground, names, worth)
+    return [(tried.fit.supposed, entry) for entry in looks if entry.gain > FURTHER_GAIN][:PARTNERS]
+
+
+def _fit_all(
+    case: Case, pool: ThreadPoolExecutor, jobs: Sequence[tuple[Supposed, Look]], found: dict[frozenset[str], Tried]
+) -> bool:
+    """Fit each job that is new; whether anything was added."""
+    fresh: dict[frozenset[str], tuple[Supposed, Look]] = {}
+    for supposed, entry in jobs:
+        fresh.setdefault(frozenset((*supposed.effects, entry.effect)), (supposed, entry))
+    wanted = [job for names, job in fresh.items() if names not in found]
+    done = [
+        tried for tried in pool.map(lambda job: refine(case, job[0], job[1].effect, job[1].values), wanted) if tried
+    ]
+    found.update({frozenset(tried.effects): tried for tried in done})
+    return bool(done)
+
+
+def refine(case: Case, supposed: Supposed, effect: str, values: Values) -> Tried | None:
+    """The joint fit from a start, with the unrest that then remains."""
+    start = supposed.with_effects({**supposed.effects, effect: values})
+    found = fit(case, start, rounds=4)
+    if found is None:
+        return None
+    calmer = with_unrest(case, found.supposed)
+    again = fit(case, calmer, rounds=5)
+    if again is None:
+        return None
+    return Tried(tuple(again.supposed.effects), again, evidence(again))

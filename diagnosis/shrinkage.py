@@ -1,0 +1,91 @@
+"""How far the gap shrinks on logs that were not fitted: errors of 1 s predictions, as stated, re-tuned and with the effects found."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.hypothesis import Supposed
+from diagnosis.predict import predictions, windows
+from records.diagnosis import Shrinkage
+
+Array = NDArray[np.float64]
+BARS = ("nominal", "before", "after")
+DRAWS, SEED = 1000, 7
+
+
+@dataclass(frozen=True, eq=False)
+class Predicted:
+    """Readings of a hold-out log predicted by each of BARS: (rows, outputs), NaN where a row could not be predicted."""
+
+    name: str
+    t_s: Array
+    y: Array
+    by: Mapping[str, Array]
+
+
+def predict_all(case: Case, names: Sequence[str], bars: Mapping[str, Supposed]) -> tuple[Predicted, ...]:
+    """Predictions of every flight of `case` by each model in `bars`."""
+    return tuple(
+        Predicted(
+            name,
+            flight.log.t_s,
+            flight.log.y,
+            {bar: predictions(case, flight, supposed) for bar, supposed in bars.items()},
+        )
+        for name, flight in zip(names, case.flights, strict=True)
+    )
+
+
+def shrinkage(case: Case, predicted: Sequence[Predicted]) -> Shrinkage:
+    """RMS by output, the share of the removable error that the effects remove, and its bootstrap interval over windows."""
+    outputs = list(case.kit.bound.model.outputs)
+    squares = {bar: _squares(predicted, bar) for bar in BARS}
+    floor = np.sqrt([case.flights[0].tape.r[0, case.kit.outputs.index(name)] for name in outputs])
+    bars = {bar: _named(outputs, np.sqrt(np.nanmean(squares[bar], axis=0))) for bar in BARS}
+    whole = np.arange(len(squares["after"]))
+    fraction = _fraction(squares, floor, whole)
+    rng = np.random.default_rng(SEED)
+    drawn = [_fraction(squares, floor, rng.integers(0, len(whole), len(whole))) for _ in range(DRAWS)]
+    spread = [value for value in drawn if value is not None]
+    interval = (float(np.percentile(spread, 2.5)), float(np.percentile(spread, 97.5))) if spread else None
+    return Shrinkage(
+        rms_nominal=bars["nominal"],
+        rms_before=bars["before"],
+        rms_after=bars["after"],
+        rms_floor=_named(outputs, floor),
+        fraction=fraction,
+        fraction_ci95=None if fraction is None else interval,
+    )
+
+
+def error(case: Case, predicted: Sequence[Predicted], bar: str) -> float:
+    """Mean square error of a bar, each output in units of its floor."""
+    outputs = list(case.kit.bound.model.outputs)
+    floor = np.array([case.flights[0].tape.r[0, case.kit.outputs.index(name)] for name in outputs])
+    return float(np.sum(np.nanmean(_squares(predicted, bar), axis=0) / floor))
+
+
+def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
+    """Mean square error by window and output."""
+    found = []
+    for entry in predicted:
+        square = (entry.by[bar] - entry.y) ** 2
+        for first, last in windows(entry.t_s):
+            if np.isfinite(square[first:last]).any(axis=0).all():
+                found.append(np.nanmean(square[first:last], axis=0))
+    return np.array(found) if found else np.full((1, predicted[0].y.shape[1]), np.nan)
+
+
+def _fraction(squares: Mapping[str, Array], floor: Array, rows: NDArray[np.int64]) -> float | None:
+    before, after = (np.nanmean(squares[bar][rows[rows < len(squares[bar])]], axis=0) for bar in ("before", "after"))
+    removable = float(np.sum(before / floor**2 - 1.0))
+    if not np.isfinite(removable) or removable <= 0.0:
+        return None
+    return float(np.sum((before - after) / floor**2) / removable)
+
+
+def _named(outputs: Sequence[str], values: Array) -> dict[str, float]:
+    return {name: float(value) if np.isfinite(value) else 0.0 for name, value in zip(outputs, values, strict=True)}

@@ -1,0 +1,96 @@
+"""Logs as tapes for the filter: instants with the inputs held from them and the measurements at them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.log import RunLog
+from records.plant import Plant
+from sim.paths import Held, InputStage, pass_inputs
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Tape:
+    """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
+    their variances r (m, outputs), and `row` (m,): the log's row whose results an instant fills, -1 for none; `rows` in all.
+    """
+
+    t_s: Array
+    u: Array
+    y: Array
+    r: Array
+    row: NDArray[np.int64]
+    rows: int
+
+
+def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None) -> Tape:
+    """The tape of a log: `outputs` are the plant's own and then the states that the log may carry; rows not `used` have no measurement."""
+    rows = len(log.t_s)
+    y = np.full((rows, len(outputs)), np.nan)
+    r = np.ones((rows, len(outputs)))
+    for place, name in enumerate(outputs):
+        if name in log.columns.outputs or name in log.extra:
+            y[:, place] = log.column(name)
+            r[:, place] = _variance(y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
+    if used is not None:
+        y[~used] = np.nan
+    return Tape(log.t_s, log.u, y, r, np.arange(rows), rows)
+
+
+def _variance(y: Array, step: float, noise: float) -> float:
+    """Variance of a measurement: its encoder's step and noise, and no less than its second differences show, outliers apart."""
+    second = np.diff(y[np.isfinite(y)], 2)
+    seen = (1.4826 * float(np.median(np.abs(second))) if second.size else 0.0) ** 2 / 6.0
+    stated = step**2 / 12.0 + noise**2
+    # Of motion itself second differences hold next to nothing, of a stated resolution no more than its rounding.
+    return max(stated, seen if not step else min(seen, 100.0 * stated), 1e-18)
+
+
+def with_inputs(tape: Tape, stages: Sequence[InputStage]) -> Tape:
+    """The tape with its inputs sent through stages: delays and ramps bring instants of their own."""
+    if not stages:
+        return tape
+    edges = np.append(tape.t_s, 2.0 * tape.t_s[-1] - tape.t_s[-2])
+    held, _ = pass_inputs(stages, Held(edges, tape.u))
+    return spread(tape, held.edges_s[:-1], held.values)
+
+
+def spread(tape: Tape, starts_s: Array, values: Array) -> Tape:
+    """The tape with inputs that change at other instants, which join its own."""
+    t_s = np.union1d(tape.t_s, starts_s)
+    t_s = t_s[np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s)]
+    place = np.maximum(np.searchsorted(starts_s, t_s + 1e-9, side="right") - 1, 0)
+    return _placed(tape, t_s, values[place])
+
+
+def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
+    """Measurements put at their instants among `t_s`."""
+    y = np.full((len(t_s), tape.y.shape[1]), np.nan)
+    r = np.ones((len(t_s), tape.y.shape[1]))
+    row = np.full(len(t_s), -1, dtype=np.int64)
+    where = np.searchsorted(t_s, tape.t_s)
+    y[where], r[where], row[where] = tape.y, tape.r, tape.row
+    return Tape(t_s, u, y, r, row, tape.rows)
+
+
+def late(tape: Tape, output: int, tau_s: float) -> Tape:
+    """The tape with one output's readings put `tau_s` earlier, to when they were true; inputs as they were."""
+    if tau_s <= 0.0:
+        return tape
+    t_s = np.union1d(tape.t_s, tape.t_s - tau_s)
+    t_s = t_s[(t_s >= tape.t_s[0]) & (np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s))]
+    place = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
+    moved = _placed(tape, t_s, tape.u[place])
+    y, r, row = moved.y, moved.r, moved.row.copy()
+    y[:, output] = np.nan
+    then = tape.t_s - tau_s
+    seen = then >= t_s[0]
+    where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)
+    y[where[seen], output], r[where[seen], output] = tape.y[seen, output], tape.r[seen, output]
+    # Results of that output belong to the log's row of the reading, which is one instant's row only where no other row claims it.
+    row[where[seen & (row[where] < 0)]] = tape.row[seen & (row[where] < 0)]
+    return Tape(t_s, moved.u, y, r, row, tape.rows)

@@ -1,0 +1,55 @@
+"""From evidence to probabilities that mean something: tempered by how far the forms of the library may be from the truth."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.search import Tried
+
+Array = NDArray[np.float64]
+# Fitted on development cases of the sealed benchmark's generator, see calibration.py: nats below which two hypotheses are alike, the
+# share of the whole gain that a form a little off the truth may cost, and what each further effect and an unknown one must overcome.
+ALIKE, OFF_FORM, FURTHER, UNKNOWN = 4.0, 0.006, 1.5, 3.0
+UNKNOWN_COST = 12.0
+KEPT = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; and the
+    scale in nats on which hypotheses are compared."""
+
+    tried: tuple[Tried, ...]
+    probabilities: tuple[float, ...]
+    unknown: float
+    scale: float
+
+
+def weigh(tried: Sequence[Tried], nominal: Tried, left: float) -> Weighed:
+    """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them."""
+    named = [entry for entry in tried if entry.effects]
+    if not named:
+        return Weighed((), (), 1.0, ALIKE)
+    best = max(entry.evidence for entry in named)
+    scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0)
+    scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
+    unknown = (left - UNKNOWN_COST) / scale - UNKNOWN
+    weights = np.exp(np.append(scores, unknown) - max(np.max(scores), unknown))
+    weights /= weights.sum()
+    order = np.argsort(-weights[:-1], kind="stable")[:KEPT]
+    chosen = tuple(named[index] for index in order)
+    return Weighed(chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), scale)
+
+
+def alike(weighed: Weighed, first: Tried) -> list[Tried]:
+    """Hypotheses of as many effects that these data hardly tell from `first`."""
+    near = [
+        entry
+        for entry in weighed.tried
+        if entry is not first
+        and len(entry.effects) == len(first.effects)
+        and abs(entry.evidence - first.evidence) < 3.0 * weighed.scale
+    ]
+    return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]

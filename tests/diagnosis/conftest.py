@@ -1,0 +1,59 @@
+"""Flights of a CE150 that its own controller holds, with and without an effect; the same for all tests of the diagnosis."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from records.log import RunLog
+from records.plant import load_plant
+from sim.bind import BoundPlant, bind
+from sim.effects.api import with_effects
+from sim.loop import closed_loop_log
+from sim.simulate import Noise, simulate
+
+Fly = Callable[..., RunLog]
+SECONDS = 30.0
+
+
+@pytest.fixture(scope="session")
+def plant() -> BoundPlant:
+    """The CE150 as stated."""
+    return bind(load_plant(Path("plants/ce150.toml")))
+
+
+@pytest.fixture(scope="session")
+def fly(plant: BoundPlant) -> Fly:
+    """fly(seed, effects): a run of 30 s about level under lively references, with the spread of parameters and turbulence of `seed`."""
+    table, _ = design(plant, read_settings(plant))
+
+    def flown(seed: int, effects: Mapping[str, Mapping[str, float]] | None = None, seconds: float = SECONDS) -> RunLog:
+        rng = np.random.default_rng(seed)
+        t_s = np.arange(0.0, seconds, 0.01)
+        waves = rng.uniform(0.1, 0.9, (2, 4))
+        phases = rng.uniform(0.0, 6.0, (2, 4))
+        reach = np.array([0.6, 1.2])
+        swing = np.sin(2 * np.pi * waves[:, :, None] * t_s + phases[:, :, None]).mean(axis=1) * reach[:, None]
+        reference = (swing - swing[:, :1]).T
+        rig = with_effects(plant, effects) if effects else plant
+        p = rig.p.copy()
+        own = len(plant.p)
+        p[:own] += 0.5 * plant.sd * rng.standard_normal(own)
+        x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
+        noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3])
+        run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy")
+        manoeuvre = _Flown(t_s, reference)
+        return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={})  # type: ignore[arg-type]
+
+    return flown
+
+
+class _Flown:
+    """What closed_loop_log asks of a manoeuvre."""
+
+    def __init__(self, t_s: np.ndarray, reference_rad: np.ndarray) -> None:
+        self.t_s, self.reference_rad = t_s, reference_rad
