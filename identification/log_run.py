@@ -1,7 +1,7 @@
 """A run log as a run for the estimator: cut into windows whose starts are free, which holds an unstable plant to its data."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from identification.driven import driven_model
 from identification.run import Carried, Run
@@ -20,11 +20,14 @@ POSITION_STEPS, POSITION_SHARE = (
 )  # so many resolution steps, or so much of its range, a window's start may be off
 
 
-def log_run(bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1) -> Run:
+def log_run(
+    bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1, at_first: ArrayLike | None = None
+) -> Run:
     """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept.
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give
-    no reading. Raises BadInput for a log with less than two rows.
+    no reading. States that only the inputs drive run on from those of
+    `at_first` (states,) at the first row, by default from 0. Raises BadInput for a log with less than two rows.
     """
     if log.t_s.size < 2:
         raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
@@ -54,9 +57,14 @@ def log_run(bound: BoundPlant, log: RunLog, name: str, window_s: float, every: i
         x0=x0,
         free=free,
         start_sd=start_sd,
-        carried=None if part is None else Carried(subsystem(bound, part), np.zeros(len(part.states))),
+        carried=None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first)),
         step=step,
     )
+
+
+def _carried_start(model: Model, part: Model, x0: ArrayLike | None) -> Array:
+    whole = np.zeros(len(model.states)) if x0 is None else np.asarray(x0, dtype=float)
+    return np.asarray(whole[[model.states.index(state) for state in part.states]])
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:

@@ -7,6 +7,7 @@ from identification.run import coefficient_names
 from records.errors import BadInput
 from sim.bind import BoundPlant
 
+LEAST = 1e-3  # of its size: dry friction of exactly 0 does not act, and so has no slope that would lead back
 FACTOR = 5.0  # by default a parameter lies between a fifth and five times its start
 
 
@@ -33,7 +34,8 @@ def _range(bound: BoundPlant, name: str, start: float, limits: tuple[float, floa
     size = abs(start) if start else _size_of_absent(bound, name)
     if limits is None:
         lower, upper = (size / FACTOR, size * FACTOR) if sign == "positive" else (-size * FACTOR, size * FACTOR)
-        return Range(start, 0.0 if sign == "non-negative" else lower, upper, size)
+        lower = LEAST * size if sign == "non-negative" else lower
+        return Range(max(start, lower), lower, upper, size)
     lower, upper = limits
     if not lower <= start <= upper:
         raise BadInput(

@@ -12,7 +12,7 @@ from identification.run import Run
 Array = NDArray[np.float64]
 SHARE = 0.1  # an absent parameter is taken to matter a tenth as much as the others
 LEAST = 1e-9  # a friction of exactly 0 has no slope: it does not act at all
-REACH = 100.0
+REACH, BOUND = 100.0, 1e-3
 
 
 def with_sizes(runs: Sequence[Run], ranges: Mapping[str, Range], absent: Sequence[str]) -> dict[str, Range]:
@@ -41,5 +41,6 @@ def with_sizes(runs: Sequence[Run], ranges: Mapping[str, Range], absent: Sequenc
 
 def _range(old: Range, size: float) -> Range:
     """Bounds of the user stay as they are: only those that were a guess, multiples of the old size, move."""
-    never_negative = old.lower == 0.0
-    return Range(size if never_negative else 0.0, 0.0 if never_negative else -REACH * size, REACH * size, size)
+    never_negative = old.lower >= 0.0
+    lower = BOUND * size if never_negative else -REACH * size
+    return Range(size if never_negative else 0.0, lower, REACH * size, size)

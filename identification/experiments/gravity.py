@@ -13,6 +13,7 @@ from identification.experiments.rig import PSI, Rig, Setup
 from identification.observation import observation
 from identification.run import Run
 from identification.subsystem import subsystem
+from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 
@@ -55,6 +56,10 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
     found = experiment.streams["balance"]
     free = np.abs(found["psi_rad"]) < bound.parameter("Psi_lim") - 2.0 * bound.plant.sensors["psi_rad"]
     angles, weights = found["psi_rad"][free], found["weight_kg"][free]
+    if angles.size < 3:
+        raise BadInput(
+            "balances", "experiment gravity", f"{angles.size} off the stops", "at least three", "hang lighter or heavier weights",
+        )  # fmt: skip
     facts = experiment.facts
     extra = {"Psi_m": 0.0, "lever": facts["lever_m"], "lever_angle": facts["lever_rad"]}
     n = angles.size

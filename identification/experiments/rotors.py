@@ -13,6 +13,7 @@ from identification.experiments import models
 from identification.experiments.rig import PERIOD_S, TURN_M, TURN_T, Rig, Setup
 from identification.observation import observation
 from identification.run import Run
+from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 
@@ -86,6 +87,11 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
     t_s = np.unique(np.concatenate([drive["t_s"], cell["t_s"], gate]))
     t_s = t_s[(t_s >= drive["t_s"][0]) & (t_s <= drive["t_s"][-1])]
     turns = _whole_turns(gate[(gate >= t_s[0] + TRIM_S) & (gate <= t_s[-1])])
+    if not len(turns):
+        raise BadInput(
+            "photogate", f"experiment {experiment.kind}", "no whole turn faster than 20 rad/s", "pulses of a turning rotor",
+            "check gate, blades and the common pulse: the rotor's parameters need its speed",
+        )  # fmt: skip
     at_cell = (cell["t_s"] >= t_s[0] + TRIM_S) & (cell["t_s"] <= t_s[-1])
     speeds = 2 * np.pi / (turns[:, 1] - turns[:, 0])
     select = _select(t_s, turns, cell["t_s"][at_cell])

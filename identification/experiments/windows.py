@@ -7,6 +7,7 @@ from identification.driven import driven_model
 from identification.log_run import lines, position_sd, rounding_sd
 from identification.run import Carried, Run
 from identification.subsystem import subsystem
+from records.errors import BadInput
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
@@ -17,7 +18,15 @@ SHIFT_S, SPEED_ROWS = 2.0, 6
 def windowed(
     name: str, part: BoundPlant, t_s: Array, u: Array, angle: Array, output: str, begins: Index, stops: Index
 ) -> Run:
-    """A run of a subsystem with one axis: its rotor runs on from rest at the first row, angle and speed start anew in each window."""
+    """A run of a subsystem with one axis: its rotor runs on from rest at the first row, angle and speed start anew in each window.
+
+    Raises BadInput where there is no window: the axis never moved freely.
+    """
+    if not begins.size:
+        raise BadInput(
+            "motion", f"experiment {name}", "no stretch in which the axis moves freely", "at least one",
+            "check the mount and the locks, and record again: an axis at rest tells nothing",
+        )  # fmt: skip
     model, driven = part.model, driven_model(part.model)
     axis = model.axes[0]
     assert axis.position is not None

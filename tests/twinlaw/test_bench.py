@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from identification import bench as fit_bench
 from sim import bench, bench_compiled
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
@@ -14,6 +15,7 @@ def quick(monkeypatch):
     for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
         monkeypatch.setattr(bench, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)
+    monkeypatch.setattr(fit_bench, "DURATION_S", 6.0)
     monkeypatch.setattr(bench_compiled, "_module", lambda name: None)  # as where no optional tool is installed
 
 
@@ -22,6 +24,7 @@ def test_it_tells_ratios_errors_the_board_s_speed_and_how_to_install_what_is_abs
     said = capsys.readouterr().out
     for words in ("kernel is faster by", "SciPy solve_ivp", "rad by step halving", "million instructions / CPU s"):
         assert words in said
+    assert "ten parameters from 60 s" in said
     assert "not installed: CasADi generated C, numba, diffrax, diffrax vmap" in said
     assert "install --editable '.[peers]'" in said
 
@@ -33,4 +36,5 @@ def test_json_is_one_object_with_the_same_facts(capsys):
     assert all(row["note"] for row in said["closed_loop"])
     assert max(said["step_accuracy"]["true_rad"]) < 1e-7
     assert said["emulated_board"]["instructions"] > 50 * 1000
+    assert {row["tool"] for row in said["fits"]} >= {"twinlaw identify", "SciPy least_squares"}
     assert said["emulated_board"]["instructions_per_s"] > 0.0

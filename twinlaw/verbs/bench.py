@@ -1,4 +1,4 @@
-"""Measure speed: the simulation next to other tools on the same equations in the same run, and the emulated board.
+"""Measure speed: simulation and identification next to other tools on the same equations in the same run, and the emulated board.
 
 Simulated seconds per CPU second of one core, and how many times faster the kernel is, flying one run at a time and many side by
 side. Tools that are not installed are named, with the command that installs them; `apart` tells how far a tool's flight ends from
@@ -14,6 +14,8 @@ from typing import Any
 
 from codegen.law import generate_law
 from design.law import FloatLaw
+from identification import bench as fit_bench
+from identification.bench import FitRow
 from records.table import ControllerTable
 from rig.emulator.bench import Speed
 from rig.emulator.board import EmulatedBoard
@@ -26,6 +28,7 @@ from twinlaw.stages import design_controller
 
 BOARD_STEPS = 20_000
 INSTALL = ".venv/bin/python -m pip install --editable '.[peers]'"
+FIT_HEADING = ("ten parameters from 60 s, one core", "CPU s", "the project is faster by", "worst error", "")
 HEADING = ("closed loop, one core", "simulated s / CPU s", "kernel is faster by", "side by side by", "apart", "")
 
 
@@ -44,10 +47,13 @@ def run(chosen: argparse.Namespace) -> int:
         accuracy = bench.step_accuracy(designed.bound, designed.table)
     with console.stage("stepping the law on the emulated board"):
         board = _board_speed(designed.table)
+    with console.stage("fitting by every tool"):
+        fits = fit_bench.run(designed.bound)
     if chosen.json:
-        print(json.dumps(_facts(rows, accuracy, board)))
+        print(json.dumps(_facts(rows, accuracy, board) | {"fits": [asdict(row) for row in fits]}))
     else:
         print(console.table([_shown(row) for row in rows], HEADING))
+        print("\n" + console.table([_fit_shown(row) for row in fits], FIT_HEADING))
         print("\n" + "\n".join(_told(rows, accuracy, board)))
     return 0
 
@@ -63,6 +69,12 @@ def _shown(row: BenchRow) -> tuple[str, ...]:
     ratios = ("" if ratio is None else f"{ratio:,.1f}" for ratio in (row.kernel_ratio, row.batch_ratio))
     apart = f"{math.degrees(row.apart_rad):.2f} deg" if row.apart_rad else ""
     return row.tool, f"{row.simulated_s_per_cpu_s:,.0f}", *ratios, apart, row.note
+
+
+def _fit_shown(row: FitRow) -> tuple[str, ...]:
+    if row.cpu_s is None or row.ratio is None or row.worst_error is None:
+        return row.tool, "not installed", "", "", row.note
+    return row.tool, f"{row.cpu_s:.2f}", f"{row.ratio:,.1f}", f"{100.0 * row.worst_error:.2g} %", row.note
 
 
 def _told(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> list[str]:

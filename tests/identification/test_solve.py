@@ -1,0 +1,105 @@
+"""The least-squares solver: it finds what is there from far off, keeps bounds and prior, and says what cannot be told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from identification import bench
+from identification.belief import NOTHING, Belief
+from identification.estimate import Range, estimate, problem_of
+from identification.log_run import log_run
+from identification.ranges import ranges_of
+from identification.run import coefficient_names
+from identification.solve import solve
+from records.errors import BadInput
+
+
+@pytest.fixture(scope="module")
+def work(bound):
+    return bench.task(bound)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_ten_parameters_from_a_minute_come_back_within_a_thousandth_from_thirty_per_cent_off(work, seed):
+    tolerance = 1e-3
+    signs = np.random.default_rng(seed).choice([-1.0, 1.0], work.truth.size)
+    found = bench.fit(replace(work, start=work.truth * (1.0 + bench.OFF * signs)))
+    assert np.max(np.abs(found / work.truth - 1.0)) < tolerance
+
+
+def test_a_parameter_stays_within_its_bounds_and_the_others_follow(bound, work):
+    """J_E may not fall below 1.1 times the truth: it ends there."""
+    names = ("J_E", "b_vE")
+    places = [coefficient_names(bound.model).index(name) for name in names]
+    ranges = ranges_of(bound, names)
+    least = 1.1 * bound.p[places[0]]
+    ranges["J_E"] = Range(1.2 * bound.p[places[0]], least, 2.0 * bound.p[places[0]], bound.p[places[0]])
+    runs = (log_run(bound, work.log, "log", 2.0, at_first=work.x0),)
+    point = solve(problem_of(runs, names, ranges, NOTHING))
+    assert point.theta[0] == pytest.approx(least, rel=1e-9)
+    assert point.theta[1] != pytest.approx(bound.p[places[1]], rel=1e-3)
+
+
+def test_what_was_known_counts_as_so_many_data(bound, work):
+    """Two halves of a log one after another give what the whole gives at once, to a small part of its sd."""
+    names = ("J_E", "tau_gE", "b_vE", "J_A", "b_vA")
+    run = log_run(bound, work.log, "whole", 2.0, at_first=work.x0)
+    ranges = ranges_of(bound, names)
+    whole = solve(problem_of((run,), names, ranges, NOTHING))
+    halves = [
+        replace(
+            run, y=run.y[part], sd=run.sd[part], at_s=run.at_s[part], channel=run.channel[part], select=run.select[part],
+            begins=run.begins[rows], stops=run.stops[rows], x0=run.x0[rows], start_sd=run.start_sd[rows],
+        )
+        for rows, part in _halves(run)
+    ]  # fmt: skip
+    first = solve(problem_of((halves[0],), names, ranges, NOTHING))
+    weak = np.diag([1.0 / ranges[name].scale ** 2 for name in names])
+    known = Belief(names, first.theta, np.linalg.inv(first.H + weak))
+    second = solve(problem_of((halves[1],), names, ranges, known))
+    sd = np.sqrt(np.diag(np.linalg.inv(whole.H)))
+    assert np.all(np.abs(second.theta - whole.theta) < 0.1 * sd)
+    np.testing.assert_allclose(np.diag(first.H + second.H), np.diag(whole.H), rtol=1e-2)
+
+
+def _halves(run):
+    middle = len(run.begins) // 2
+    edge = int(np.searchsorted(run.select, run.begins[middle] * run.outputs))
+    return ((slice(0, middle), slice(0, edge)), (slice(middle, None), slice(edge, None)))
+
+
+def test_a_common_scale_of_all_torques_is_named_as_a_direction_that_cannot_be_told(bound, work):
+    """Inertia, gravity, friction and thrust of an axis show in the motion by their ratios alone."""
+    names = ("J_E", "tau_gE", "b_vE", "b_cE", "l_M", "K_E")
+    run = log_run(bound, work.log, "log", 5.0, at_first=work.x0)
+    found = estimate([run], names, ranges_of(bound, names), NOTHING)
+    (blind,) = found.unseen
+    np.testing.assert_allclose([weight for _, weight in blind.weights], 1.0 / np.sqrt(6.0), rtol=0.01)
+    assert {name for name, _ in blind.weights} == set(names)
+    ratio = found.belief.value("J_E") / found.belief.value("tau_gE")
+    assert ratio == pytest.approx(bound.parameter("J_E") / bound.parameter("tau_gE"), rel=2e-3)
+
+
+def test_an_axis_that_never_moves_tells_nothing_of_its_inertia(bound, work):
+    log = replace(work.log, u=np.zeros_like(work.log.u), y=np.tile([-0.7853, 0.0], (work.log.t_s.size, 1)))
+    found = estimate([log_run(bound, log, "rest", 5.0)], ("J_A",), ranges_of(bound, ("J_A",)), NOTHING)
+    assert [name for direction in found.unseen for name, _ in direction.weights] == ["J_A"]
+
+
+def test_data_that_contradict_are_told_by_parameter(bound, work):
+    places = coefficient_names(bound.model).index("J_A")
+    wrong = Belief(("J_A",), 1.2 * bound.p[[places]], np.array([[(1e-3 * bound.p[places]) ** 2]]))
+    run = log_run(bound, work.log, "log", 5.0, at_first=work.x0)
+    found = estimate([run], ("b_vA",), ranges_of(bound, ("J_A", "b_vA")), wrong)
+    assert [entry.name for entry in found.contradictions] == ["J_A"]
+    assert found.contradictions[0].sds > 5.0
+
+
+def test_a_start_outside_its_bounds_or_an_unknown_name_is_refused(bound):
+    with pytest.raises(
+        BadInput, match=r"start of J_E: got 0.00437, expected a value between its bounds 0.005 and 0.006"
+    ):
+        ranges_of(bound, ("J_E",), {"J_E": (0.005, 0.006)})
+    with pytest.raises(BadInput, match="parameter 'J_X'"):
+        ranges_of(bound, ("J_X",))
