@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.solve import Prior
+from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
 
@@ -42,6 +43,15 @@ class Belief:
 
 
 NOTHING = Belief((), np.zeros(0), np.zeros((0, 0)))
+
+
+def stated(bound: BoundPlant) -> Belief:
+    """What a plant file says it knows: values, sd and correlation of all coefficients whose sd is above 0."""
+    names = tuple(str(symbol) for symbol, sd in zip(bound.model.parameter_symbols, bound.sd, strict=True) if sd > 0.0)
+    known = bound.sd > 0.0
+    correlation = bound.plant.correlation
+    spread = np.eye(len(names)) if correlation is None else correlation.spread_over(names)
+    return Belief(names, bound.p[known], spread * np.outer(bound.sd[known], bound.sd[known]))
 
 
 def widened(belief: Belief, names: Sequence[str], start: Mapping[str, float]) -> tuple[tuple[str, ...], Array]:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from identification.belief import NOTHING, Belief
+from identification.belief import NOTHING, Belief, stated
 from identification.estimate import Estimate
 from identification.logs import identify_logs
 from identification.result import Identification, facts, identification
@@ -36,12 +36,16 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Wishes:
-    """What the user asks of the estimation: coefficients (for logs), limits, seed of a search, length of the logs' windows."""
+    """What the user asks of the estimation: coefficients (for logs), limits, seed of a search, length of the logs' windows.
+
+    `keep_knowledge` takes the plant file's values, sd and correlation for data of their own; without it they are only a start.
+    """
 
     names: tuple[str, ...]
     limits: Limits
     search_seed: int | None
     window_s: float | None
+    keep_knowledge: bool = False
 
 
 def read_inputs(paths: Sequence[Path], bound: BoundPlant) -> Inputs:
@@ -117,7 +121,7 @@ def identify(
     """Stage by stage; `save` is told the result after each, so that an interrupted run leaves what it has."""
     stages: list[tuple[str, Estimate]] = []
     aids: list[tuple[Belief, float]] = []
-    belief = NOTHING
+    belief = stated(bound) if wishes.keep_knowledge else NOTHING
     for experiment in inputs.experiments:
         with console.stage(title(experiment)):
             stage = identify_stage(bound, experiment, belief, wishes.limits, wishes.search_seed)

@@ -25,7 +25,7 @@ from twinlaw.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --out, --free, --bounds, --search, --window, --truth, --json, FILES."""
+    """--plant, --out, --free, --bounds, --search, --window, --truth, --prior, --json, FILES."""
     options.plant(parser)
     options.out(parser)
     parser.add_argument(
@@ -46,6 +46,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--truth", type=Path, metavar="PLANT.toml", help="fly this plant with the controller designed from the result"
     )
+    parser.add_argument(
+        "--prior", action="store_true", help="what the plant file knows (values, sd, correlation) counts as data"
+    )
     options.as_json(parser)
     parser.add_argument("files", nargs="+", type=Path, metavar="FILES", help="experiments, folders of them, run logs")
 
@@ -56,7 +59,8 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
-    wishes = Wishes(free_names(bound, chosen.free), read_limits(chosen.bounds), chosen.search, chosen.window)
+    names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds)
+    wishes = Wishes(names, limits, chosen.search, chosen.window, chosen.prior)
     inputs = read_inputs(chosen.files, bound)
     result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
     comparison = None

@@ -1,0 +1,113 @@
+"""Plants from run logs: closed loops, unstable plants, locked axes, far starts, and published runs of real rigs."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from identification.belief import stated
+from identification.logs import identify_logs, run_of
+from recordings.files import datasets_folder
+from recordings.library import import_record
+from records.correlation import Correlation
+from records.errors import BadInput
+from records.log import RunLog
+from records.plant import load_plant
+from sim.bind import bind
+from sim.columns import log_columns
+from sim.loop import fly_law
+from sim.manoeuvres import flight
+from sim.simulate import simulate
+
+PLANTS = Path(__file__).parents[2] / "plants"
+NAMES = ("K_M", "J_E", "b_vE", "K_T", "J_A", "b_vA", "K_A")
+real = pytest.mark.skipif(not (datasets_folder() / "emps").is_dir(), reason="the published recordings are not here")
+
+
+@pytest.fixture(scope="module")
+def flown(bound):
+    """The project's flight over both halves of the elevation: a closed loop about an unstable plant."""
+    table, _ = design(bound, read_settings(bound))
+    return fly_law(bound, table, flight(bound), substeps=4)
+
+
+def off(bound, factors):
+    parameters = dict(bound.plant.parameters)
+    for name, factor in factors.items():
+        parameters[name] = replace(parameters[name], value=parameters[name].value * factor)
+    return bind(replace(bound.plant, parameters=parameters))
+
+
+def test_an_unstable_plant_in_a_closed_loop_comes_back_within_its_intervals(bound, flown):
+    """Started 25 % off; true values within 4 sd, and these below 2 %."""
+    signs = dict(zip(NAMES, (1.25, 0.75, 1.25, 0.75, 1.25, 0.75, 1.25), strict=True))
+    found = identify_logs(off(bound, signs), {"flight": flown}, NAMES)
+    for name in NAMES:
+        sd = float(found.belief.sd[found.belief.names.index(name)])
+        assert abs(found.belief.value(name) - bound.parameter(name)) < 4.0 * sd, name
+        assert sd < 0.02 * bound.parameter(name), name
+
+
+def test_jittered_times_and_lost_samples_do_no_harm(bound, flown):
+    """Half of the rows at random, which leaves gaps of several samples, and a tenth of the readings not a number."""
+    rng = np.random.default_rng(1)
+    kept = np.sort(rng.choice(4000, 2000, replace=False))
+    t_s, u = flown.t_s[kept], flown.u[kept]
+    x0 = np.zeros(6)
+    x0[1] = flown.y[int(kept[0]), 0]
+    run = simulate(bound, t_s, x0, u)
+    y = np.where(rng.random(run.y.shape) < 0.1, np.nan, run.y)
+    log = RunLog(log_columns(bound.model), 0.01, "open", t_s, u, y)
+    found = identify_logs(off(bound, {"J_A": 1.2, "b_vA": 0.8}), {"log": log}, ("J_A", "b_vA"))
+    assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
+    assert found.belief.value("b_vA") == pytest.approx(bound.parameter("b_vA"), rel=0.02)
+
+
+def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):
+    """Azimuth locked at 0.3 rad: the elevation is predicted to half an encoder step, and no azimuth is."""
+    t_s = np.arange(1000) * 0.01
+    u = np.column_stack([5.3 + 0.1 * np.sign(np.sin(2.0 * t_s)), np.full(t_s.size, 2.0)])
+    x0 = np.array([0.0, -0.5, 0.0, 0.0, 0.3, 0.0])
+    run = simulate(bound, t_s, x0, u, locked=("azimuth",))
+    log = RunLog(log_columns(bound.model), 0.01, "open", t_s, u, run.y, locked=("azimuth",))
+    seen = run_of(bound, log, "log", np.inf)
+    assert seen.channels == ("psi_rad",)
+    found = identify_logs(off(bound, {"J_E": 1.2}), {"log": log}, ("J_E",), window_s=2.0)
+    assert found.belief.value("J_E") == pytest.approx(bound.parameter("J_E"), rel=5e-3)
+
+
+def test_a_search_finds_the_way_from_the_edge_of_the_range(bound, flown):
+    """Inertia and damping four times off, the same seed twice: the truth, and the same numbers."""
+    start = off(bound, {"J_A": 4.0, "b_vA": 0.25})
+    one, other = (
+        identify_logs(start, {"flight": flown}, ("J_A", "b_vA"), window_s=1.0, search_seed=1) for _ in range(2)
+    )
+    np.testing.assert_array_equal(one.belief.mean, other.belief.mean)
+    assert one.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
+
+
+def test_what_the_plant_file_states_is_a_belief_with_its_correlation(bound):
+    plant = replace(bound.plant, correlation=Correlation(("K_M", "J_E"), ((1.0, 0.5), (0.5, 1.0))))
+    belief = stated(bind(plant))
+    assert "g" not in belief.names
+    pair = belief.part(("K_M", "J_E"))
+    assert pair.covariance[0, 1] == pytest.approx(0.5 * pair.sd[0] * pair.sd[1])
+
+
+def test_a_log_of_one_row_is_refused(bound, flown):
+    log = replace(flown, t_s=flown.t_s[:1], u=flown.u[:1], y=flown.y[:1], extra={})
+    with pytest.raises(BadInput, match="at least two rows"):
+        run_of(bound, log, "log", 1.0)
+
+
+@real
+def test_the_positioning_system_s_inertia_is_within_a_hundredth_of_the_published(tmp_path):
+    """95.11 kg with the benchmark; dry friction and offset, absent from the plant file, are found with it (20.4 N, -3.2 N)."""
+    emps = bind(load_plant(PLANTS / "emps.toml"))
+    found = identify_logs(emps, {"emps": import_record("emps", "DATA_EMPS")}, ("M", "F_v", "F_c", "offset"))
+    assert found.belief.value("M") == pytest.approx(95.11, rel=0.01)
+    assert found.belief.value("F_c") == pytest.approx(20.39, rel=0.05)
+    assert found.belief.value("offset") == pytest.approx(-3.16, rel=0.1)

@@ -1,0 +1,112 @@
+"""The verbs `experiments` and `identify`: files in, files out, one line for what is wrong."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from records.plant import load_plant
+from twinlaw import identifying
+from twinlaw.command import main
+
+ROTORS = ("01-main_rotor", "03-gravity", "04-elevation_swing")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The nine experiments of one rig."""
+    path = tmp_path_factory.mktemp("experiments")
+    assert main(["experiments", "--seed", "5", "--out", str(path)]) == 0
+    return path
+
+
+def some(folder: Path, names=ROTORS):
+    return [str(folder / f"{name}.toml") for name in names]
+
+
+def test_nine_experiments_give_a_plant_file_a_report_and_json(folder, tmp_path, capsys):
+    assert main(["identify", "--out", str(tmp_path), "--truth", str(folder / "truth.toml"), "--json", str(folder)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told == json.loads((tmp_path / "identification.json").read_text())
+    assert told["schema"] == "identification/1"
+    assert len(told["estimates"]) == 27
+    assert all(entry["lower"] < entry["value"] < entry["upper"] for entry in told["estimates"])
+    plant, truth = load_plant(tmp_path / "plant.toml"), load_plant(folder / "truth.toml")
+    assert plant.correlation is not None
+    np.testing.assert_allclose(plant.parameters["J_E"].value, truth.parameters["J_E"].value, rtol=5e-3)
+    assert plant.design == load_plant(Path("plants/ce150.toml")).design
+    page = (tmp_path / "report.html").read_text()
+    for words in ("Fig. 7", "Fig. 8", "Fig. 10", "Fig. 13", "linear fit", "Correlation"):
+        assert words in page
+
+
+def test_a_few_experiments_name_what_they_cannot_tell(folder, tmp_path, capsys):
+    assert main(["identify", "--out", str(tmp_path), *some(folder)]) == 0
+    said = capsys.readouterr().out
+    assert "95 % interval" in said
+    assert "J_E" in said
+    assert "J_A" not in said
+
+
+def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tmp_path):
+    original, calls = identifying.identify_stage, []
+
+    def stops_at_the_third(*given):
+        calls.append(given)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return original(*given)
+
+    monkeypatch.setattr(identifying, "identify_stage", stops_at_the_third)
+    assert main(["identify", "--out", str(tmp_path), *some(folder)]) == 130
+    found = json.loads((tmp_path / "identification.json").read_text())
+    assert {entry["name"] for entry in found["estimates"]} >= {"K_M", "tau_gE"}
+    assert load_plant(tmp_path / "plant.toml").correlation is not None
+
+
+def test_repetitions_tell_how_often_the_truth_lies_inside(tmp_path, capsys):
+    assert main(["experiments", "--seed", "7", "--repetitions", "1", "--out", str(tmp_path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert len(told["coverage"]) == 27
+    assert told["mean"] > 0.7
+    assert len(json.loads((tmp_path / "repetitions.json").read_text())["repetitions"]) == 1
+
+
+def bounded(tmp_path, text):
+    (tmp_path / "bounds.toml").write_text(text)
+    return ["--bounds", str(tmp_path / "bounds.toml")]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (lambda tmp_path: bounded(tmp_path, "K_M = [1.0, 2.0]"), "start of K_M: got 363, expected a value between its bounds 1 and 2"),
+        (lambda tmp_path: bounded(tmp_path, "K_M = [2.0, 1.0]"), "bounds of K_M: got [2, 1], expected lowest < highest"),
+        (lambda tmp_path: bounded(tmp_path, "K_M = 3"), "bounds.toml: K_M"),
+        (lambda tmp_path: ["--free", "K_X"], "parameter 'K_X'"),
+        (lambda tmp_path: ["--window", "-1"], "--window"),
+        (lambda tmp_path: ["--plant", "plants/emps.toml"], "plant: got 'ce150', expected 'emps'"),
+        (lambda tmp_path: [str(tmp_path)], "none in this folder"),
+        (lambda tmp_path: [str(tmp_path / "nothing.csv")], "nothing.toml"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_used_is_one_line_and_leaves_nothing(folder, tmp_path, capsys, options, words):
+    out = tmp_path / "out"
+    assert main(["identify", "--out", str(out), *options(tmp_path), *some(folder, ROTORS[:1])]) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert said.count("\n") == 1
+    assert not out.exists()
+
+
+def test_the_same_experiment_twice_or_on_the_wrong_mount_is_refused(folder, tmp_path, capsys):
+    for path in folder.glob("04-*"):
+        shutil.copy(path, tmp_path / path.name)
+    copy = tmp_path / "04-elevation_swing.toml"
+    assert main(["identify", "--out", str(tmp_path / "out"), *some(folder, ROTORS[2:]), str(copy)]) == 2
+    assert "given twice" in capsys.readouterr().err
+    copy.write_text(copy.read_text().replace('"turned"', '"upright"'))
+    assert main(["identify", "--out", str(tmp_path / "out"), str(copy)]) == 2
+    assert "mount: got 'upright', expected 'turned'" in capsys.readouterr().err
