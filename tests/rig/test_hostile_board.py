@@ -224,6 +224,7 @@ def test_with_every_fault_at_once_a_session_ends_complete_or_in_one_error_and_th
     faults += [BaudMismatch(ratio=source.uniform(0.97, 1.03), from_s=0.4), HostPause(duration_s=0.02, rate=rate)]
     port = open_port(url, timeout_s=0.25)
     line = HostileLine(port, faults, seed)
+    line.close = lambda: None  # a client that finds no board hangs up, which would switch the emulated one off
     complete = [complete_or_one_line(line, 40) for _ in range(2)]
     assert any(complete) or rate > 0.005
     line.heal()
