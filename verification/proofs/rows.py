@@ -1,8 +1,8 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import behaviour, cost, rounding
+from verification.proofs import behaviour, cost, rounding, totality
 from verification.proofs.subject import Proof
-from verification.proofs.tools import FRAMA_C, GAPPA
+from verification.proofs.tools import BITWUZLA, FRAMA_C, GAPPA
 
 _FLOAT32 = ("float32",)
 
@@ -13,6 +13,13 @@ PROOFS: tuple[Proof, ...] = (
         "no undefined behaviour, overflow or NaN from any step, for all time",
         (FRAMA_C,),
         behaviour.prove,
+        _FLOAT32,
+    ),
+    Proof(
+        totality.NAME,
+        "limits hold for every bit pattern, coefficients stay within their stated ranges",
+        (BITWUZLA,),
+        totality.prove,
         _FLOAT32,
     ),
     Proof(cost.NAME, "what one control step takes on the target, worst paths of soft float included", (), cost.prove),

@@ -1,0 +1,56 @@
+"""Claims about all floats: proved for the law as it is, refuted for laws that break them."""
+
+from dataclasses import replace
+
+import pytest
+
+from codegen.law import generate_law
+from tests.law_tables import ce150_table, changed_axis
+from verification.proofs.smt_text import PREAMBLE, Question, coefficient_ranges, questions
+from verification.proofs.totality import holds
+
+pytest.importorskip("bitwuzla", reason="bitwuzla is not installed (pip install --editable '.[proofs]')")
+TABLE = ce150_table()
+LAW_C = generate_law(TABLE)["law.c"]
+
+
+def short(claims: list[Question]) -> list[Question]:
+    """Those that take no more than a moment: all but the scheduled coefficients."""
+    return [q for q in claims if "_q_" not in q.claim and "_p_" not in q.claim and "_u_ff_" not in q.claim]
+
+
+def test_predicates_limits_duties_and_constants_hold_for_all_bits() -> None:
+    asked = short(list(questions(TABLE, LAW_C)))
+    assert len(asked) == 14
+    assert all(holds(question) for question in asked), [q.claim for q in asked if not holds(q)]
+
+
+def test_a_feed_forward_stays_within_its_comment_and_leaves_a_narrower_one() -> None:
+    name = "azimuth_u_ff_V"
+    (question,) = (q for q in coefficient_ranges(TABLE, LAW_C) if q.claim.startswith(name))
+    assert holds(question)
+    low = question.claim.split()[-1].split("..")[0]
+    narrower = LAW_C.replace(f"range {low}..", f"range {float(low) + 0.001:.4g}..")
+    (question,) = (q for q in coefficient_ranges(TABLE, narrower) if q.claim.startswith(name))
+    assert not holds(question)
+
+
+def test_limits_in_the_wrong_order_or_a_safe_value_outside_them_are_found() -> None:
+    swapped = changed_axis(TABLE, "elevation", u_min_V=10.0, u_max_V=0.0)
+    outside = changed_axis(TABLE, "azimuth", u_safe_V=11.0)
+    for table, axis in ((swapped, "elevation"), (outside, "azimuth")):
+        (question,) = (q for q in questions(table, LAW_C) if q.claim.startswith(f"the {axis} voltage"))
+        assert not holds(question)
+
+
+def test_a_comparison_of_plain_words_is_no_comparison_of_floats() -> None:
+    (question,) = (q for q in questions(TABLE, LAW_C) if q.claim.startswith("is_less"))
+    broken = replace(question, text=question.text.replace("(bvneg (magnitude b))", "(magnitude b)"))
+    assert broken.text != question.text
+    assert not holds(broken)
+
+
+def test_every_array_of_the_c_has_its_question() -> None:
+    arrays = [line for line in LAW_C.splitlines() if line.startswith("static const law_number ") and "range" in line]
+    assert len(list(coefficient_ranges(TABLE, LAW_C))) == len(arrays)
+    assert all(question.text.startswith(PREAMBLE) for question in questions(TABLE, LAW_C))

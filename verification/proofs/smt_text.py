@@ -1,0 +1,155 @@
+"""Questions about the float32 law as SMT-LIB text (theories of bit vectors and IEEE 754 floats): each asks for a counterexample.
+
+The functions are those of law.c, operation by operation; a number is its 32 bits, read as a float where the C reads one. Numbers
+come from the table, Horner's scheme from the law's own equations, the stated ranges from the comments of the generated C.
+"""
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.law_constants import AxisConstants, law_constants
+from codegen.law_equations import polynomial
+from codegen.numbers import float32_bits
+from codegen.twin import FULL_SCALE_V, PWM_TICKS
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, ControllerTable
+
+_COMMENTED_RANGE = re.compile(r"(\w+)\[\d+\] = \{ /\* [^,]+, range (\S+?)\.\.(\S+) \*/")
+_SHOWN_DIGITS = 4
+
+PREAMBLE = """(set-logic QF_BVFP)
+(define-sort Word () (_ BitVec 32))
+(define-fun float ((b Word)) Float32 ((_ to_fp 8 24) b))
+(define-fun magnitude ((b Word)) Word (bvand b #x7fffffff))
+(define-fun rank ((b Word)) Word (ite (= ((_ extract 31 31) b) #b1) (bvneg (magnitude b)) (magnitude b)))
+(define-fun is_less ((a Word) (b Word)) Bool (bvslt (rank a) (rank b)))
+(define-fun is_finite ((a Word)) Bool (bvult (magnitude a) #x7f800000))
+(define-fun is_nan ((a Word)) Bool (bvugt (magnitude a) #x7f800000))
+(define-fun is_plausible ((a Word) (bound Word)) Bool (bvule (magnitude a) bound))
+(define-fun is_settled ((a Word) (least Word)) Bool (bvult (magnitude a) least))
+(define-fun clamp ((a Word) (low Word) (high Word)) Word (ite (is_less a low) low (ite (is_less high a) high a)))
+(define-fun saturate ((a Word) (low Word) (high Word) (safe Word)) Word (ite (is_nan a) safe (clamp a low high)))
+(define-fun within ((a Word) (low Word) (high Word)) Bool
+  (and (fp.leq (float low) (float a)) (fp.leq (float a) (float high))))
+(declare-const a Word)
+(declare-const b Word)
+"""
+
+
+@dataclass(frozen=True)
+class Question:
+    """A claim in words, and the text whose unsatisfiability proves it."""
+
+    claim: str
+    text: str
+
+
+@dataclass(frozen=True)
+class SmtNumber:
+    """A float32 term."""
+
+    term: str
+
+    def __add__(self, other: "SmtNumber") -> "SmtNumber":
+        return SmtNumber(f"(fp.add RNE {self.term} {other.term})")
+
+    def __mul__(self, other: "SmtNumber") -> "SmtNumber":
+        return SmtNumber(f"(fp.mul RNE {self.term} {other.term})")
+
+
+def questions(table: ControllerTable, law_c: str) -> Iterator[Question]:
+    """All questions about the float32 law of `table` whose text is `law_c`."""
+    yield from _predicates()
+    law = law_constants(table, float)
+    for name, axis in (("elevation", law.elevation), ("azimuth", law.azimuth)):
+        yield _saturation(name, axis)
+    yield _duty()
+    yield from coefficient_ranges(table, law_c)
+
+
+def coefficient_ranges(table: ControllerTable, law_c: str) -> Iterator[Question]:
+    """Each polynomial stays within the range in its comment, to the digits shown, for every float32 of its argument's range."""
+    stated = {name: (float(low), float(high)) for name, low, high in _COMMENTED_RANGE.findall(law_c)}
+    psi_rad = (table.psi_min_rad, table.psi_max_rad)
+    reference_rad = (table.elevation.reference_min_rad, table.elevation.reference_max_rad)
+    for name, coefficients in _polynomials(table):
+        low, high = stated[name]
+        over_rad = reference_rad if name.endswith("u_ff_V") else psi_rad
+        value = polynomial(coefficients, SmtNumber("(float a)"), SmtNumber(_term(0.0))).term
+        limits = (_bits(low - _half_unit(low)), _bits(high + _half_unit(high)))
+        yield Question(
+            f"{name} within {low:g}..{high:g}",
+            _refute(
+                f"(and (fp.leq (float {limits[0]}) {value}) (fp.leq {value} (float {limits[1]})))",
+                f"(within a {_bits(over_rad[0])} {_bits(over_rad[1])})",
+            ),
+        )
+
+
+def _predicates() -> Iterator[Question]:
+    """The integer comparisons of law.c mean what the float comparisons mean."""
+    yield Question(
+        "is_less is < for all numbers but NaN",
+        _refute("(= (is_less a b) (fp.lt (float a) (float b)))", "(not (is_nan a))", "(not (is_nan b))"),
+    )
+    nan, infinite = "(fp.isNaN (float a))", "(fp.isInfinite (float a))"
+    yield Question("is_nan is true for NaN alone", _refute(f"(= (is_nan a) {nan})"))
+    yield Question("is_finite is true for numbers alone", _refute(f"(= (is_finite a) (not (or {nan} {infinite})))"))
+    for name, relation, bound in (("is_plausible", "leq", PLAUSIBLE_V), ("is_settled", "lt", LEAST_SCHEDULE_RAD)):
+        meaning = f"(fp.{relation} (fp.abs (float a)) (float {_bits(bound)}))"
+        yield Question(f"{name} is a comparison of |a|", _refute(f"(= ({name} a {_bits(bound)}) {meaning})"))
+
+
+def _saturation(name: str, axis: AxisConstants[float]) -> Question:
+    low, high, safe = (_bits(limit) for limit in (axis.u_min_V, axis.u_max_V, axis.u_safe_V))
+    claim = f"the {name} voltage is within its limits whatever the 32 bits before them"
+    return Question(claim, _refute(f"(within (saturate a {low} {high} {safe}) {low} {high})"))
+
+
+def _duty() -> Question:
+    """duty() of law.c, for any bits and any safe voltage within full scale."""
+    low, high = _bits(-FULL_SCALE_V), _bits(FULL_SCALE_V)
+    product = f"(fp.mul RNE (float (saturate a {low} {high} b)) {_term(2.0 * PWM_TICKS / FULL_SCALE_V)})"
+    one, two = "#x00000001", "#x00000002"
+    away = f"(ite (bvsge h #x00000000) (bvsdiv (bvadd h {one}) {two}) (bvneg (bvsdiv (bvsub {one} h) {two})))"
+    ticks = f"(let ((h ((_ fp.to_sbv 32) RTZ {product}))) {away})"
+    limit = f"#x{PWM_TICKS:08x}"
+    inside = f"(let ((t {ticks})) (and (bvsle (bvneg {limit}) t) (bvsle t {limit})))"
+    return Question("duties are within full scale whatever the 32 bits", _refute(inside, f"(within b {low} {high})"))
+
+
+def _refute(claim: str, *given: str) -> str:
+    """Ask for bits that fulfil what is given and break the claim."""
+    return PREAMBLE + "".join(f"(assert {condition})\n" for condition in given) + f"(assert (not {claim}))\n"
+
+
+def _polynomials(table: ControllerTable) -> Iterator[tuple[str, tuple[SmtNumber, ...]]]:
+    """The arrays of law.c by name, as their float32 terms."""
+    law = law_constants(table, lambda value: SmtNumber(_term(value)))
+    for axis, numbers in (("elevation", law.elevation), ("azimuth", law.azimuth)):
+        groups = (("q", numbers.q_V_rad, "_V_rad"), ("p", numbers.p, ""), ("a", numbers.a, ""))
+        for letter, polynomials, suffix in groups:
+            for index, coefficients in enumerate(polynomials):
+                if coefficients:
+                    yield f"{axis}_{letter}_{index}{suffix}", coefficients
+        if numbers.feedforward_V:
+            yield f"{axis}_u_ff_V", numbers.feedforward_V
+
+
+def _half_unit(shown: float) -> float:
+    """Half a unit of the last digit shown, and an ulp of float32 for the bound's own rounding."""
+    if shown == 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(abs(shown))) - _SHOWN_DIGITS + 1)
+    return 0.5 * unit + float(np.spacing(np.float32(abs(shown))))
+
+
+def _bits(value: float) -> str:
+    return f"#x{float32_bits(value):08x}"
+
+
+def _term(value: float) -> str:
+    return f"(float {_bits(value)})"
