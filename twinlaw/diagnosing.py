@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from diagnosis.engine import Material, diagnose
+from diagnosis.firmware_replay_table import replay_log
 from diagnosis.integrity import demand, examine
 from diagnosis.result import Result
 from diagnosis.shrinkage import Predicted
-from records.diagnosis import save_diagnosis
+from records.diagnosis import Firmware, save_diagnosis
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import RunLog, load_log
@@ -16,9 +17,13 @@ from records.plant import plant_text
 from records.units import unit_suffix
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.effects.api import without_effects
+from sim.effects.api import library, without_effects
+from twinlaw import diagnosis_page
 from twinlaw.console import stage
+from twinlaw.page import Page, page_text
 from twinlaw.stages import load_bound
+
+BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with what was found
 
 
 def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], out: Path) -> Result:
@@ -29,7 +34,7 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
         material = _material(nominal, logs, holdout)
     with stage("searching for what the model lacks"):
         result = diagnose(nominal, material)
-    write_result(result, out)
+    write_result(result, [path.name for path in logs], out)
     return result
 
 
@@ -42,24 +47,51 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
         raise BadInput("hold-out logs", "--holdout", "two of one name", "names that differ", "rename one")
     integrity = examine(read[:split], bound, holdout=read[split:], names=names)
     demand(integrity)
+    firmware, told = _firmware(read, (*logs, *holdout))
     return Material(
         logs=read[:split],
         holdout=read[split:],
         holdout_names=names[split:],
         used=[~entry.excluded for entry in integrity.logs],
-        notes=integrity.notes,
+        firmware=firmware,
+        notes=(*integrity.notes, *told),
     )
 
 
-def write_result(result: Result, out: Path) -> None:
-    """diagnosis.json, plant.toml and the predictions."""
-    logs = {flight.name: flight for flight in result.predicted}
-    for name, predicted in logs.items():
-        write_atomic(
-            out / f"prediction-{name}.csv", prediction_text(predicted, list(result.case.kit.bound.model.outputs))
-        )
+def _firmware(logs: Sequence[RunLog], paths: Sequence[Path]) -> tuple[Firmware | None, tuple[str, ...]]:
+    """What running the controller's code again shows, of the first log where it differs, and a sentence for every log that it tells of."""
+    replays = [(path.name, replay_log(log, path)) for log, path in zip(logs, paths, strict=True)]
+    found = [(name, replay) for name, replay in replays if replay is not None]
+    if not found:
+        return None, ()
+    worst = min((replay for _, replay in found), key=lambda replay: (replay.bit_exact, replay.replayed))
+    return worst.record(), tuple(f"{name}: {replay.sentence}" for name, replay in found if replay.sentence)
+
+
+def write_result(result: Result, logs: Sequence[str], out: Path) -> None:
+    """diagnosis.json, plant.toml, the predictions and the page."""
+    outputs = list(result.case.kit.bound.model.outputs)
+    for flight in result.predicted:
+        write_atomic(out / f"prediction-{flight.name}.csv", prediction_text(flight, outputs))
     write_atomic(out / "plant.toml", plant_text(result.plant))
     save_diagnosis(out / "diagnosis.json", result.diagnosis)
+    write_atomic(out / "report.html", page_text(_page(result, logs)))
+
+
+def _page(result: Result, logs: Sequence[str]) -> Page:
+    bound = result.case.kit.bound
+    outputs = list(bound.model.outputs)
+    curves = [
+        diagnosis_page.Predicted(
+            name=flight.name,
+            t_s=flight.t_s,
+            measured={output: flight.y[:, place] for place, output in enumerate(outputs)},
+            **{bar: {output: flight.by[bar][:, place] for place, output in enumerate(outputs)} for bar in BARS},
+        )
+        for flight in result.predicted
+    ]
+    stories = {name: effect.story for name, effect in library(bound).items()}
+    return diagnosis_page.diagnosis_page(bound.plant.name, result.diagnosis, bound.model.places, stories, curves, logs)
 
 
 def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
@@ -70,7 +102,7 @@ def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
         stem = output.removesuffix(f"_{unit}") if unit else output
         names.append(output)
         columns.append(predicted.y[:, place])
-        for bar in ("nominal", "before", "after"):
+        for bar in BARS:
             names.append(f"{stem}_{bar}_{unit}" if unit else f"{output}_{bar}")
             columns.append(predicted.by[bar][:, place])
     return rows_text(names, columns, None).replace("nan", "")

@@ -30,6 +30,9 @@ _STAGES = (
     ("noise floor", GREEN, "floor"),
 )
 _ZOOM_S = 8.0
+ALWAYS, SELDOM = 3, 0.01  # the first few causes are always shown, further ones from this probability
+LISTED = 3  # names in one cell
+LEAST_CHANCE = 1e-6  # smaller ones are said to be below it: no model of noise is good for more
 
 
 @dataclass(frozen=True)
@@ -97,7 +100,7 @@ def _place(diagnosis: Diagnosis, places: Places) -> Section:
     chance = (
         ""
         if p is None
-        else f"A rig that is as the plant file states, with its sensors, shows so large a gap with probability {p:.2g}."
+        else f"A rig that is as the plant file states, with its sensors, shows so large a gap with probability {_chance(p)}."
     )
     return Section(
         "Where it lies",
@@ -111,11 +114,15 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         return None
     told = [f"{_words(name).capitalize()}: {stories[name]}" for name in diagnosis.found if name in stories]
     told += [
-        f"These data cannot tell {_words(h.effect)} from {', '.join(_words(name) for name in h.ambiguous_with)}."
+        f"These data cannot tell {_words(h.effect)} from {_listed([_words(name) for name in h.ambiguous_with])}."
         for h in diagnosis.effects[:1]
-        if h.ambiguous_with
+        if h.ambiguous_with and diagnosis.found
     ]
-    rows = [_cause_row(h, h.effect in diagnosis.found) for h in diagnosis.effects[:10]]
+    rows = [
+        _cause_row(h, h.effect in diagnosis.found)
+        for place, h in enumerate(diagnosis.effects)
+        if place < ALWAYS or h.probability > SELDOM
+    ]
     unknown = diagnosis.unknown
     rows.append(("none of the library", unknown.class_ or "", _percent(unknown.probability), "", ""))
     return Section(
@@ -130,7 +137,7 @@ def _cause_row(hypothesis: Hypothesis, found: bool) -> tuple[str, ...]:
         f"{name} = {e.value:.4g} ± {e.sd:.1g} {e.unit}".strip() for name, e in hypothesis.parameters.items()
     )
     name = hypothesis.effect + (" (found)" if found else "")
-    return name, hypothesis.class_, _percent(hypothesis.probability), size, ", ".join(hypothesis.ambiguous_with)
+    return name, hypothesis.class_, _percent(hypothesis.probability), size, _listed(hypothesis.ambiguous_with)
 
 
 def _shrinkage(shrinkage: Shrinkage) -> Section:
@@ -290,6 +297,15 @@ def _words(name: str) -> str:
     """ "azimuth.cable_spring" as "cable spring of the azimuth", several with "and"."""
     parts = [part.replace("_", " ").partition(".") for part in name.split(" + ")]
     return " and ".join(f"{effect} of the {place}" if effect else f"the {place}" for place, _, effect in parts)
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return "; ".join(names[:LISTED]) + more
+
+
+def _chance(p: float) -> str:
+    return f"{p:.2g}" if p >= LEAST_CHANCE else f"below {LEAST_CHANCE:g}"
 
 
 def _percent(share: float) -> str:

@@ -1,6 +1,7 @@
 """Find what a plant's model lacks to explain logs of the rig: where, which effect, how sure, and how far the gap shrinks.
 
-Writes DIR/diagnosis.json, DIR/plant.toml (the plant with what was found) and DIR/prediction-NAME.csv for each hold-out log.
+Writes DIR/diagnosis.json, DIR/plant.toml (the plant with what was found), DIR/report.html and DIR/prediction-NAME.csv for each
+hold-out log. The controller's code is run again on a log that names its table, where controller.json lies beside it.
 """
 
 import argparse
