@@ -119,7 +119,7 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         if h.ambiguous_with and diagnosis.found
     ]
     rows = [
-        _cause_row(h, h.effect in diagnosis.found)
+        _cause_row(h, set(h.effect.split(" + ")) == set(diagnosis.found))
         for place, h in enumerate(diagnosis.effects)
         if place < ALWAYS or h.probability > SELDOM
     ]
