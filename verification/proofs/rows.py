@@ -1,8 +1,8 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import behaviour, cost, rounding, totality
+from verification.proofs import behaviour, cost, misra, rounding, totality
 from verification.proofs.subject import Proof
-from verification.proofs.tools import BITWUZLA, FRAMA_C, GAPPA
+from verification.proofs.tools import BITWUZLA, CPPCHECK, FRAMA_C, GAPPA
 
 _FLOAT32 = ("float32",)
 
@@ -23,4 +23,7 @@ PROOFS: tuple[Proof, ...] = (
         _FLOAT32,
     ),
     Proof(cost.NAME, "what one control step takes on the target, worst paths of soft float included", (), cost.prove),
+    Proof(
+        misra.NAME, "rules of MISRA C in generated C and control path, deviations justified", (CPPCHECK,), misra.prove
+    ),
 )

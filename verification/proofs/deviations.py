@@ -1,0 +1,72 @@
+"""Findings that are justified one by one: a file of deviations, each with its place and its reason, none of them idle."""
+
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a tool says of one line: the rule that it breaks, and the line's text."""
+
+    file: str
+    line: int
+    rule: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.rule} at {self.file}:{self.line}: {self.text.strip()}"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """A rule, the files (shell pattern) and lines (regular expression) where it may be broken, and why.
+
+    `arithmetic` limits it to the law in one arithmetic.
+    """
+
+    rule: str
+    files: str
+    reason: str
+    line: str = ""
+    arithmetic: str | None = None
+
+    def covers(self, finding: Finding) -> bool:
+        """Whether the finding is of this rule and at this place."""
+        here = fnmatch(finding.file, self.files) and re.search(self.line, finding.text)
+        return finding.rule == self.rule and bool(here)
+
+    def __str__(self) -> str:
+        return f"{self.rule} in {self.files}" + (f" at /{self.line}/" if self.line else "")
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Findings without a justification, justifications without a finding, and how many findings there were."""
+
+    unjustified: tuple[Finding, ...]
+    idle: tuple[Deviation, ...]
+    findings: int
+
+    @property
+    def complaints(self) -> tuple[str, ...]:
+        """A sentence for each of both; empty when all is justified and nothing idle."""
+        idle = (f"unused justification: {deviation}" for deviation in self.idle)
+        return (*(str(finding) for finding in self.unjustified), *idle)
+
+
+def load_deviations(path: Path, arithmetic: str) -> tuple[Deviation, ...]:
+    """The deviations of a file that concern the law in `arithmetic`."""
+    entries = tomllib.loads(path.read_text(encoding="utf-8"))["deviation"]
+    deviations = (Deviation(**entry) for entry in entries)
+    return tuple(deviation for deviation in deviations if deviation.arithmetic in (None, arithmetic))
+
+
+def judge(findings: Sequence[Finding], deviations: Sequence[Deviation]) -> Judgement:
+    """Hold findings against deviations, both ways."""
+    unjustified = tuple(f for f in findings if not any(deviation.covers(f) for deviation in deviations))
+    idle = tuple(d for d in deviations if not any(d.covers(finding) for finding in findings))
+    return Judgement(unjustified, idle, len(findings))
