@@ -28,20 +28,29 @@ class Scalars:
     def accepted(self, value: int, last: int) -> int:
         return last if value == MISSING else value
 
-    def held(self, value: int, limit: int) -> int:
-        return self.clamp(value, -limit, limit)
+    def held(self, value: int, low: int, high: int) -> int:
+        return self.clamp(value, low, high)
 
     def towards(self, value: int, target: int, gain: int) -> int:
         product = gain * (2 * (target - value))
         below = 1 if product > 0 and product & _LOW_WORD else 0
         return value + (product >> 32) + below
 
-    def whole(self, total: int, places: int) -> tuple[int, int]:
-        high = self.clamp(total >> 32, -(1 << (places - 3)), (1 << (places - 3)) - 1)
-        return (high << (32 - places)) + ((total & _LOW_WORD) >> places), self.fraction(total, places)
+    def whole(self, total: int, places: int) -> tuple[bool, int]:
+        fits = self.is_within(total >> places, 30)
+        return fits, total >> places if fits else 0
+
+    def both(self, one: bool, other: bool) -> bool:
+        return one and other
 
     def fraction(self, value: int, places: int) -> int:
         return value & ((1 << places) - 1)
+
+    def is_within(self, value: int, bits: int) -> bool:
+        return -(1 << bits) <= value < 1 << bits
+
+    def choose(self, condition: bool, value: int, otherwise: int) -> int:
+        return value if condition else otherwise
 
     def wrapped(self, value: int, bits: int) -> int:
         return ((value + (1 << bits)) & ((2 << bits) - 1)) - (1 << bits)
@@ -71,8 +80,8 @@ class LaneWords:
     def accepted(self, value: Any, last: Any) -> Any:
         return np.where(value == MISSING, last, value)
 
-    def held(self, value: Any, limit: Any) -> Any:
-        return self.clamp(value, -limit, limit)
+    def held(self, value: Any, low: Any, high: Any) -> Any:
+        return self.clamp(value, low, high)
 
     def towards(self, value: Any, target: Any, gain: Any) -> Any:
         product = gain * (2 * (target - value))
@@ -80,11 +89,20 @@ class LaneWords:
         return value + (product >> 32) + below
 
     def whole(self, total: Any, places: int) -> tuple[Any, Any]:
-        high = self.clamp(total >> 32, -(2 ** (places - 3)), 2 ** (places - 3) - 1)
-        return high * 2 ** (32 - places) + ((total & _LOW_WORD) >> places), self.fraction(total, places)
+        fits = self.is_within(total >> places, 30)
+        return fits, np.where(fits, total >> places, 0)
+
+    def both(self, one: Any, other: Any) -> Any:
+        return one & other
 
     def fraction(self, value: Any, places: int) -> Any:
         return value & (2**places - 1)
+
+    def is_within(self, value: Any, bits: int) -> Any:
+        return (value >= -(2**bits)) & (value < 2**bits)
+
+    def choose(self, condition: Any, value: Any, otherwise: Any) -> Any:
+        return np.where(condition, value, otherwise)
 
     def wrapped(self, value: Any, bits: int) -> Any:
         return ((value + 2**bits) & (2 ** (bits + 1) - 1)) - 2**bits

@@ -8,7 +8,6 @@ from codegen.fixed_formats import (
     LawFormats,
     gain_word,
     law_formats,
-    widest_feedforward,
 )
 from codegen.fixed_polynomials import WORD_BITS, PolynomialFormat
 from codegen.law_constants import law_constants
@@ -63,10 +62,9 @@ class FixedAxis(Generic[N]):
     feedforward_V: FixedPolynomial[N]
     prefilter_gain: N | None
     reference_doublings: int
+    reference_spans_zero: bool
     reference_min_rad: N
     reference_max_rad: N
-    filtered_min_rad: N
-    filtered_max_rad: N
     residue_places: int
     half_residue: N
     u_min_V: N
@@ -81,13 +79,12 @@ class FixedLaw(Generic[N]):
 
     elevation: FixedAxis[N]
     azimuth: FixedAxis[N]
-    angle_limit_rad: N
+    angle_min_rad: N
+    angle_max_rad: N
     psi_min_rad: N
     psi_max_rad: N
     schedule_doublings: int
     reference_doublings: int
-    v_min_V: N
-    v_max_V: N
     degree: int
     error_bits: int
     s_bits: int
@@ -104,24 +101,17 @@ def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N
     """The law's numbers, each made by `number`; raises BadInput for a table that no law can fly or no word can hold."""
     law_constants(table, float)  # refuses what no arithmetic could run
     formats = law_formats(table)
-    angle, voltage = formats.angle_places, formats.voltage_places
-    # u = v + u_ff less the limits must stay within the range of w.
-    margin_V = max(
-        widest_feedforward(table, axis) + max(abs(axis.u_min_V), abs(axis.u_max_V))
-        for axis in (table.elevation, table.azimuth)
-    )
-    v_max_V = 2.0 ** (formats.w_bits - voltage) - 1.1 * margin_V
+    angle = formats.angle_places
     limit_rad = formats.angle_limit_rad - 2.0**-angle
     return FixedLaw(
         elevation=_axis(table, "elevation", formats, number),
         azimuth=_axis(table, "azimuth", formats, number),
-        angle_limit_rad=number(limit_rad, angle),
+        angle_min_rad=number(-limit_rad, angle),
+        angle_max_rad=number(limit_rad, angle),
         psi_min_rad=number(table.psi_min_rad, angle),
         psi_max_rad=number(table.psi_max_rad, angle),
         schedule_doublings=WORD_BITS - formats.schedule_bits - angle,
         reference_doublings=WORD_BITS - formats.reference_bits - formats.elevation.reference_places,
-        v_min_V=number(-v_max_V, voltage),
-        v_max_V=number(v_max_V, voltage),
         degree=formats.degree,
         error_bits=formats.error_bits,
         s_bits=formats.s_bits,
@@ -155,10 +145,9 @@ def _axis(table: ControllerTable, name: str, formats: LawFormats, number: MakeNu
         feedforward_V=_polynomial(own.feedforward, number),
         prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(gain, WORD_BITS),
         reference_doublings=own.reference_places - angle,
+        reference_spans_zero=low_rad <= 0.0 <= high_rad,
         reference_min_rad=number(low_rad, angle),
         reference_max_rad=number(high_rad, angle),
-        filtered_min_rad=number(low_rad, own.reference_places),
-        filtered_max_rad=number(high_rad, own.reference_places),
         residue_places=residue_places,
         half_residue=number(0.5, residue_places),
         u_min_V=number(axis.u_min_V, voltage),

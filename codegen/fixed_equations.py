@@ -35,17 +35,26 @@ class Words(Protocol[N]):
     def accepted(self, value: N, last: N) -> N:
         """`value` unless it is MISSING, else `last`."""
 
-    def held(self, value: N, limit: N) -> N:
-        """`value`, any word, held within -limit..limit."""
+    def held(self, value: N, low: N, high: N) -> N:
+        """`value`, any word, held within low..high, where low <= 0 <= high."""
 
     def towards(self, value: N, target: N, gain: N) -> N:
         """value + gain (target - value), gain with 31 places, the step rounded away from zero: it never stops short."""
 
-    def whole(self, total: N, places: int) -> tuple[N, N]:
-        """floor(total / 2^places), held within 29 bits, and what is left below."""
+    def whole(self, total: N, places: int) -> tuple[Any, N]:
+        """Whether floor(total / 2^places) lies within -2^30..2^30 - 1, and then that number, else zero."""
 
     def fraction(self, value: N, places: int) -> N:
         """value modulo 2^places."""
+
+    def is_within(self, value: N, bits: int) -> Any:
+        """Condition -2^bits <= value < 2^bits."""
+
+    def both(self, one: Any, other: Any) -> Any:
+        """Condition that both hold."""
+
+    def choose(self, condition: Any, value: N, otherwise: N) -> N:
+        """`value` where the condition holds, else `otherwise`."""
 
     def wrapped(self, value: N, bits: int) -> N:
         """`value` modulo 2^(bits + 1), within -2^bits..2^bits - 1."""
@@ -125,12 +134,12 @@ def law_step(
     """One sample of both axes: the new state and the limited voltages."""
     psi_rad = held_angle(law, words, given.psi_rad, state.psi_rad)
     phi_rad = held_angle(law, words, given.phi_rad, state.phi_rad)
-    psi_ref_rad = held_angle(law, words, given.psi_ref_rad, state.psi_ref_rad)
-    phi_ref_rad = held_angle(law, words, given.phi_ref_rad, state.phi_ref_rad)
+    psi_ref_rad = words.accepted(given.psi_ref_rad, state.psi_ref_rad)
+    phi_ref_rad = words.accepted(given.phi_ref_rad, state.phi_ref_rad)
     psi = schedule(law, words, psi_rad)
 
-    psi_filtered = prefilter(law.elevation, words, state.elevation, psi_ref_rad)
-    phi_filtered = prefilter(law.azimuth, words, state.azimuth, phi_ref_rad)
+    psi_filtered = prefilter(law, law.elevation, words, state.elevation, psi_ref_rad)
+    phi_filtered = prefilter(law, law.azimuth, words, state.azimuth, phi_ref_rad)
     psi_ref = powers_of(law, words, psi_filtered[1] * 2**law.reference_doublings)
     u_M_ff_V = polynomial(law.elevation.feedforward_V, words, psi_ref, "elevation.u_ff_V")
     u_T_ff_V = polynomial(law.azimuth.feedforward_V, words, psi_ref, "azimuth.u_ff_V")
@@ -142,7 +151,7 @@ def law_step(
 
 def held_angle(law: FixedLaw[Any], words: Words[Any], angle_rad: Any, last_rad: Any) -> Any:
     """The angle, or the last one where it is missing, held within the limit that the formats are made for."""
-    return words.held(words.accepted(angle_rad, last_rad), law.angle_limit_rad)
+    return words.held(words.accepted(angle_rad, last_rad), law.angle_min_rad, law.angle_max_rad)
 
 
 def schedule(law: FixedLaw[Any], words: Words[Any], psi_rad: Any) -> tuple[Any, ...]:
@@ -175,16 +184,25 @@ def polynomial(p: FixedPolynomial[Any], words: Words[Any], powers: tuple[Any, ..
     return words.word(name, value)
 
 
-def prefilter(axis: FixedAxis[Any], words: Words[Any], state: AxisState[Any], reference_rad: Any) -> tuple[Any, Any]:
-    """1/(T s + 1)^2 as two one-poles, both held within the reference's range; they arrive exactly at a reference at rest."""
-    target_rad = words.clamp(reference_rad, axis.reference_min_rad, axis.reference_max_rad)
+def held_reference(law: FixedLaw[Any], axis: FixedAxis[Any], words: Words[Any], reference_rad: Any) -> Any:
+    """The reference, any word, within its range."""
+    low_rad, high_rad = axis.reference_min_rad, axis.reference_max_rad
+    if axis.reference_spans_zero:
+        return words.held(reference_rad, low_rad, high_rad)
+    return words.clamp(words.held(reference_rad, law.angle_min_rad, law.angle_max_rad), low_rad, high_rad)
+
+
+def prefilter(
+    law: FixedLaw[Any], axis: FixedAxis[Any], words: Words[Any], state: AxisState[Any], reference_rad: Any
+) -> tuple[Any, Any]:
+    """1/(T s + 1)^2 as two one-poles; they stay within the reference's range and arrive exactly at a reference at rest."""
+    target_rad = held_reference(law, axis, words, reference_rad)
     target_rad = words.word("target_rad", target_rad * 2**axis.reference_doublings)
     if axis.prefilter_gain is None:
         return target_rad, target_rad
-    low_rad, high_rad = axis.filtered_min_rad, axis.filtered_max_rad
-    first_rad = words.clamp(words.wrapped(state.reference_1_rad, FILTERED_BITS), low_rad, high_rad)
+    first_rad = words.wrapped(state.reference_1_rad, FILTERED_BITS)
     first_rad = words.towards(first_rad, target_rad, axis.prefilter_gain)
-    second_rad = words.clamp(words.wrapped(state.reference_2_rad, FILTERED_BITS), low_rad, high_rad)
+    second_rad = words.wrapped(state.reference_2_rad, FILTERED_BITS)
     return first_rad, words.towards(second_rad, first_rad, axis.prefilter_gain)
 
 
@@ -201,8 +219,9 @@ def step_axis(
     """One axis from its angle to its limited voltage; returns what it remembers, and the voltage."""
     kept = within_ranges(law, axis, words, state)
     e_rad = differences(axis, words, kept, filtered_rad[1], angle_rad)
-    move_V, v_residue = words.whole(move(axis, words, kept, e_rad, psi), axis.residue_places)
-    after, u_V = drive(law, axis, words, kept, e_rad, move_V, u_ff_V)
+    total = move(axis, words, kept, e_rad, psi)
+    after, u_V = drive(law, axis, words, kept, e_rad, words.whole(total, axis.residue_places), u_ff_V)
+    v_residue = words.fraction(total, axis.residue_places)
     return replace(after, reference_1_rad=filtered_rad[0], reference_2_rad=filtered_rad[1], v_residue=v_residue), u_V
 
 
@@ -250,20 +269,27 @@ def drive(
     words: Words[Any],
     state: AxisState[Any],
     e_rad: tuple[Any, ...],
-    move_V: Any,
+    move_V: tuple[Any, Any],
     u_ff_V: Any,
 ) -> tuple[AxisState[Any], Any]:
-    """From the move of v to the limited voltage; returns what the axis remembers, and the voltage."""
-    v_V = words.word("v_V", words.word("last v_V", state.s_0_V + state.w_0_V) + move_V)
-    v_V = words.clamp(v_V, law.v_min_V, law.v_max_V)
+    """From the move of v to the limited voltage; returns what the axis remembers, and the voltage.
+
+    A move that takes v out of its range comes from a jump that no axis makes: v stays, and its differences are forgotten. To hold
+    v at the end of the range instead would make a nonlinear filter of A, which need not come to rest.
+    """
+    last_V = words.wrapped(words.word("last v_V", state.s_0_V + state.w_0_V), law.w_bits - 1)
+    fits, move_V_kept = move_V
+    moved_V = words.word("v_V", last_V + move_V_kept)
+    plausible = words.both(fits, words.is_within(moved_V, law.w_bits - 1))
+    v_V = words.choose(plausible, moved_V, last_V)
     u_V = words.word("u_V", v_V + u_ff_V)
     limited_V = words.clamp(u_V, axis.u_min_V, axis.u_max_V)
     w_0_V = words.word("w_0_V", u_V - limited_V)
-    w_1_V = words.word("w_1_V", w_0_V - state.w_0_V)
-    w_2_V = words.word("w_2_V", w_1_V - state.w_1_V)
+    w_1_V = words.choose(plausible, words.word("w_1_V", w_0_V - state.w_0_V), law.zero)
+    w_2_V = words.choose(plausible, words.word("w_2_V", w_1_V - state.w_1_V), law.zero)
     s_0_V = words.word("s_0_V", limited_V - u_ff_V)  # = v - w
-    s_1_V = words.word("s_1_V", s_0_V - state.s_0_V)
-    s_2_V = words.word("s_2_V", s_1_V - state.s_1_V)
+    s_1_V = words.choose(plausible, words.word("s_1_V", s_0_V - state.s_0_V), law.zero)
+    s_2_V = words.choose(plausible, words.word("s_2_V", s_1_V - state.s_1_V), law.zero)
     after = replace(
         state,
         e_0_rad=e_rad[0],

@@ -21,9 +21,11 @@ from records.errors import BadInput
 from records.table import AxisLaw, ControllerTable, Polynomial
 
 MISSING = -(2**31)  # the word that stands for "no number", as NaN does in float32
-HEADROOM_BITS = 5  # feedback may reach 2^5 times the limits before it is held
+HEADROOM_BITS = 5  # feedback may reach 2^5 times the limits at least
+LEAST_SPAN = 2**16  # steps between the limits: 20 times finer than the PWM
+FASTEST_RAD_S = 15.0  # motion of an axis that feedback has room for
 COEFFICIENT_BITS = 17  # every scheduled coefficient has at least so many, but for those of the anti-windup
-FILTERED_BITS = 29  # of magnitude, of a filtered reference
+FILTERED_BITS = 28  # of magnitude, of a filtered reference
 SUM_BITS = 62  # of the exact sum of products
 
 FACTORS = {
@@ -108,10 +110,14 @@ def law_formats(table: ControllerTable) -> LawFormats:
     angle_places = WORD_BITS - 3 - error_rad_bits
     s_V_bits = bits_of(max(_widest_s(table, axis) for axis in axes))
     limit_V_bits = bits_of(max(max(abs(axis.u_min_V), abs(axis.u_max_V)) for axis in axes))
-    w_V_bits = max(HEADROOM_BITS + limit_V_bits, 2 + s_V_bits)
+    v_V = max(_widest_feedback(table, axis, angle_limit_rad) + 2.0 * _widest_s(table, axis) for axis in axes)
+    w_V_bits = max(HEADROOM_BITS + limit_V_bits, 2 + s_V_bits, 1 + bits_of(v_V))  # v may take half of it
     voltage_places = WORD_BITS - 2 - w_V_bits
+    _refuse_coarse(axes, voltage_places, v_V)
     schedule_bits = max(0, bits_of(max(abs(table.psi_min_rad), abs(table.psi_max_rad))))
-    reference_bits = max(0, bits_of(_widest_reference(table.elevation)))
+    reference_bits = 1 + max(
+        0, bits_of(_widest_reference(table.elevation))
+    )  # a broken filter may reach the end of its word
     shared = _Shared(
         table, angle_places, voltage_places, error_rad_bits, s_V_bits, w_V_bits, schedule_bits, reference_bits
     )
@@ -127,6 +133,18 @@ def law_formats(table: ControllerTable) -> LawFormats:
         elevation=_axis_formats(shared, "elevation", table.elevation),
         azimuth=_axis_formats(shared, "azimuth", table.azimuth),
     )
+
+
+def _refuse_coarse(axes: tuple[AxisLaw, ...], voltage_places: int, v_V: float) -> None:
+    span_V = min(axis.u_max_V - axis.u_min_V for axis in axes)
+    if span_V * 2.0**voltage_places < LEAST_SPAN:
+        raise BadInput(
+            "controller table",
+            "limits",
+            f"a span of {span_V:.3g} V next to feedback of up to {v_V:.3g} V",
+            f"{LEAST_SPAN} steps of a word that holds both",
+            "choose slower poles or a reference filter, or generate with --arithmetic float32",
+        )
 
 
 @dataclass(frozen=True)
@@ -223,14 +241,27 @@ def _widest_reference(axis: AxisLaw) -> float:
     return max(abs(axis.reference_min_rad), abs(axis.reference_max_rad))
 
 
+def _widest_feedback(table: ControllerTable, axis: AxisLaw, angle_limit_rad: float) -> float:
+    """Bound of v while the axis moves no faster than FASTEST_RAD_S and saturation is no deeper than the span of the limits [V]."""
+    psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
+    reference_move_rad = axis.prefilter_gain(table.sample_period_s) * (axis.reference_max_rad - axis.reference_min_rad)
+    move_rad = 1.01 * (FASTEST_RAD_S * table.sample_period_s + axis.resolution_rad + reference_move_rad)
+    e_rad = (_widest_reference(axis) + angle_limit_rad, move_rad, 2.0 * move_rad, 4.0 * move_rad)
+    span_V, s_V = axis.u_max_V - axis.u_min_V, 2.0 * _widest_s(table, axis)
+    from_e_V = sum(polynomial_bound(q, psi_rad) * e for q, e in zip(axis.q_V_rad, e_rad, strict=True))
+    from_s_V = sum(polynomial_bound(p, psi_rad) * s_V * 2.0**i for i, p in enumerate(axis.p))
+    from_w_V = sum(abs(a) * span_V * 2.0**i for i, a in enumerate(axis.a))
+    return from_e_V + from_s_V + from_w_V + s_V + span_V
+
+
 def _widest_s(table: ControllerTable, axis: AxisLaw) -> float:
     """Bound of the limited voltage less the feed-forward."""
     return max(abs(axis.u_min_V), abs(axis.u_max_V)) + widest_feedforward(table, axis)
 
 
 def widest_feedforward(table: ControllerTable, axis: AxisLaw) -> float:
-    """Bound of the feed-forward voltage over the range of the elevation's reference [V]."""
-    return polynomial_bound(axis.feedforward_V, _widest_reference(table.elevation))
+    """Bound of the feed-forward voltage over all references that a filtered word can hold [V]."""
+    return polynomial_bound(axis.feedforward_V, 2.0 ** max(0, bits_of(_widest_reference(table.elevation))))
 
 
 @dataclass(frozen=True)

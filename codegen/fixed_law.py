@@ -67,6 +67,7 @@ class Axis:
     half_step: int
     steps: int
     counts: CountFormat
+    reference_spans_zero: bool
 
 
 def fixed_context(table: ControllerTable) -> dict[str, Any]:
@@ -97,8 +98,6 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "bits": {"filtered": FILTERED_BITS, "error": law.error_bits, "s": law.s_bits, "w": law.w_bits},
         "schedule_steps": 2**law.schedule_doublings,
         "reference_steps": 2**law.reference_doublings,
-        "v_min": law.v_min_V,
-        "v_max": law.v_max_V,
         "full_scale": word_number(FULL_SCALE_V, formats.voltage_places),
         "duty_factor": factor,
         "duty_shift": shift,
@@ -136,6 +135,7 @@ def _axis(law: AxisLaw, axis: FixedAxis[int], formats: LawFormats, own: AxisForm
         half_step=2 ** (axis.reference_doublings - 1),
         steps=2**axis.reference_doublings,
         counts=count_format(formats, law),
+        reference_spans_zero=axis.reference_spans_zero,
     )
 
 
@@ -189,6 +189,6 @@ def _angle_limits(table: ControllerTable, law: FixedLaw[int], formats: LawFormat
         ("PHI_REF_MAX_RAD", law.azimuth.reference_max_rad, table.azimuth.reference_max_rad),
         ("PSI_MIN_RAD", law.psi_min_rad, table.psi_min_rad),
         ("PSI_MAX_RAD", law.psi_max_rad, table.psi_max_rad),
-        ("ANGLE_LIMIT_RAD", law.angle_limit_rad, limit_rad),
+        ("ANGLE_LIMIT_RAD", law.angle_max_rad, limit_rad),
     ]
     return [(name, word, f"{value:.9g}") for name, word, value in rows]

@@ -39,6 +39,14 @@ class Interval:
         return _wide(min(ends), max(ends))
 
 
+@dataclass(frozen=True)
+class Within:
+    """The condition that `value` lies within limits, and what it leaves of it."""
+
+    value: Interval
+    held: Interval
+
+
 class Intervals:
     """The law's decisions on intervals; `ranges` holds, name by name, the hull of all that was stored under it."""
 
@@ -63,23 +71,32 @@ class Intervals:
     def accepted(self, value: Interval, last: Interval) -> Interval:
         return _hull(value, last)
 
-    def held(self, value: Interval, limit: Interval) -> Interval:
-        return Interval(max(value.low, -limit.high), min(value.high, limit.high))
+    def held(self, value: Interval, low: Interval, high: Interval) -> Interval:
+        if not low.high <= 0 <= high.low:
+            raise _too_wide("limits on one side of zero", Interval(low.low, high.high))
+        return Interval(max(low.low, min(value.low, high.high)), min(high.high, max(value.high, low.low)))
 
     def towards(self, value: Interval, target: Interval, gain: Interval) -> Interval:
         """Between value and target, as 0 <= gain < 1 and a step of d is rounded to |d| at most."""
         self.word("twice the step of a filter", (target - value) * 2)
         return _hull(value, target)
 
-    def whole(self, total: Interval, places: int) -> tuple[Interval, Interval]:
-        bound = 2 ** (places - 3)
-        high = self.clamp(self.floored(total, 32), Interval(-bound, -bound), Interval(bound - 1, bound - 1))
-        below = 2 ** (32 - places)
-        whole = self.word("move_V", Interval(high.low * below, high.high * below + below - 1))
-        return whole, self.fraction(total, places)
+    def whole(self, total: Interval, places: int) -> tuple[None, Interval]:
+        self.word("high word of a sum", self.floored(total, 32))
+        low, high = (max(-(2**30), min(2**30 - 1, end >> places)) for end in (total.low, total.high))
+        return None, self.word("move_V", Interval(min(low, 0), max(high, 0)))
+
+    def both(self, one: None, other: Within) -> Within:
+        return other
 
     def fraction(self, value: Interval, places: int) -> Interval:
         return Interval(0, 2**places - 1)
+
+    def is_within(self, value: Interval, bits: int) -> Within:
+        return Within(value, Interval(max(value.low, -(2**bits)), min(value.high, 2**bits - 1)))
+
+    def choose(self, condition: Within, value: Interval, otherwise: Interval) -> Interval:
+        return _hull(condition.held if value is condition.value else value, otherwise)
 
     def wrapped(self, value: Interval, bits: int) -> Interval:
         if -(2**bits) <= value.low and value.high < 2**bits:

@@ -87,7 +87,7 @@ class FixedTwin:
 
     def _angle_from_counts(self, axis: AxisLaw, counts: int) -> float:
         form = count_format(self.formats, axis)
-        product = Scalars().held(counts, form.limit) * form.step
+        product = Scalars().clamp(counts, -form.limit, form.limit) * form.step
         return value_of((product + (1 << form.shift - 1)) >> form.shift, self.formats.angle_places)
 
 

@@ -56,7 +56,7 @@ def _slice_bound(table: ControllerTable, ranges: LawRanges, psi_rad: Range) -> t
         _state(words, formats, ranges.state.azimuth, formats.azimuth.reference_places),
     )
     filtered = [
-        prefilter(axis, words, state, angles[name])[1]
+        prefilter(law, axis, words, state, angles[name])[1]
         for axis, state, name in zip((law.elevation, law.azimuth), states, ("psi_ref_rad", "phi_ref_rad"), strict=True)
     ]
     psi_ref = powers_of(law, words, filtered[0] * 2**law.reference_doublings)
@@ -91,7 +91,7 @@ def _output(
         _restricted(e, limit, places)
         for e, limit in zip(differences(axis, words, kept, filtered_rad, angle_rad), limits_rad, strict=True)
     )
-    move_V, _ = words.whole(move(axis, words, kept, e_rad, psi), axis.residue_places)
+    move_V = words.whole(move(axis, words, kept, e_rad, psi), axis.residue_places)
     u_ff_V = polynomial(axis.feedforward_V, words, psi_ref, f"{axis.name}.u_ff_V")
     output: TrackedWord = drive(law, axis, words, kept, e_rad, move_V, u_ff_V)[1]
     return output

@@ -91,8 +91,18 @@ class TrackedWords:
     def accepted(self, value: TrackedWord, last: TrackedWord) -> TrackedWord:
         return value
 
-    def held(self, value: TrackedWord, limit: TrackedWord) -> TrackedWord:
-        return value
+    def held(self, value: TrackedWord, low: TrackedWord, high: TrackedWord) -> TrackedWord:
+        return self.clamp(value, low, high)
+
+    def is_within(self, value: TrackedWord, bits: int) -> bool:
+        """True, or no proof: the real law never gives up its feedback."""
+        largest = upper_bound(value.value) + value.error
+        if not largest < 2.0**bits:
+            raise ValueError(f"ranges too wide: feedback of up to {largest:.4g} words against {2.0**bits:.4g}")
+        return True
+
+    def choose(self, condition: bool, value: TrackedWord, otherwise: TrackedWord) -> TrackedWord:
+        return value if condition else otherwise
 
     def wrapped(self, value: TrackedWord, bits: int) -> TrackedWord:
         return value
@@ -106,8 +116,12 @@ class TrackedWords:
         half = arb(2) ** (places - 1)
         return TrackedWord(arb(0), {_KNOWN: half, next(self._symbols): half}, self._symbols)
 
-    def whole(self, total: TrackedWord, places: int) -> tuple[TrackedWord, TrackedWord]:
-        return self.floored(total, places), self.fraction(total, places)
+    def whole(self, total: TrackedWord, places: int) -> tuple[bool, TrackedWord]:
+        move = self.floored(total, places)
+        return self.is_within(move, 30), move
+
+    def both(self, one: bool, other: bool) -> bool:
+        return one and other
 
     def narrow_product(self, value: TrackedWord, x: TrackedWord) -> TrackedWord:
         return value * x

@@ -1,0 +1,115 @@
+"""The constants of the generated C by name: what each is, and which part of the controller table it holds."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from codegen.law_constants import without_vanishing_powers
+from codegen.numbers import c_float32
+from records.errors import BadInput
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+
+_FIT = "least squares over the operating points, coefficient of Psi^{power} [rad^-{power}]"
+_OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^3 in powers of delta"
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A constant of the C: its name and text there, its value in the table, how it was made.
+
+    `letter` is q, p, a or u_ff for a coefficient, empty otherwise; `parameter` names the plant parameter that it is.
+    """
+
+    name: str
+    value: float
+    unit: str
+    made_as: str
+    axis: str = ""
+    letter: str = ""
+    index: int = 0
+    power: int = 0
+    polynomial: Polynomial = ()
+    parameter: str | None = None
+
+    @property
+    def c_text(self) -> str:
+        """The literal in the float32 C."""
+        return c_float32(self.value)
+
+
+def constants(table: ControllerTable) -> Iterator[Constant]:
+    """Every constant of the law, in the order of law.c and law.h."""
+    for axis, law in (("elevation", table.elevation), ("azimuth", table.azimuth)):
+        yield from _coefficients(table, axis, law)
+    for axis, law, angle, voltage in (
+        ("elevation", table.elevation, "PSI", "U_M"),
+        ("azimuth", table.azimuth, "PHI", "U_T"),
+    ):
+        yield from _limits(table, axis, law, angle, voltage)
+    design = "wish of the plant file, [design]"
+    yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
+    yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
+    yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
+    yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
+    yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
+
+
+def find_constant(table: ControllerTable, name: str) -> Constant:
+    """The constant called `name`, however it is spelled: LAW_ELEVATION_Q1[2] is elevation_q_1_V_rad[2]; raises BadInput."""
+    known = list(constants(table))
+    for constant in known:
+        if constant.name == name:
+            return constant
+    for constant in known:
+        if _plain(constant.name) == _plain(name):
+            return constant
+    raise BadInput(
+        "constant",
+        "twinlaw trace",
+        repr(name),
+        f"one of {len(known)}, {known[0].name} the first",
+        "list them: twinlaw trace",
+    )
+
+
+def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
+    pole = table.origin.get(axis, {}).get("observer_pole", float("nan"))
+    groups: tuple[tuple[str, str, str, tuple[Polynomial, ...]], ...] = (
+        ("q", "_V_rad", "V/rad", law.q_V_rad),
+        ("p", "", "1", law.p),
+        ("a", "", "1", tuple((a,) for a in law.a)),
+    )
+    for letter, suffix, unit, polynomials in groups:
+        for index, polynomial in enumerate(polynomials):
+            for power, value in enumerate(without_vanishing_powers(polynomial)):
+                made_as = _OBSERVER.format(pole=pole) if letter == "a" else _FIT.format(power=power)
+                name = f"{axis}_{letter}_{index}{suffix}[{power}]"
+                yield Constant(name, value, unit, made_as, axis, letter, index, power, polynomial)
+    for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
+        name = f"{axis}_u_ff_V[{power}]"
+        made_as = f"equilibrium voltage, {_FIT.format(power=power)}"
+        yield Constant(name, value, "V", made_as, axis, "u_ff", 0, power, law.feedforward_V)
+
+
+def _limits(table: ControllerTable, axis: str, law: AxisLaw, angle: str, voltage: str) -> Iterator[Constant]:
+    low, high = ("u_min", "u_max") if axis == "elevation" else ("uT_min", "uT_max")
+    yield Constant(f"LAW_{voltage}_MIN_V", law.u_min_V, "V", "limit of the plant's input", axis, parameter=low)
+    yield Constant(f"LAW_{voltage}_MAX_V", law.u_max_V, "V", "limit of the plant's input", axis, parameter=high)
+    yield Constant(f"LAW_{voltage}_SAFE_V", law.u_safe_V, "V", "0 V, or the limit nearest to it", axis)
+    wish = f"wish of the plant file, [design.{axis}]"
+    yield Constant(f"LAW_{angle}_REF_MIN_RAD", law.reference_min_rad, "rad", f"{wish} reference_min_rad", axis)
+    yield Constant(f"LAW_{angle}_REF_MAX_RAD", law.reference_max_rad, "rad", f"{wish} reference_max_rad", axis)
+    sensor = f"encoder step, [sensors.{angle.lower()}_rad] resolution_rad"
+    yield Constant(f"LAW_{angle}_RESOLUTION_RAD", law.resolution_rad, "rad", sensor, axis)
+    T_s = law.prefilter_time_constant_s
+    gain = law.prefilter_gain(table.sample_period_s)
+    made_as = f"1 - exp(-Ts/T) with T = {T_s:g} s, {wish} prefilter_time_constant_s"
+    yield Constant(f"{axis}_limits.prefilter_gain", gain, "1", made_as, axis)
+
+
+def _plain(name: str) -> str:
+    """A name without case, underscores, the prefix LAW and units: how a person may write it from memory."""
+    array, bracket, power = name.lower().partition("[")
+    array = re.sub(r"^law_", "", array)
+    array = re.sub(r"_(v_rad|v|rad)$", "", array)
+    return array.replace("_", "") + bracket + power.replace(" ", "")
