@@ -4,6 +4,7 @@ The sensitivity of a designed coefficient to a parameter is d ln(coefficient) / 
 level, by central differences of the whole design: the parameters that it names are those that the coefficient rests on.
 """
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +16,7 @@ from codegen.trace_names import Constant, constants, find_constant
 from design.operating_points import design_point
 from design.settings import AXES, DesignSettings
 from records.errors import BadInput
-from records.plant import Parameter
+from records.plant import Parameter, plant_text
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
@@ -39,8 +40,8 @@ class ParameterTrace:
     """A plant parameter behind a constant; `sensitivity` is relative, None where the constant is the parameter itself."""
 
     name: str
-    value: tuple[float, ...]
-    sd: tuple[float, ...]
+    value: float
+    sd: float
     unit: str
     source: str
     sensitivity: float | None = None
@@ -74,6 +75,7 @@ def trace(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, n
         raise BadInput(
             "origin", f"controller table {table.digest[:16]}", what, "a designed table", "run `twinlaw design`"
         )
+    _refuse_another_plant(bound, table)
     points = tuple(_points(table, constant))
     own = origin[constant.axis] if constant.letter in ("q", "p") else {}
     return Trace(
@@ -125,21 +127,21 @@ def _parameters(
         return
     psi_rad = min((point.psi_rad for point in points), key=abs)
     found = []
-    for index, (name, parameter) in enumerate(_entries(bound)):
+    for index, (name, parameter, element) in enumerate(_entries(bound)):
         slope = _sensitivity(bound, settings, constant, psi_rad, index)
         if abs(slope) > _LEAST_SENSITIVITY:
-            found.append(_told(parameter, name, slope))
+            found.append(_told(parameter, name, slope, element))
     yield from sorted(found, key=lambda entry: -abs(entry.sensitivity or 0.0))
 
 
-def _entries(bound: BoundPlant) -> list[tuple[str, Parameter]]:
-    """A name and its parameter for each number of the vector `bound.p`, those of effects left out."""
-    entries = []
+def _entries(bound: BoundPlant) -> list[tuple[str, Parameter, int]]:
+    """A name, its parameter and the place in it for each number of the vector `bound.p`, those of effects left out."""
+    entries: list[tuple[str, Parameter, int]] = []
     for spec in bound.model.parameters:
         parameter = bound.plant.parameters.get(spec.name)
         if parameter is not None:
-            many = len(parameter.values) > 1
-            entries += [(f"{spec.name}[{i}]" if many else spec.name, parameter) for i in range(len(parameter.values))]
+            count = len(parameter.values)
+            entries += [(f"{spec.name}[{i}]" if count > 1 else spec.name, parameter, i) for i in range(count)]
     return entries
 
 
@@ -166,5 +168,16 @@ def _design_at(
     return float((delta.q if constant.letter == "q" else delta.p)[constant.index])
 
 
-def _told(parameter: Parameter, name: str, sensitivity: float | None) -> ParameterTrace:
-    return ParameterTrace(name, parameter.values, parameter.sds, parameter.unit, parameter.source, sensitivity)
+def _told(parameter: Parameter, name: str, sensitivity: float | None, element: int = 0) -> ParameterTrace:
+    value, sd = parameter.values[element], parameter.sds[element]
+    return ParameterTrace(name, value, sd, parameter.unit, parameter.source, sensitivity)
+
+
+def _refuse_another_plant(bound: BoundPlant, table: ControllerTable) -> None:
+    """A table that was designed on other numbers has other reasons than these."""
+    digest = hashlib.sha256(plant_text(bound.plant).encode()).hexdigest()
+    known = str(table.origin["plant_digest"])
+    if digest != known:
+        raise BadInput(
+            "plant", bound.plant.name, digest[:16], known[:16], "give the plant that the table was designed on"
+        )

@@ -16,6 +16,7 @@ VERBS: Mapping[str, str] = {
     "generate": "generate",
     "build": "build",
     "verify": "verify",
+    "trace": "trace",
     "simulate": "simulate",
     "flash": "flash",
     "validate": "validate",

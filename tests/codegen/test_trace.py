@@ -1,0 +1,105 @@
+"""From a constant of the C back to the plant: every constant is traced, and what the trace says is true of the C and the design."""
+
+import json
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from codegen.law import generate_law
+from codegen.trace import names, trace
+from design.settings import read_settings
+from design.table import design
+from records.errors import BadInput
+from records.plant import load_plant
+from records.table import ControllerTable, table_text
+from sim.bind import BoundPlant, bind
+from twinlaw.command import main
+
+PLANT = Path("plants/ce150.toml")
+
+
+@cache
+def designed() -> tuple[BoundPlant, ControllerTable]:
+    bound = bind(load_plant(PLANT))
+    return bound, design(bound, read_settings(bound))[0]
+
+
+def traced(name: str) -> Any:
+    bound, table = designed()
+    return trace(bound, read_settings(bound), table, name)
+
+
+def test_every_coefficient_of_the_c_can_be_traced_and_has_its_literal_there() -> None:
+    _, table = designed()
+    law_c = generate_law(table)["law.c"]
+    in_c = {}
+    for array, body in re.findall(r"static const law_number (\w+)\[\d+\] = \{[^\n]*\n(.*?)\};", law_c, flags=re.DOTALL):
+        in_c.update({f"{array}[{power}]": text for power, text in re.findall(r"\[(\d+)\] = (\S+),", body)})
+    known = {constant.name: constant.c_text for constant in names(table)}
+    assert len(in_c) > 40
+    assert {name: known[name] for name in in_c} == in_c
+
+
+def test_limits_and_steps_of_the_header_can_be_traced() -> None:
+    _, table = designed()
+    texts = generate_law(table)
+    for constant in names(table):
+        if constant.name.startswith("LAW_") and not constant.name.endswith("_US"):
+            assert f"#define {constant.name} ({constant.c_text})" in texts["law.h"]
+
+
+def test_a_coefficient_leads_to_poles_points_and_parameters_with_sources() -> None:
+    bound, table = designed()
+    found = traced("LAW_ELEVATION_Q1[2]")
+    assert found.name == "elevation_q_1_V_rad[2]"
+    assert found.value == table.elevation.q_V_rad[1][2]
+    assert [re for re, _ in found.poles_rad_s] == [-4.0, -5.0, -8.0, -14.0, -18.0, -24.0]
+    assert len(found.points) == read_settings(bound).operating_points
+    worst = max(abs(point.designed - point.fitted) / abs(point.designed) for point in found.points)
+    assert worst < 0.01, "the fit is within 1 % of what was designed"
+    assert all(entry.source for entry in found.parameters)
+    assert found.table_digest == table.digest
+
+
+def test_the_gain_of_the_loop_is_shared_by_rotor_and_inertia() -> None:
+    """Truth: the loop's gain is K_M over J_E, so that q goes with -1 % per % of K_M and +1 % per % of J_E."""
+    influence = {entry.name: entry.sensitivity for entry in traced("elevation_q_3_V_rad[0]").parameters}
+    assert influence["K_M"] == pytest.approx(-1.0, abs=0.01)
+    assert influence["J_E"] == pytest.approx(1.0, abs=0.05)
+    assert not {"J_A", "b_vA"} & set(influence), "the azimuth has no part in the elevation's gains"
+
+
+def test_a_limit_is_the_plant_s_own_parameter() -> None:
+    (parameter,) = traced("LAW_U_T_MAX_V").parameters
+    assert (parameter.name, parameter.value, parameter.sensitivity) == ("uT_max", 10.0, None)
+
+
+def test_unknown_names_other_plants_and_tables_without_origin_are_refused() -> None:
+    bound, table = designed()
+    settings = read_settings(bound)
+    with pytest.raises(BadInput, match="list them"):
+        traced("elevation_q_9[0]")
+    with pytest.raises(BadInput, match="operating points"):
+        trace(bound, settings, replace(table, origin={}), "elevation_q_1_V_rad[0]")
+    heavier = replace(bound.plant.parameters["J_E"], value=5e-3)
+    other = bind(replace(bound.plant, parameters={**bound.plant.parameters, "J_E": heavier}))
+    with pytest.raises(BadInput, match="designed on"):
+        trace(other, settings, table, "elevation_q_1_V_rad[0]")
+
+
+def test_the_verb_lists_traces_and_speaks_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "controller.json"
+    path.write_text(table_text(designed()[1]))
+    assert main(["trace", "--table", str(path)]) == 0
+    assert "elevation_q_1_V_rad[2]" in capsys.readouterr().out
+    assert main(["trace", "azimuth_u_ff_V[0]", "--table", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "K_T" in told
+    assert "equilibrium voltage" in told
+    assert main(["trace", "azimuth_p_1[0]", "--table", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["name"] == "azimuth_p_1[0]"
+    assert main(["trace", "nonsense", "--table", str(path)]) == 2

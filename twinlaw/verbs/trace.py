@@ -1,0 +1,85 @@
+"""Trace a constant of the generated C back to fit, poles, operating points and the plant's parameters with their sources.
+
+`twinlaw trace elevation_q_1_V_rad[2]` (LAW_ELEVATION_Q1[2] is the same); without a name it lists every constant.
+"""
+
+import argparse
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from codegen.trace import Trace, names, trace
+from design.settings import read_settings
+from records.table import load_table
+from twinlaw import console, options
+from twinlaw.stages import load_bound
+
+POINT_HEADING = ("Psi", "u_M0, u_T0", "designed", "fitted", "difference")
+PARAMETER_HEADING = ("parameter", "value", "sd", "unit", "influence", "source")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """NAME, --plant, --table, --json."""
+    parser.add_argument("name", metavar="NAME", nargs="?", help="a constant of law.c or law.h; left out: list them")
+    options.plant(parser)
+    options.table(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """List, or trace one."""
+    table = load_table(chosen.table)
+    if chosen.name is None:
+        rows = [(constant.name, f"{constant.value:.9g}", constant.unit, constant.made_as) for constant in names(table)]
+        print(json.dumps([row[0] for row in rows]) if chosen.json else console.table(rows))
+        return 0
+    bound = load_bound(Path(chosen.plant))
+    found = trace(bound, read_settings(bound), table, chosen.name)
+    print(json.dumps(asdict(found)) if chosen.json else trace_text(found))
+    return 0
+
+
+def trace_text(found: Trace) -> str:
+    """The trace as a person reads it, from the C back to the plant."""
+    parts = [
+        f"{found.name} = {found.c_text} [{found.unit}]",
+        f"  {found.made_as}",
+        f"  table {found.table_digest[:16]}",
+    ]
+    if found.poles_rad_s:
+        poles = ", ".join(f"{re:g}{im:+g}j" if im else f"{re:g}" for re, im in found.poles_rad_s)
+        parts.append(f"  poles placed at {poles} rad/s, free degree: {found.free_degree}")
+    if found.points:
+        polynomial = " ".join(f"{coefficient:+.6g} Psi^{power}" for power, coefficient in enumerate(found.polynomial))
+        parts += [f"  polynomial {polynomial}", "", console.table(_point_rows(found), POINT_HEADING)]
+    if found.parameters:
+        parts += ["", console.table(_parameter_rows(found), PARAMETER_HEADING)]
+    parts += ["", f"plant {found.plant}, digest {found.plant_digest[:16]}"]
+    return "\n".join(parts)
+
+
+def _point_rows(found: Trace) -> list[tuple[str, ...]]:
+    return [
+        (
+            f"{point.psi_rad:+.4f} rad",
+            ", ".join(f"{voltage:.4f} V" for voltage in point.u0_V),
+            f"{point.designed:.9g}",
+            f"{point.fitted:.9g}",
+            f"{point.fitted - point.designed:+.2g}",
+        )
+        for point in found.points
+    ]
+
+
+def _parameter_rows(found: Trace) -> list[tuple[str, ...]]:
+    return [
+        (
+            entry.name,
+            f"{entry.value:.6g}",
+            f"{entry.sd:.2g}",
+            entry.unit,
+            "is it" if entry.sensitivity is None else f"{entry.sensitivity:+.3g} % per %",
+            entry.source,
+        )
+        for entry in found.parameters
+    ]
