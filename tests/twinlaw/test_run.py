@@ -51,8 +51,12 @@ def test_verification_has_the_fields_of_the_contract_and_passes(out: Path) -> No
     assert said["schema"] == "verification/1"
     assert said["passed"] is True
     assert said["table_digest"] == load_table(out / "controller.json").digest
-    pairs = {tuple(row["between"]) for row in said["equality"] if row["arithmetic"] == "float32"}
-    assert {("twin", "host"), ("host", "target")} <= pairs
+    for arithmetic in ("float32", "fixed"):
+        pairs = {tuple(row["between"]) for row in said["equality"] if row["arithmetic"] == arithmetic}
+        assert {("twin", "host"), ("host", "target")} <= pairs
+    assert [row["arithmetic"] for row in said["target"]] == ["float32", "fixed"]
+    assert said["target"][1]["cycles_max"] <= 2900
+    assert set(said["rounding_bounds_V"]) == {"float32", "fixed"}
     for row in said["equality"]:
         assert row["steps"] >= 100_000
         assert row["mismatches"] == 0
