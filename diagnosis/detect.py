@@ -14,7 +14,6 @@ from diagnosis.hypothesis import passes
 from diagnosis.instants import target_of
 from diagnosis.replicas import Tail, replicas, tail_of
 from diagnosis.screen import Look
-from sim.effects.effect import coefficient
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
@@ -44,7 +43,7 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
     null = _null_gains(ground, stacked, scores, drawn)
     usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
     events, null_events = _events(case, ground, drawn)
-    outside = [entry.gain for entry in looks if entry.effect not in case.kit.names]
+    outside = [entry.gain for entry in looks if not case.kit.carried(entry.effect)]
     largest = max([*events, *outside, float(np.max(gains(scores) / usual, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     first = columns[0].shape[1]
@@ -99,7 +98,8 @@ def _effect_columns(case: Case, ground: Ground, looks: Sequence[Look]) -> Array:
     for entry in chosen:
         size = kit.effects[entry.effect].size
         values[entry.effect] = {**entry.values, size.symbol: size.touched}
-    places = [kit.index[coefficient(name, kit.effects[name].size.symbol)] for name in values]
+    variant = kit.variant((*supposed.effects, *values))
+    places = [variant.place(name, kit.effects[name].size.symbol) for name in values]
     runs = passes(case, supposed.with_effects({**values, **supposed.effects}), places, slopes=True)
     rows = len(ground.w)
     if runs is None or not places:

@@ -14,12 +14,15 @@ from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.improved import estimates, improved_plant
 from diagnosis.kit import make_kit
 from diagnosis.maps import band_map, region_map, removed_energy, time_map
-from diagnosis.notes import notes_of
+from diagnosis.next_experiment import next_experiment
+from diagnosis.notes import cannot_tell, notes_of
 from diagnosis.places import place_shares
 from diagnosis.result import Result
+from diagnosis.retune import Retune, retune
 from diagnosis.screen import Look, look
 from diagnosis.search import Search, Tried, evidence, search
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.standing import with_usual
 from diagnosis.unknown import Suspect, suspects
 from diagnosis.unrest import FIRST_STEP, with_unrest
 from diagnosis.weigh import Weighed, alike, weigh
@@ -54,20 +57,22 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     case = make_case(kit, material.logs, material.used[:split])
     checked = make_case(kit, material.holdout, material.used[split:]) if material.holdout else None
     nominal = nominal_fit(case)
+    case = with_usual(case, nominal.supposed)
     ground = ground_of(case, nominal)
     looks = look(case, ground, kit.candidates)
     detection = detect(case, ground, looks)
-    retuned = Tried((), nominal, evidence(nominal))
+    stated = Tried((), nominal, evidence(nominal))
     if detection.p > ALARM:
-        return _no_gap(case, checked, material, detection, retuned, looks)
+        return _no_gap(case, checked, material, detection, stated, looks)
     found = search(case, nominal, kit.candidates, ground, looks)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = detect(case, ground_of(case, best.fit), [])
-    weighed = weigh(found.tried, retuned, _left(left))
+    beyond = retune(case, nominal)
+    weighed = weigh(found.tried, stated, _left(left), None if beyond is None else beyond.score)
     blamed = suspects(detection)
-    chosen, predicted = _added(checked, material, found, weighed, retuned)
+    chosen, predicted = _added(checked, material, weighed, stated, beyond)
     return Result(
-        diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks),
+        diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks, beyond),
         plant=improved_plant(case, chosen.fit),
         case=case,
         detection=detection,
@@ -108,11 +113,13 @@ def _left(detection: Detection) -> float:
 
 
 def _added(
-    checked: Case | None, material: Material, found: Search, weighed: Weighed, retuned: Tried
+    checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, beyond: Retune | None
 ) -> tuple[Tried, tuple[Predicted, ...]]:
     """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
-    named = bool(weighed.tried) and weighed.probabilities[0] > weighed.unknown
+    named = bool(weighed.tried) and weighed.probabilities[0] > max(weighed.unknown, weighed.retune)
     first = weighed.tried[0] if named else retuned
+    if not named and beyond is not None and weighed.retune > weighed.unknown:
+        first = beyond.tried
     predicted = _predicted(checked, material, retuned, first)
     if checked is None or first is retuned:
         return first, predicted
@@ -141,6 +148,7 @@ def _gap(
     predicted: tuple[Predicted, ...],
     checked: Case | None,
     looks: Sequence[Look],
+    beyond: Retune | None,
 ) -> Diagnosis:
     before, after = _innovations(case, found.nominal.fit.supposed), _innovations(case, _best(found).fit.supposed)
     energy = removed_energy(before, after)
@@ -148,7 +156,7 @@ def _gap(
     return Diagnosis(
         verdict="gap",
         false_alarm_probability=detection.p,
-        places=place_shares(found, weighed, first.place if first else None),
+        places=place_shares(found, weighed, first.place if first else None, beyond.places if beyond else ()),
         when=time_map(case, energy),
         regions=region_map(case, energy),
         bands=band_map(case, before, after),
@@ -160,6 +168,7 @@ def _gap(
         unknown=Unknown(weighed.unknown, first.place if first else None, first.class_text if first else None),
         found=chosen.effects,
         shrinkage=shrinkage(checked, predicted) if checked is not None else None,
+        next_experiment=next_experiment(weighed),
         notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
     )
 
@@ -198,7 +207,7 @@ def _no_gap(
     ranked = suspects(detection)
     places = (PlaceShare(ranked[0].place, 1.0),) if ranked else ()
     diagnosis = Diagnosis(
-        verdict="no gap",
+        verdict="cannot tell" if cannot_tell(looks) else "no gap",
         false_alarm_probability=detection.p,
         places=places,
         firmware=material.firmware,

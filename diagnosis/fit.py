@@ -125,9 +125,9 @@ def _moved(case: Case, at: Fit, damping: float) -> Supposed:
 
 def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | None:
     """Likelihood and linear problem at a point; None where the filter fails."""
-    kit = case.kit
-    inside = np.array([entry.effect in kit.names for entry in free], dtype=bool)
-    places = [kit.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in kit.names]
+    variant = case.kit.variant(supposed.effects)
+    inside = np.array([entry.effect in variant.names for entry in free], dtype=bool)
+    places = [variant.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in variant.names]
     runs = passes(case, supposed, [*case.free.tolist(), *places], slopes=not inside.all())
     if runs is None:
         return None

@@ -44,7 +44,7 @@ def signals(ground: Ground, flight: int) -> Signals:
     """The signals that the filter predicts for a flight."""
     kit = ground.case.kit
     model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
-    x = np.nan_to_num(_by_step(run.x, tape.row))
+    x = np.nan_to_num(_by_step(run.x[:, : len(model.states)], tape.row))
     p = kit.bound.p
     arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
     given = (tape.t_s, *x.T, *tape.u.T, *p)

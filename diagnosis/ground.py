@@ -62,6 +62,9 @@ class Ground:
 
     def answer(self, values: Sequence[Array], target: int) -> Array:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target, see filter.py."""
+        own = len(self.case.kit.states)
+        if target >= own:
+            target += self.filter.states - own
         parts = []
         for tape, run, value in zip(self.tapes, self.runs, values, strict=True):
             dw = self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots)
@@ -81,7 +84,7 @@ class Ground:
             values = []
             for tape in self.tapes:
                 on = (tape.t_s[:, None] >= self._instants()[None, :] - 1e-9).astype(float)
-                moves = target < self.filter.states
+                moves = target < len(self.case.kit.states)
                 values.append(on * np.append(np.diff(tape.t_s), 0.0)[:, None] if moves else on)
             self.answers[target] = self.answer(values, target)
         return self.answers[target]
@@ -94,10 +97,10 @@ class Ground:
 def ground_of(case: Case, fit: Fit) -> Ground:
     """The ground at a fit."""
     supposed = fit.supposed
+    variant = case.kit.variant(supposed.effects)
     runs = passes(case, supposed, case.free.tolist(), slopes=True, gains=True)
     assert runs is not None
     slopes = np.concatenate([flat_slopes(run) for run in runs]) * case.sd
-    plain = not any(name in case.kit.names for name in supposed.effects)
     return Ground(
         case=case,
         fit=fit,
@@ -105,6 +108,6 @@ def ground_of(case: Case, fit: Fit) -> Ground:
         slopes=slopes,
         solve=np.asarray(np.linalg.inv(slopes.T @ slopes + np.eye(slopes.shape[1])), float),
         runs=tuple(runs),
-        tapes=tuple(tape_under(case, flight, supposed.effects) for flight in case.flights),
-        filter=case.kit.plain if plain else case.kit.filter,
+        tapes=tuple(tape_under(case, variant, flight, supposed.effects) for flight in case.flights),
+        filter=variant.filter,
     )

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from diagnosis.case import Case, Flight
 from diagnosis.filter import Noise, Pass
 from diagnosis.inputs import commanded
-from diagnosis.kit import Kit
+from diagnosis.kit import Kit, Variant, is_lag
 from diagnosis.sensors import sensed
 from diagnosis.tape import Tape
 from sim.effects.effect import Values
 
 Array = NDArray[np.float64]
+SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
+START_SD = 0.05  # of states that effects brought, in their own units
 LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an axis' speeds, times their square
 
 
@@ -35,26 +37,26 @@ class Supposed:
 
 def nothing_supposed(case: Case, unrest: float) -> Supposed:
     """The plant as stated."""
-    return Supposed(np.zeros(len(case.free)), {}, np.full(len(case.kit.filter.axes), unrest))
+    return Supposed(np.zeros(len(case.free)), {}, np.full(len(case.kit.bound.model.axes), unrest))
 
 
-def coefficients(case: Case, supposed: Supposed) -> Array:
-    """The vector p of the kit's filter; coefficients that cannot be negative stay where they can be."""
+def coefficients(case: Case, variant: Variant, supposed: Supposed) -> Array:
+    """The vector p of a variant; coefficients that cannot be negative stay where they can be."""
     kit = case.kit
-    p = kit.p.copy()
+    p = variant.p.copy()
     p[case.free] = kit.bound.p[case.free] + supposed.theta * case.sd
     for place in case.nonnegative:
         p[place] = max(p[place], 1e-3 * kit.bound.p[place])
     for name, values in supposed.effects.items():
-        if name in kit.names:
+        if name in variant.names:
             for symbol, value in values.items():
-                p[kit.place(name, symbol)] = value
+                p[variant.place(name, symbol)] = max(value, SHORTEST_LAG_S) if is_lag(name) else value
     return p
 
 
-def tape_under(case: Case, flight: Flight, effects: Mapping[str, Values]) -> Tape:
+def tape_under(case: Case, variant: Variant, flight: Flight, effects: Mapping[str, Values]) -> Tape:
     """The flight's tape with what the effects do on the way of the signals."""
-    further = {name: values for name, values in effects.items() if name not in case.kit.names}
+    further = {name: values for name, values in effects.items() if name not in variant.names}
     if not further:
         return flight.tape
     return _sent(case.kit, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
@@ -66,13 +68,23 @@ def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, f
     return sensed(kit, commanded(kit, flight.tape, given), given)
 
 
-def noise_of(case: Case, flight: Flight, supposed: Supposed, rub_s: float) -> Noise:
+def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed, rub_s: float) -> Noise:
     """The filter's noise: on each axis' speed its unrest, next to none elsewhere."""
     kit = case.kit
-    q = LEAST_PROCESS * np.maximum(np.abs(flight.x0), 1.0) ** 2
+    x0, p0 = start_under(variant, flight)
+    q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     for axis, unrest in zip(kit.bound.model.axes, supposed.unrest, strict=True):
         q[kit.states.index(str(axis.velocity))] = 10.0 ** (2.0 * unrest)
-    return Noise(q, np.full(max(1, len(kit.filter.axes)), rub_s), flight.p0)
+    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0)
+
+
+def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:
+    """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
+    further = variant.states[len(flight.x0) :]
+    own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
+    read = [flight.log.y[np.isfinite(flight.log.y[:, own[s]]), own[s]][0] if s in own else 0.0 for s in further]
+    sure = [flight.tape.r[0, own[s]] if s in own else START_SD**2 for s in further]
+    return np.append(flight.x0, read), np.append(flight.p0, sure)
 
 
 def passes(
@@ -85,18 +97,16 @@ def passes(
     rub_s: float = 0.02,
 ) -> list[Pass] | None:
     """The filter over all flights; None where it left all bounds on one."""
-    kit, p = case.kit, coefficients(case, supposed)
-    plain = not any(name in kit.names for name in supposed.effects) and all(place < kit.own for place in columns)
+    variant = case.kit.variant(supposed.effects)
+    p = coefficients(case, variant, supposed)
     found = []
     for flight in case.flights:
-        tape = tape_under(case, flight, supposed.effects)
-        noise = noise_of(case, flight, supposed, rub_s)
-        chosen, given = (kit.plain, p[: kit.own]) if plain else (kit.filter, p)
-        run = chosen.run(
+        tape = tape_under(case, variant, flight, supposed.effects)
+        run = variant.filter.run(
             tape,
-            given,
-            flight.x0,
-            noise,
+            p,
+            start_under(variant, flight)[0],
+            noise_of(case, variant, flight, supposed, rub_s),
             case.slots,
             columns=columns,
             keep_slopes=slopes,
@@ -105,5 +115,5 @@ def passes(
         )
         if run is None or not np.isfinite(run.log_likelihood):
             return None
-        found.append(run)
+        found.append(replace(run, log_likelihood=run.log_likelihood + tape.known))
     return found

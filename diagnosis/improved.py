@@ -21,7 +21,7 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
     """The plant of a fit: values and standard deviations of its uncertain parameters, and its effects."""
     nominal = case.kit.bound
     spread = deviations(fit)
-    p, sd = coefficients(case, fit.supposed)[: case.kit.own], nominal.sd.copy()
+    p, sd = coefficients(case, case.kit.variant(()), fit.supposed.with_effects({})), nominal.sd.copy()
     sd[case.free] = spread[: len(case.free)] * case.sd
     parameters: dict[str, Parameter] = {}
     place = 0

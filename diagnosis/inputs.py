@@ -1,12 +1,14 @@
 """Effects with memory on the way of the inputs, as their mean over each step of a tape: right to third order, with no further instants."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, with_inputs
@@ -30,7 +32,12 @@ def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
     if others:
         stages, _ = paths_with(MODELS[kit.bound.plant.model](), others)
         tape = with_inputs(tape, stages)
+    for values in (values for name, values in quick.items() if name == "loop.dropped_frames"):
+        kept = lfilter([1.0 - values["p"]], [1.0, -values["p"]], tape.u - tape.u[0], axis=0) + tape.u[0]
+        tape = replace(tape, u=kept)
     for name, values in quick.items():
+        if name == "loop.dropped_frames":
+            continue
         place, kind = name.split(".")
         variable = kit.bound.model.places.inputs[place].variable
         column = kit.bound.model.inputs.index(variable)
@@ -39,12 +46,13 @@ def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
             u[:, column] = _behind(tape, column, "slew_means", values["r"])
         elif values["tau"] > SHORTEST_S:
             u[:, column] = _behind(tape, column, "lag_means", values["tau"])
-        tape = Tape(tape.t_s, u, tape.y, tape.r, tape.row, tape.rows)
+        tape = replace(tape, u=u)
     return tape
 
 
 def _quick(name: str) -> bool:
-    return name.endswith(("_input.lag", "_input.slew_limit", "input.lag", "input.slew_limit"))
+    """Which frames were lost is not known: what arrives on average is their geometric mean."""
+    return name.endswith(("input.lag", "input.slew_limit")) or name == "loop.dropped_frames"
 
 
 def _behind(tape: Tape, column: int, stage: str, value: float) -> Array:

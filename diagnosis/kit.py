@@ -1,15 +1,16 @@
-"""A plant's equations with its whole library of effects in one compiled filter, kept on disk by content.
+"""A plant's equations with its whole library of effects in compiled filters, kept on disk by content.
 
-Building the equations takes seconds, so what the rest needs of them (names, places in the parameter vector) is kept beside the
+Building the equations takes seconds, so what the rest needs of them (names, places in the parameter vector) is kept beside each
 compiled library: a second diagnosis of the same kind of plant starts at once.
 """
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -17,123 +18,186 @@ from numpy.typing import NDArray
 
 import sim
 from diagnosis.filter import Filter, build_filter, open_filter
+from diagnosis.lagged import lagged
+from records.errors import BadInput
 from records.files import write_atomic
+from records.reading import read_text
 from sim.bind import BoundPlant
-from sim.effects.api import combined, library, redundant, without_effects
+from sim.effects.api import combined, library, redundant
 from sim.effects.effect import Effect, coefficient
 from sim.model import Model
 from toolchain.host import CACHE_DIR
 
 Array = NDArray[np.float64]
+BUILDING = Lock()
 
 
 @dataclass(frozen=True, eq=False)
-class Kit:
-    """The filter with every effect of `names` in its equations, at next to no size in `p`; `index` finds coefficients in p, and
-    `plain` is the filter of the nominal equations alone, which is faster.
+class Variant:
+    """One compiled filter: the effects `names` are in its equations, at next to no size in `p`; `index` finds coefficients in p.
 
-    `bound` is the nominal plant, `own` the number of its own coefficients, which come first. `outputs` are the plant's outputs, then
-    the states that a log may carry.
+    `states` are the plant's own, then those that effects brought.
     """
 
-    bound: BoundPlant
     filter: Filter
-    plain: Filter
-    names: tuple[str, ...]
-    effects: Mapping[str, Effect]
-    outputs: tuple[str, ...]
+    names: frozenset[str]
     states: tuple[str, ...]
     p: Array
     index: Mapping[str, int]
-
-    @property
-    def own(self) -> int:
-        """How many coefficients are the plant's own."""
-        return len(self.bound.p)
-
-    @property
-    def candidates(self) -> tuple[str, ...]:
-        """Effects that are more than another value of one of the plant's own coefficients."""
-        return tuple(name for name, effect in self.effects.items() if not redundant(self.bound, effect))
 
     def place(self, effect: str, symbol: str) -> int:
         """The index in p of an effect's parameter."""
         return self.index[coefficient(effect, symbol)]
 
 
+@dataclass(frozen=True, eq=False)
+class Kit:
+    """A nominal plant with its library: `names` are effects on its equations without a state or an axis of their own, `wide_names`
+    those with. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
+
+    bound: BoundPlant
+    effects: Mapping[str, Effect]
+    names: tuple[str, ...]
+    wide_names: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    @cached_property
+    def candidates(self) -> tuple[str, ...]:
+        """Effects that are more than another value of one of the plant's own coefficients."""
+        return tuple(name for name, effect in self.effects.items() if not redundant(self.bound, effect))
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """The plant's own states."""
+        return tuple(str(state) for state in self.bound.model.states)
+
+    @property
+    def own(self) -> int:
+        """How many coefficients are the plant's own; they come first in every variant."""
+        return len(self.bound.p)
+
+    @cached_property
+    def plain(self) -> Variant:
+        """The nominal equations alone, which are the fastest."""
+        return _variant(self, ())
+
+    @cached_property
+    def main(self) -> Variant:
+        """All effects without states of their own."""
+        return _variant(self, self.names)
+
+    @cached_property
+    def wide(self) -> Variant:
+        """All effects on the equations."""
+        return _variant(self, (*self.names, *self.wide_names))
+
+    def carried(self, name: str) -> bool:
+        """Whether an effect is in the equations of a variant, with slopes by its parameters."""
+        return name in self.names or name in self.wide_names or is_lag(name)
+
+    def variant(self, effects: Iterable[str]) -> Variant:
+        """The fastest variant that carries all of `effects` that any variant carries."""
+        wanted = [name for name in effects if self.carried(name)]
+        behind = sorted(name for name in wanted if is_lag(name))
+        if behind:
+            further = any(name in self.wide_names for name in wanted)
+            return _lagged_variant(self, behind[0], further)
+        if any(name in self.wide_names for name in wanted):
+            return self.wide
+        return self.main if wanted else self.plain
+
+
+def is_lag(name: str) -> bool:
+    """Whether an effect is the lag of a sensor, which its own variant carries as a state."""
+    return name.endswith("_sensor.lag")
+
+
 def make_kit(bound: BoundPlant) -> Kit:
-    """The kit of a nominal plant with all effects on its equations that need no state or axis of their own."""
+    """The kit of a nominal plant."""
     effects = library(bound)
-    key = _digest(bound, effects)
-    note = CACHE_DIR / "kits" / f"{bound.plant.model}-{key}.json"
-    if not note.exists() or not all(Path(json.loads(note.read_text())[key]).exists() for key in ("library", "plain")):
-        write_atomic(note, json.dumps(_build(bound, effects)))
-    known = json.loads(note.read_text(encoding="utf-8"))
-    library_path = Path(known["library"])
-    axes = tuple(axis.name for axis in bound.model.axes)
-    touched = np.array(known["p"])
-    p = np.concatenate([bound.p, touched[len(bound.p) :]])
-    return Kit(
-        bound=bound,
-        filter=open_filter(library_path, known["sizes"], axes),
-        plain=open_filter(Path(known["plain"]), known["sizes"], axes),
-        names=tuple(known["names"]),
-        effects=effects,
-        outputs=tuple(known["outputs"]),
+    names = _noted(bound, "names", lambda: _sorted_names(bound, effects))
+    outputs = [*bound.model.outputs, *(str(s) for s in bound.model.states if str(s) not in bound.model.outputs)]
+    return Kit(bound, effects, tuple(names["stateless"]), tuple(names["others"]), tuple(outputs))
+
+
+def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str, Any]:
+    """Effects on the equations, by whether they bring a state or an axis."""
+    found: dict[str, list[str]] = {"stateless": [], "others": []}
+    for name, effect in effects.items():
+        if effect.on_equations:
+            model = combined(bound, [name]).model
+            same = len(model.states) == len(bound.model.states) and len(model.axes) == len(bound.model.axes)
+            found["stateless" if same else "others"].append(name)
+    return found
+
+
+@cache
+def _lagged_variant(kit: Kit, name: str, further: bool) -> Variant:
+    return _variant(kit, (*kit.names, *(kit.wide_names if further else ()), name))
+
+
+def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
+    """Open a variant, building it where it is not on disk yet."""
+    bound = kit.bound
+    with BUILDING:
+        known = _noted(bound, hashlib.sha256(repr(names).encode()).hexdigest()[:16], lambda: _build(bound, names))
+    p = np.array(known["p"])
+    p[: len(bound.p)] = bound.p
+    return Variant(
+        filter=open_filter(Path(known["library"]), known["sizes"], tuple(known["axes"])),
+        names=frozenset(names),
         states=tuple(known["states"]),
         p=p,
         index={name: place for place, name in enumerate(known["parameters"])},
     )
 
 
-def _build(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str, Any]:
-    names = _stateless(bound, effects)
-    plant = combined(bound, names)
-    model = observed(plant.model)
+def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
+    behind = [name for name in names if is_lag(name)]
+    plant = combined(bound, [name for name in names if name not in behind])
+    model, p = plant.model, plant.p
+    for name in behind:
+        model, p = lagged(model, name), np.append(p, library(bound)[name].size.reference)
+    model = observed(model, bound.model)
     return {
         "library": str(build_filter(model)),
-        "plain": str(build_filter(observed(without_effects(bound).model))),
-        "names": names,
         "parameters": [str(symbol) for symbol in model.parameter_symbols],
-        "p": plant.p.tolist(),
-        "outputs": list(model.outputs),
+        "p": p.tolist(),
         "states": [str(state) for state in model.states],
-        "sizes": {"states": len(model.states), "outputs": len(model.outputs), "axes": len(model.axes)},
+        "sizes": {"states": len(model.states), "outputs": len(model.outputs)},
+        "axes": [axis.name for axis in model.axes],
     }
 
 
-def _stateless(bound: BoundPlant, effects: Mapping[str, Effect]) -> list[str]:
-    """Effects on the equations that bring neither a state nor an axis."""
-    own = bound.model
-    found = []
-    for name, effect in effects.items():
-        if not effect.on_equations:
-            continue
-        model = combined(bound, [name]).model
-        if len(model.states) == len(own.states) and len(model.axes) == len(own.axes):
-            found.append(name)
-    return found
-
-
-def observed(model: Model) -> Model:
-    """The model with its states that a log may carry as further outputs."""
-    further = {str(state): state for state in model.states if str(state) not in model.outputs}
+def observed(model: Model, nominal: Model) -> Model:
+    """The model with the nominal states that a log may carry as further outputs."""
+    further = {str(state): state for state in nominal.states if str(state) not in model.outputs}
     return replace(model, outputs={**model.outputs, **further})
 
 
-def _digest(bound: BoundPlant, effects: Sequence[str] | Mapping[str, Effect]) -> str:
-    """What the compiled filter depends on: the sources of simulation and filter, the kind of plant, the effects."""
+def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
+    """What was noted on disk under this content, or what `make` gives, noted."""
     digest = hashlib.sha256(_sources())
-    digest.update(repr((bound.plant.model, tuple(effects))).encode())
-    return digest.hexdigest()[:20]
+    digest.update(bound.plant.model.encode())
+    note = CACHE_DIR / "kits" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
+    try:
+        known: dict[str, Any] = json.loads(read_text(note, "note of a kit"))
+        if "library" not in known or Path(known["library"]).exists():
+            return known
+    except (BadInput, ValueError):
+        pass
+    known = make()
+    write_atomic(note, json.dumps(known))
+    return known
 
 
 @cache
 def _sources() -> bytes:
+    """Digest of everything that a variant is made from: simulation, effects, filter."""
     digest = hashlib.sha256()
     root = Path(sim.__file__).resolve().parent
     here = Path(__file__).resolve().parent
     files = [path for folder in (root, here / "c") for path in folder.rglob("*") if path.suffix in (".py", ".c", ".h")]
-    for path in sorted([*files, here / "kit.py", here / "filter.py"]):
+    for path in sorted([*files, *(here / name for name in ("kit.py", "filter.py", "lagged.py"))]):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.digest()

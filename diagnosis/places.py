@@ -1,7 +1,7 @@
 """Where the gap lies: every hypothesis' probability goes to the places of its effects, by what each of them adds."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from diagnosis.search import Search, Tried
 from diagnosis.weigh import Weighed
@@ -10,7 +10,9 @@ from records.diagnosis import PlaceShare
 LEAST = 0.005
 
 
-def place_shares(search: Search, weighed: Weighed, unknown_place: str | None) -> tuple[PlaceShare, ...]:
+def place_shares(
+    search: Search, weighed: Weighed, unknown_place: str | None, retuned_places: Sequence[str] = ()
+) -> tuple[PlaceShare, ...]:
     """Shares by place, largest first, with a sum of 1."""
     found: defaultdict[str, float] = defaultdict(float)
     for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True):
@@ -18,6 +20,8 @@ def place_shares(search: Search, weighed: Weighed, unknown_place: str | None) ->
             found[place] += probability * share
     if unknown_place is not None:
         found[unknown_place] += weighed.unknown
+    for place in retuned_places:
+        found[place] += weighed.retune / len(retuned_places)
     total = sum(found.values())
     kept = {place: share / total for place, share in found.items() if share > LEAST * total} if total > 0.0 else {}
     whole = sum(kept.values())

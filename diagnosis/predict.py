@@ -1,6 +1,7 @@
 """Free runs over consecutive windows of a log, each from the state that the model's own filter had from data up to its first row."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,8 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case, Flight
 from diagnosis.filter import Noise
-from diagnosis.hypothesis import Supposed, coefficients, noise_of, tape_under
+from diagnosis.hypothesis import Supposed, coefficients, noise_of, start_under, tape_under
+from diagnosis.kit import Variant
 from diagnosis.tape import Tape
 from sim.effects.effect import Values
 
@@ -21,17 +23,17 @@ UNSEEN = 1e8  # variance of a reading that the state shall not follow, in square
 def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0.02) -> Array:
     """Predicted readings (rows, outputs) of a log by window; NaN where the filter fails or cannot yet tell."""
     kit = case.kit
-    tape = tape_under(case, flight, supposed.effects)
-    p, noise = coefficients(case, supposed), noise_of(case, flight, supposed, rub_s)
-    plain = not any(name in kit.names for name in supposed.effects)
-    chosen, given = (kit.plain, p[: kit.own]) if plain else (kit.filter, p)
-    whole = Tape(tape.t_s, tape.u, tape.y, tape.r, np.arange(len(tape.t_s)), len(tape.t_s))
-    run = chosen.run(whole, given, flight.x0, noise, case.slots, locked=flight.locked)
+    variant = kit.variant(supposed.effects)
+    tape = tape_under(case, variant, flight, supposed.effects)
+    given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed, rub_s)
+    chosen = variant.filter
+    whole = replace(tape, row=np.arange(len(tape.t_s)), rows=len(tape.t_s))
+    run = chosen.run(whole, given, start_under(variant, flight)[0], noise, case.slots, locked=flight.locked)
     outputs = len(kit.bound.model.outputs)
     found = np.full((len(flight.log.t_s), outputs), np.nan)
     if run is None:
         return found
-    lateness = _lateness(case, supposed.effects)
+    lateness = _lateness(case, variant, supposed.effects)
     ahead = Noise(np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0))
     slots = [place if place < outputs else -1 for place in range(len(kit.outputs))]
     for first, last in windows(flight.log.t_s):
@@ -62,13 +64,13 @@ def windows(t_s: Array) -> list[tuple[int, int]]:
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
 
 
-def _lateness(case: Case, effects: Mapping[str, Values]) -> list[float]:
+def _lateness(case: Case, variant: Variant, effects: Mapping[str, Values]) -> list[float]:
     """How old each output's readings are."""
     kit = case.kit
     found = [0.0] * len(kit.bound.model.outputs)
     for name, values in effects.items():
         place, kind = name.split(".")
-        if place in kit.bound.model.places.sensors and kind in ("delay", "lag"):
+        if place in kit.bound.model.places.sensors and kind in ("delay", "lag") and name not in variant.names:
             found[kit.outputs.index(kit.bound.model.places.sensors[place].output)] += values["tau"]
     return found
 
@@ -79,7 +81,7 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     y = np.full((count, tape.y.shape[1]), np.nan)
     y[:, :outputs] = 0.0
     r = np.full_like(y, UNSEEN)
-    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), count)
+    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), count, np.zeros_like(y))
 
 
 def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:

@@ -46,8 +46,9 @@ def replicas(ground: Ground, count: int = COUNT) -> Array:
 def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) -> Array:
     case, tape, run = ground.case, ground.tapes[index], ground.runs[index]
     kit, flight = case.kit, case.flights[index]
-    noise = noise_of(case, flight, ground.fit.supposed, 0.0)
-    states = len(kit.states)
+    variant = kit.variant(ground.fit.supposed.effects)
+    noise = noise_of(case, variant, flight, ground.fit.supposed, 0.0)
+    states = ground.filter.states
     moving = [kit.states.index(str(axis.velocity)) for axis in kit.bound.model.axes if axis.name not in flight.locked]
     measured = [place for place, slot in enumerate(case.slots) if slot >= 0]
     targets = [*moving, *(states + place for place in measured)]

@@ -24,13 +24,15 @@ FARTHEST = 30.0  # of a size's reference that a first look may propose
 @dataclass(frozen=True, eq=False)
 class Look:
     """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
-    order, `absorbed` the share of its signature that the plant's coefficients imitate."""
+    order, `absorbed` the share of its signature that the plant's coefficients imitate, `power` the score that its reference size
+    would have."""
 
     effect: str
     values: Values
     z: float
     gain: float
     absorbed: float
+    power: float
 
 
 def look(case: Case, ground: Ground, names: Sequence[str], worth: Sequence[str] | None = None) -> list[Look]:
@@ -41,7 +43,12 @@ def look(case: Case, ground: Ground, names: Sequence[str], worth: Sequence[str] 
     supposed = ground.fit.supposed
     wanted = [name for name in names if name not in supposed.effects]
     costly = wanted if worth is None else [name for name in wanted if name in worth]
-    found = [*_smooth(case, ground, wanted), *_first_order(case, ground, costly), *_finite(case, ground, costly)]
+    others = [name for name in wanted if name in case.kit.wide_names]
+    found = [
+        *_smooth(case, ground, [name for name in wanted if name in case.kit.names]),
+        *_smooth(case, ground, others),
+    ]
+    found += [*_first_order(case, ground, costly), *_finite(case, ground, costly)]
     best: dict[str, Look] = {}
     for entry in found:
         if entry.effect not in best or entry.gain > best[entry.effect].gain:
@@ -62,13 +69,14 @@ def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     starts: dict[str, list[dict[str, float]]] = {}
     for name in names:
         effect = kit.effects[name]
-        if name in kit.names and not _limited(effect):
+        if not _limited(effect):
             starts[name] = instants(ground, effect) or shape_starts(effect)
     found = []
     for turn in range(max((len(values) for values in starts.values()), default=0)):
         now = {name: values[turn] for name, values in starts.items() if turn < len(values)}
         touched = {name: {**_touched(kit.effects[name]), **shapes} for name, shapes in now.items()}
-        places = [kit.place(name, kit.effects[name].size.symbol) for name in now]
+        variant = kit.variant((*supposed.effects, *now))
+        places = [variant.place(name, kit.effects[name].size.symbol) for name in now]
         runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), [*case.free.tolist(), *places])
         if runs is not None:
             found += _judged(case, ground, touched, runs)
@@ -108,7 +116,7 @@ def _looks(case: Case, values: Mapping[str, Values], scores: Scores, units: Arra
         size = (value - (parameter.zero or 0.0)) / unit
         gain = float(size * norm[index] * (score - 0.5 * size * norm[index]))
         absorbed = 1.0 - float(norm[index] ** 2 / max(scores.raw[index], 1e-12))
-        found.append(Look(name, {**given, parameter.symbol: value}, score, gain, absorbed))
+        found.append(Look(name, {**given, parameter.symbol: value}, score, gain, absorbed, float(norm[index])))
     return found
 
 
@@ -134,9 +142,7 @@ def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     found = []
     for name in names:
         effect = case.kit.effects[name]
-        if name in case.kit.names and not _limited(effect):
-            continue
-        if name not in case.kit.names and effect.on_equations:
+        if effect.on_equations and not _limited(effect):
             continue
         for value in effect.size.starts or (effect.size.reference,):
             for shapes in shape_starts(effect):
@@ -160,4 +166,5 @@ def _tried(case: Case, ground: Ground, effect: Effect, values: Values) -> Look |
     gain = likelihood(runs) - ground.fit.log_likelihood + ground.still_to_gain(w) - ground.still_to_gain(ground.w)
     own = ground.slopes.T @ change
     absorbed = float(own @ ground.solve @ own) / size
-    return Look(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed)
+    power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
+    return Look(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power)

@@ -1,6 +1,7 @@
 """Effects of sensors as the filter takes them: the reading is turned back into what it says of the true output."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,20 +37,25 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
 def _coarser(tape: Tape, output: int, step: float) -> Tape:
     r = tape.r.copy()
     r[:, output] += step**2 / 12.0
-    return Tape(tape.t_s, tape.u, tape.y, r, tape.row, tape.rows)
+    return replace(tape, r=r)
 
 
 def _behind_play(tape: Tape, output: int, width: float) -> Tape:
-    y, r = tape.y.copy(), tape.r.copy()
+    y = tape.y.copy()
     seen = np.flatnonzero(np.isfinite(y[:, output]))
-    read = y[seen, output]
-    moved = np.append(0.0, np.diff(read))
+    moved = np.append(0.0, np.diff(y[seen, output]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
-    way = np.sign(moved[last])
-    standing = np.arange(len(moved)) - last
-    y[seen, output] = read + 0.5 * width * way
-    # Fast motion changes the reading at every sample; after that long without a change the axis may be anywhere within the play.
-    typical = np.median(np.diff(np.flatnonzero(moved != 0.0))) if np.count_nonzero(moved) > 2 else 1.0
-    unsure = standing > 2.0 * typical
-    r[seen[unsure], output] += width**2 / 6.0
-    return Tape(tape.t_s, tape.u, y, r, tape.row, tape.rows)
+    y[seen, output] += 0.5 * width * np.sign(moved[last])
+    unsure = standing_rows(tape, output)
+    y[unsure, output] = np.nan
+    return replace(tape, y=y, known=tape.known + float(np.sum(tape.usual[unsure, output])))
+
+
+def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:
+    """Instants at which a reading has not changed for longer than it usually takes: behind play the axis may be anywhere within it."""
+    seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
+    moved = np.append(0.0, np.diff(tape.y[seen, output]))
+    changes = np.flatnonzero(moved != 0.0)
+    last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
+    typical = float(np.median(np.diff(changes))) if len(changes) > 2 else 1.0
+    return np.asarray(seen[np.arange(len(moved)) - last > 2.0 * typical])

@@ -1,7 +1,7 @@
 """Logs as tapes for the filter: instants with the inputs held from them and the measurements at them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 class Tape:
     """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
     their variances r (m, outputs), and `row` (m,): the log's row whose results an instant fills, -1 for none; `rows` in all.
+
+    `usual` (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
+    meaningless.
     """
 
     t_s: Array
@@ -25,6 +28,8 @@ class Tape:
     r: Array
     row: NDArray[np.int64]
     rows: int
+    usual: Array
+    known: float = 0.0
 
 
 def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None) -> Tape:
@@ -38,7 +43,7 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
             r[:, place] = _variance(y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
     if used is not None:
         y[~used] = np.nan
-    return Tape(log.t_s, log.u, y, r, np.arange(rows), rows)
+    return Tape(log.t_s, log.u, y, r, np.arange(rows), rows, -0.5 * (1.0 + np.log(r)))
 
 
 def _variance(y: Array, step: float, noise: float) -> float:
@@ -72,9 +77,10 @@ def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     y = np.full((len(t_s), tape.y.shape[1]), np.nan)
     r = np.ones((len(t_s), tape.y.shape[1]))
     row = np.full(len(t_s), -1, dtype=np.int64)
+    usual = np.zeros_like(y)
     where = np.searchsorted(t_s, tape.t_s)
-    y[where], r[where], row[where] = tape.y, tape.r, tape.row
-    return Tape(t_s, u, y, r, row, tape.rows)
+    y[where], r[where], row[where], usual[where] = tape.y, tape.r, tape.row, tape.usual
+    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual)
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
@@ -93,4 +99,4 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
     y[where[seen], output], r[where[seen], output] = tape.y[seen, output], tape.r[seen, output]
     # Results of that output belong to the log's row of the reading, which is one instant's row only where no other row claims it.
     row[where[seen & (row[where] < 0)]] = tape.row[seen & (row[where] < 0)]
-    return Tape(t_s, moved.u, y, r, row, tape.rows)
+    return replace(tape, t_s=t_s, u=moved.u, y=y, r=r, row=row)

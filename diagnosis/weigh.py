@@ -13,34 +13,40 @@ Array = NDArray[np.float64]
 # share of the whole gain that a form a little off the truth may cost, and what each further effect and an unknown one must overcome.
 ALIKE, OFF_FORM, FURTHER, UNKNOWN = 4.0, 0.006, 1.5, 3.0
 UNKNOWN_COST = 12.0
+RETUNE_COST = 10.0
 KEPT = 12
 
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
-    """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; and the
-    scale in nats on which hypotheses are compared."""
+    """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
+    parameters beyond their spread; and the scale in nats on which hypotheses are compared."""
 
     tried: tuple[Tried, ...]
     probabilities: tuple[float, ...]
     unknown: float
+    retune: float
     scale: float
 
 
-def weigh(tried: Sequence[Tried], nominal: Tried, left: float) -> Weighed:
-    """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them."""
+def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | None = None) -> Weighed:
+    """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them, `retune`
+    is the evidence for parameters beyond their spread."""
     named = [entry for entry in tried if entry.effects]
     if not named:
-        return Weighed((), (), 1.0, ALIKE)
+        return Weighed((), (), 1.0, 0.0, ALIKE)
     best = max(entry.evidence for entry in named)
     scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
     unknown = (left - UNKNOWN_COST) / scale - UNKNOWN
-    weights = np.exp(np.append(scores, unknown) - max(np.max(scores), unknown))
+    other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
+    weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
-    order = np.argsort(-weights[:-1], kind="stable")[:KEPT]
+    order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
     chosen = tuple(named[index] for index in order)
-    return Weighed(chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), scale)
+    return Weighed(
+        chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
+    )
 
 
 def alike(weighed: Weighed, first: Tried) -> list[Tried]:

@@ -46,7 +46,9 @@ def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> Non
         theta = settled.theta.copy()
         theta[index] += 1e-3
         (moved,) = passes(case, Supposed(theta, {}, settled.unrest)) or [None]
-        assert run is not None and moved is not None and run.dw is not None
+        assert run is not None
+        assert moved is not None
+        assert run.dw is not None
         change = (moved.w - run.w)[100:] / 1e-3
         slope = run.dw[100:, :, index] * case.sd[index]
         assert np.linalg.norm(change - slope) < 0.2 * np.linalg.norm(change)
@@ -54,7 +56,8 @@ def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> Non
 
 def test_products_are_those_of_the_slopes(case: Case, settled: Supposed) -> None:
     (run,) = passes(case, settled, case.free.tolist()[:5], slopes=True) or [None]
-    assert run is not None and run.dw is not None
+    assert run is not None
+    assert run.dw is not None
     dw, w = np.nan_to_num(run.dw).reshape(-1, 5), np.nan_to_num(run.w).ravel()
     assert np.allclose(run.gram, dw.T @ dw, rtol=1e-9)
     assert np.allclose(run.pull, dw.T @ w, rtol=1e-6, atol=1e-6 * np.abs(run.gram).max())

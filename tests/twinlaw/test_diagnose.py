@@ -1,0 +1,96 @@
+"""`twinlaw diagnose` on logs that allow no conclusion: one clear line and exit status 2, or an honest verdict; its files where it can."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from records.diagnosis import load_diagnosis
+from records.log import RunLog, save_log
+from sim.bind import BoundPlant
+from sim.loop import fly_law
+from sim.manoeuvres import flight
+from tests.plants import bound
+from twinlaw.command import main
+
+PLANT = "plants/ce150.toml"
+
+
+@pytest.fixture(scope="module")
+def rig() -> BoundPlant:
+    return bound("ce150")
+
+
+@pytest.fixture(scope="module")
+def log(rig: BoundPlant) -> RunLog:
+    """Twenty seconds of the default flight."""
+    table, _ = design(rig, read_settings(rig))
+    return part(replace(fly_law(rig, table, flight(rig)), table_digest=None), slice(2000, 4000))
+
+
+def part(log: RunLog, rows: slice) -> RunLog:
+    extra: Mapping[str, np.ndarray] = {name: column[rows] for name, column in log.extra.items()}
+    return replace(log, t_s=log.t_s[rows] - log.t_s[rows][0], u=log.u[rows], y=log.y[rows], extra=extra)
+
+
+def diagnosed(folder: Path, *logs: RunLog, holdout: RunLog | None = None) -> int:
+    names = []
+    for index, entry in enumerate(logs):
+        save_log(folder / f"run-{index}.csv", entry)
+        names.append(str(folder / f"run-{index}.csv"))
+    options = []
+    if holdout is not None:
+        save_log(folder / "hold.csv", holdout)
+        options = ["--holdout", str(folder / "hold.csv")]
+    return main(["diagnose", "--plant", PLANT, *options, "--out", str(folder / "out"), *names])
+
+
+def refused(folder: Path, capsys: pytest.CaptureFixture[str], *logs: RunLog, holdout: RunLog | None = None) -> str:
+    assert diagnosed(folder, *logs, holdout=holdout) == 2
+    assert not (folder / "out").exists()
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1
+    return lines[0]
+
+
+def test_ten_samples_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], log: RunLog) -> None:
+    assert "run-0" in refused(tmp_path, capsys, part(log, slice(0, 10)))
+
+
+def test_a_hold_out_out_of_the_training_run_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], log: RunLog
+) -> None:
+    assert "hold" in refused(tmp_path, capsys, log, holdout=part(log, slice(500, 1500)))
+
+
+def test_a_log_of_one_constant_gives_no_name(tmp_path: Path, log: RunLog) -> None:
+    still = replace(log, u=np.tile(log.u[:1], (len(log.t_s), 1)), y=np.tile(log.y[:1], (len(log.t_s), 1)), extra={})
+    if diagnosed(tmp_path, still) == 0:
+        diagnosis = load_diagnosis(tmp_path / "out" / "diagnosis.json")
+        assert diagnosis.found == ()
+
+
+def test_noise_instead_of_angles_gives_no_confident_name(tmp_path: Path, log: RunLog) -> None:
+    rng, log = np.random.default_rng(3), part(log, slice(0, 600))
+    step = 1.5339807878856412e-3
+    y = step * np.round(0.3 * rng.standard_normal(log.y.shape) / step)
+    if diagnosed(tmp_path, replace(log, y=y, extra={})) == 0:
+        diagnosis = load_diagnosis(tmp_path / "out" / "diagnosis.json")
+        assert all(entry.probability < 0.9 for entry in diagnosis.effects)
+
+
+def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files(tmp_path: Path, log: RunLog) -> None:
+    assert diagnosed(tmp_path, part(log, slice(0, 1200)), holdout=part(log, slice(1200, 2000))) == 0
+    content = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert content["verdict"] in ("no gap", "cannot tell")
+    rows = (tmp_path / "out" / "prediction-hold.csv").read_text().splitlines()
+    assert rows[0] == (
+        "t_s,psi_rad,psi_nominal_rad,psi_before_rad,psi_after_rad,phi_rad,phi_nominal_rad,phi_before_rad,phi_after_rad"
+    )
+    assert len(rows) == 801
+    assert main(["simulate", "--plant", str(tmp_path / "out" / "plant.toml"), "--out", str(tmp_path / "flown")]) == 0
