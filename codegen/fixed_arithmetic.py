@@ -1,6 +1,6 @@
-"""Words of the fixed-point law as Python integers, and as lanes of int64: exact, so that both give what the C gives."""
+"""Words of the fixed-point law: what the law asks of them, as Python integers, and as lanes of int64, which give what the C gives."""
 
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +8,59 @@ from numpy.typing import NDArray
 from codegen.fixed_formats import MISSING
 
 Lanes = NDArray[np.int64]
+N = TypeVar("N")
 
 _LOW_WORD = 2**32 - 1
 _LOW_HALF = 2**16 - 1
+
+
+class Words(Protocol[N]):
+    """What the law asks of its numbers beyond + - * of words and of powers of two."""
+
+    def word(self, name: str, value: N) -> N:
+        """`value`, which is stored in 32 bits under this name."""
+
+    def floored(self, value: N, places: int) -> N:
+        """floor(value / 2^places)."""
+
+    def clamp(self, value: N, low: N, high: N) -> N:
+        """`value` held within low..high; its differences to both must fit a word."""
+
+    def accepted(self, value: N, last: N) -> N:
+        """`value` unless it is MISSING, else `last`."""
+
+    def held(self, value: N, low: N, high: N) -> N:
+        """`value`, any word, held within low..high, where low <= 0 <= high."""
+
+    def towards(self, value: N, target: N, gain: N) -> N:
+        """value + gain (target - value), gain with 31 places, the step rounded away from zero: it never stops short."""
+
+    def whole(self, total: N, places: int) -> tuple[Any, N]:
+        """Whether floor(total / 2^places) lies within -2^30..2^30 - 1, and then that number, else zero."""
+
+    def fraction(self, value: N, places: int) -> N:
+        """value modulo 2^places."""
+
+    def is_within(self, value: N, bits: int) -> Any:
+        """Condition -2^bits <= value < 2^bits."""
+
+    def both(self, one: Any, other: Any) -> Any:
+        """Condition that both hold."""
+
+    def choose(self, condition: Any, value: N, otherwise: N) -> N:
+        """`value` where the condition holds, else `otherwise`."""
+
+    def wrapped(self, value: N, bits: int) -> N:
+        """`value` modulo 2^(bits + 1), within -2^bits..2^bits - 1."""
+
+    def scaled(self, value: N, x: N) -> N:
+        """value x / 2^32 without the product of the low halves and each half product floored: 0 to 3 below the exact one."""
+
+    def narrow_product(self, value: N, x: N) -> N:
+        """value x, where the sum of the middle half products fits one word."""
+
+    def scaled_short(self, value: N, x: N) -> N:
+        """floor(value x / 2^16) of a value of 16 bits."""
 
 
 class Scalars:
