@@ -224,10 +224,8 @@ _FROM_BOARD = (
 PROTOCOL = Protocol(
     version=1,
     constants=(
-        Constant("HOST_LOSS_SAMPLES", 7, "samples without a setpoint from the host after which it counts as lost"),
-        Constant(
-            "RAMP_SAMPLES", 4, "samples of the ramp to the safe value, which is reached 10 after the last setpoint"
-        ),
+        Constant("HOST_LOSS_SAMPLES", 10, "samples without a setpoint from the host after which it counts as lost"),
+        Constant("RAMP_SAMPLES", 8, "samples from the loss of the host to the safe value"),
         Constant("ENCODER_JUMP_COUNTS", 256, "counts in one sample beyond which an encoder is not believed"),
         Constant("ENCODER_STILL_SAMPLES", 100, "samples at full drive without a count after which it is not believed"),
         Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),

@@ -9,7 +9,7 @@ from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
 
-# Three attempts in time for the board, which counts its host as lost after 70 ms; then with the port's own patience, for
+# Three attempts in time for the board, which counts its host as lost after 100 ms; then with the port's own patience, for
 # a board that is still starting or a computer that is busy.
 QUICK_S = (0.02, 0.04)
 PATIENT_ATTEMPTS = 3

@@ -3,7 +3,7 @@
 #include "protocol.h"
 
 /* RAMP_SAMPLES is a power of two: a Cortex-M0+ has no divide instruction. */
-#define RAMP_SHIFT 2
+#define RAMP_SHIFT 3
 _Static_assert(PROTOCOL_RAMP_SAMPLES == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
 
 void supervisor_start(supervisor_state *self)

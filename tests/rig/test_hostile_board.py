@@ -1,4 +1,4 @@
-"""The real image behind a hostile line: safe within ten samples of the last setpoint, back within ten frames of the cure."""
+"""The real image behind a hostile line: safe within ten samples of the host's loss, back within ten frames of the cure."""
 
 import random
 from collections.abc import Callable
@@ -31,7 +31,7 @@ from tests.rig.campaign import usual_faults
 from tests.rig.hostile_sessions import SOAK, complete_or_one_line, connect, counted_steps, session
 
 TICK_S = 0.01
-SAFE_SAMPLES = 10
+SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_SAMPLES") + 10  # the host is lost, and ten more at most
 FRAMES_BACK = 10
 SEEDS = range(100 if SOAK else 3)
 UP = Direction.TO_BOARD
