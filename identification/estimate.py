@@ -40,7 +40,10 @@ class Contradiction:
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests."""
+    """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
+
+    `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
+    """
 
     belief: Belief
     own: tuple[str, ...]
@@ -49,6 +52,7 @@ class Estimate:
     steps: int
     unseen: tuple[Direction, ...]
     contradictions: tuple[Contradiction, ...]
+    at_bound: tuple[str, ...]
     residuals: tuple[ResidualTest, ...]
     runs: tuple[Run, ...]
 
@@ -92,6 +96,11 @@ def estimate(
         steps=point.steps,
         unseen=unseen(tuple(own), _marginal(known, places, problem.scale), problem.scale[places]),
         contradictions=_contradictions(before, after),
+        at_bound=tuple(
+            name
+            for name, value, lower, upper in zip(problem.names, point.theta, problem.lower, problem.upper, strict=True)
+            if value in (lower, upper)
+        ),
         residuals=tuple(
             test for run, blocks in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, blocks)
         ),

@@ -1,6 +1,6 @@
 """A plant from run logs: short windows first, which find the way from a bad start, then long ones, which hold the parameters tightly."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +10,13 @@ from identification.estimate import Estimate, Range, estimate, problem_of
 from identification.locked import locked_model
 from identification.log_run import log_run
 from identification.ranges import ranges_of
-from identification.run import Run, coefficient_names
+from identification.residuals import ResidualTest, residual_tests
+from identification.run import Run, coefficient_names, offset_names
 from identification.search import search
 from identification.sizes import with_sizes
-from identification.solve import solve
+from identification.solve import Prior, Problem, Watch, solve
 from identification.subsystem import subsystem
+from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import log_columns
@@ -22,8 +24,9 @@ from sim.columns import log_columns
 COARSE_S = 0.5
 COARSE_WINDOWS = 40  # of each log: enough for a start
 COARSE_SETTLED = 10.0
+HOLDOUT_S = 1.0
+WORSE = 1.5
 WINDOW_ROWS = (40, 160, 640)
-Watch = Callable[[int, float], None]
 
 
 def identify_logs(
@@ -35,31 +38,53 @@ def identify_logs(
     limits: Mapping[str, tuple[float, float]] | None = None,
     before: Belief = NOTHING,
     search_seed: int | None = None,
+    offsets: bool = False,
     watch: Watch | None = None,
 ) -> Estimate:
     """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
 
     By default several lengths are tried and the one that leaves the smallest uncertainty is kept: short ones where disturbances grow
     into the prediction or the plant is unstable, long ones where the model holds. `search_seed` asks for a search over the whole range
-    first. Raises BadInput for an unknown coefficient or a start outside its limits.
+    first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated. Raises BadInput for an unknown
+    coefficient or a start outside its limits.
     """
     every = tuple(dict.fromkeys((*before.names, *names)))
     ranges = ranges_of(bound, every, limits)
     coarse = _short_windows(bound, logs)
     known = coefficient_names(bound.model)
-    absent = [name for name in names if not bound.p[known.index(name)] and not bound.sd[known.index(name)]]
+    absent = [
+        name for name in names if name in known and not bound.p[known.index(name)] and not bound.sd[known.index(name)]
+    ]
+    if offsets:
+        ranges |= _offset_ranges(bound, logs)
+        names = (*names, *offset_names(bound.model))
     ranges = with_sizes(coarse, ranges, [name for name in absent if name not in (limits or {})])
     start = _coarse(coarse, names, ranges, before, search_seed, watch)
-    closer = {name: replace(ranges[name], start=value) for name, value in start.items()}
     period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
-    lengths = [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]
-    found = [
-        estimate(
-            [run_of(bound, log, name, length) for name, log in logs.items()], names, ranges | closer, before, watch
-        )
-        for length in lengths
-    ]
-    return min(found, key=_volume)
+    found: list[Estimate] = []
+    for length in [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]:
+        closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
+        runs = [run_of(bound, log, name, length) for name, log in logs.items()]
+        found.append(estimate(runs, names, closer, before, watch))
+        start = {name: found[-1].belief.value(name) for name in names}
+    return _best(found)
+
+
+def _best(found: Sequence[Estimate]) -> Estimate:
+    """Of fits over shorter and longer windows the one that leaves the least volume open.
+
+    Over long windows a fit may have caught a wrong phase: one that predicts the shortest windows clearly worse than the best does not
+    count.
+    """
+    costs = [_cost(found[0].runs, entry) for entry in found]
+    return min((entry for entry, cost in zip(found, costs, strict=True) if cost <= WORSE**2 * min(costs)), key=_volume)
+
+
+def _cost(runs: tuple[Run, ...], entry: Estimate) -> float:
+    """Criterion (10) over these runs with the parameters held and the windows' starts fitted."""
+    names, theta = entry.belief.names, entry.belief.mean
+    free = Prior(theta, np.zeros((theta.size, theta.size)))
+    return solve(Problem(names, theta, np.abs(theta) + 1e-12, theta, theta, runs, free)).cost
 
 
 def _volume(found: Estimate) -> float:
@@ -81,6 +106,42 @@ def run_of(bound: BoundPlant, log: RunLog, name: str, window_s: float, every: in
     part = subsystem(bound, locked_model(bound.model, held))
     kept = [place for place, output in enumerate(bound.model.outputs) if output in part.model.outputs]
     return log_run(part, replace(log, columns=log_columns(part.model), y=log.y[:, kept]), name, window_s, every)
+
+
+def _offset_ranges(bound: BoundPlant, logs: Mapping[str, RunLog]) -> dict[str, Range]:
+    """An input's offset lies within so much as the input itself moves."""
+    spread = np.maximum(np.max([np.std(log.u, axis=0) for log in logs.values()], axis=0), 1e-9)
+    return {
+        name: Range(0.0, -5.0 * float(size), 5.0 * float(size), float(size))
+        for name, size in zip(offset_names(bound.model), spread, strict=True)
+    }
+
+
+def trimmed(log: RunLog, begin_s: float, end_s: float) -> RunLog:
+    """The rows of a log from `begin_s` to `end_s`; raises BadInput where fewer than two are left."""
+    kept = (log.t_s >= begin_s) & (log.t_s <= end_s)
+    if kept.sum() < 2:
+        whole = f"{log.t_s[0]:g} s to {log.t_s[-1]:g} s"
+        raise BadInput(
+            "log", "trimming", f"no rows from {begin_s:g} s to {end_s:g} s", f"a part of {whole}", "choose other times"
+        )
+    extra = {name: values[kept] for name, values in log.extra.items()}
+    seq = None if log.seq is None else log.seq[kept]
+    return replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept], extra=extra, seq=seq)
+
+
+def prediction_tests(
+    bound: BoundPlant, logs: Mapping[str, RunLog], offsets: Mapping[str, float] | None = None
+) -> tuple[ResidualTest, ...]:
+    """How the plant as it is predicts logs that were not used: free-running over windows of a second, whose starts alone are fitted.
+
+    `offsets` are constants added to its inputs, by "offset.INPUT".
+    """
+    added = np.array([(offsets or {}).get(name, 0.0) for name in offset_names(bound.model)])
+    shifted = {name: replace(log, u=log.u + added) for name, log in logs.items()}
+    runs = tuple(run_of(bound, log, name, HOLDOUT_S) for name, log in shifted.items())
+    point = solve(problem_of(runs, (), {}, NOTHING))
+    return tuple(test for run, own in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, own))
 
 
 def _short_windows(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Run, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.motion import Motion, move
-from identification.run import Run, coefficient_names, known_names, parameters_of
+from identification.run import Run, coefficient_names, inputs_of, known_names, offset_names, parameters_of
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,8 @@ class Block:
 def blocks(run: Run, names: Sequence[str], theta: Array) -> tuple[Block, ...]:
     """All windows of a run predicted with the parameters `names` at theta (parameters,)."""
     own = known_names(run, names)
-    y, slopes = _readings(run, parameters_of(run, names, theta), tuple(name for _, name in own))
+    p, u = parameters_of(run, names, theta), inputs_of(run, names, theta)
+    y, slopes = _readings(run, p, u, tuple(name for _, name in own))
     residual, slopes = (run.y - y) / run.sd, slopes / run.sd[:, None]
     by_parameter = np.zeros((run.y.size, len(names)))
     by_parameter[:, [place for place, _ in own]] = slopes[:, : len(own)]
@@ -41,24 +42,24 @@ def blocks(run: Run, names: Sequence[str], theta: Array) -> tuple[Block, ...]:
 
 def predicted(run: Run, names: Sequence[str], theta: Array) -> Array:
     """The predicted readings (m,) alone, in their units."""
-    return _readings(run, parameters_of(run, names, theta), ())[0]
+    return _readings(run, parameters_of(run, names, theta), inputs_of(run, names, theta), ())[0]
 
 
-def _readings(run: Run, p: Array, columns: tuple[str, ...]) -> tuple[Array, Array]:
+def _readings(run: Run, p: Array, u: Array, columns: tuple[str, ...]) -> tuple[Array, Array]:
     """Readings (m,) and their slopes (m, columns + free)."""
     starts = tuple(f"x0.{state}" for state in run.free)
     if run.carried is None:
-        motion = move(run.bound.model, run.t_s, run.u, p, run.windows, run.x0, columns + starts)
+        motion = move(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts)
     else:
-        motion = _with_carried(run, p, columns, starts)
-    y, slopes = (motion.y, motion.dy) if run.observed is None else _observed(run, p, motion)
+        motion = _with_carried(run, p, u, columns, starts)
+    y, slopes = (motion.y, motion.dy) if run.observed is None else _observed(run, p, u, motion)
     flat_y, flat_slopes = y.ravel(), slopes.reshape(y.size, -1)
     if isinstance(run.select, np.ndarray):
         return flat_y[run.select], flat_slopes[run.select]
     return run.select @ flat_y, run.select @ flat_slopes
 
 
-def _with_carried(run: Run, p: Array, columns: tuple[str, ...], starts: tuple[str, ...]) -> Motion:
+def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts: tuple[str, ...]) -> Motion:
     """The windows with their carried states put in: these follow from the whole run before, and so do their slopes."""
     assert run.carried is not None
     model, part = run.bound.model, run.carried.bound.model
@@ -67,12 +68,12 @@ def _with_carried(run: Run, p: Array, columns: tuple[str, ...], starts: tuple[st
     inputs = [model.inputs.index(variable) for variable in part.inputs]
     values = np.ascontiguousarray(p[[known.index(name) for name in own]])
     whole = (slice(0, run.t_s.size),)
-    wanted = tuple(name for name in columns if name in own)
-    carried = move(part, run.t_s, run.u[:, inputs], values, whole, run.carried.x0[None, :], wanted)
+    wanted = tuple(name for name in columns if name in own or name in offset_names(part))
+    carried = move(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted)
     x0 = run.x0.copy()
     x0[:, [model.states.index(state) for state in part.states]] = carried.x[run.begins]
     through = tuple(f"x0.{state}" for state in part.states)
-    motion = move(model, run.t_s, run.u, p, run.windows, x0, columns + starts + through)
+    motion = move(model, run.t_s, u, p, run.windows, x0, columns + starts + through)
     kept = len(columns) + len(starts)
     slopes = motion.dy[:, :, :kept].copy()
     places = [columns.index(name) for name in wanted]
@@ -81,13 +82,13 @@ def _with_carried(run: Run, p: Array, columns: tuple[str, ...], starts: tuple[st
     return Motion(columns + starts, motion.y, slopes, motion.x)
 
 
-def _observed(run: Run, p: Array, motion: Motion) -> tuple[Array, Array]:
+def _observed(run: Run, p: Array, u: Array, motion: Motion) -> tuple[Array, Array]:
     """What the sensors show, with slopes through the state and directly by the parameters; the model's outputs are all its states."""
     h, names = run.observed, coefficient_names(run.bound.model)
     assert h is not None
-    slopes = h.by_state(motion.x, run.u, p) @ motion.dy
-    direct = h.by_parameter(motion.x, run.u, p)
+    slopes = h.by_state(motion.x, u, p) @ motion.dy
+    direct = h.by_parameter(motion.x, u, p)
     for column, name in enumerate(motion.columns):
         if name in names:
             slopes[:, :, column] += direct[:, :, names.index(name)]
-    return h.value(motion.x, run.u, p), slopes
+    return h.value(motion.x, u, p), slopes

@@ -31,10 +31,12 @@ def ranges_of(
 
 def _range(bound: BoundPlant, name: str, start: float, limits: tuple[float, float] | None) -> Range:
     sign = next(spec.sign for spec in bound.model.parameters if name in {str(symbol) for symbol in spec.symbols})
-    size = abs(start) if start else _size_of_absent(bound, name)
+    sd = float(bound.sd[coefficient_names(bound.model).index(name)])
+    own = abs(start) if start else _size_of_absent(bound, name)
+    size = max(own, sd)  # a guess with a wide sd may be far off
     if limits is None:
-        lower, upper = (size / FACTOR, size * FACTOR) if sign == "positive" else (-size * FACTOR, size * FACTOR)
-        lower = LEAST * size if sign == "non-negative" else lower
+        lower, upper = (own / FACTOR, size * FACTOR) if sign == "positive" else (-size * FACTOR, size * FACTOR)
+        lower = LEAST * own if sign == "non-negative" else lower
         return Range(max(start, lower), lower, upper, size)
     lower, upper = limits
     if not lower <= start <= upper:

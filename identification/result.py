@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.belief import Belief
 from identification.estimate import Estimate, interval_factor
+from identification.residuals import ResidualTest
 from identification.uncertainty import BLIND, Direction
 from records.correlation import Correlation
 from records.plant import Parameter, Plant, coefficient_names
@@ -32,13 +33,16 @@ class Estimated:
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides."""
+    """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
+    `holdout` how the identified plant predicts logs that were not used.
+    """
 
     plant: Plant
     estimates: tuple[Estimated, ...]
     belief: Belief
     stages: tuple[tuple[str, Estimate], ...]
     aids: tuple[Estimated, ...] = ()
+    holdout: tuple[ResidualTest, ...] = ()
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -68,7 +72,11 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for test in stage.residuals
         if not test.white
     ]
-    return (*blind, *pulled, *coloured)
+    bound = [
+        f"{title}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
+        for name in stage.at_bound
+    ]
+    return (*blind, *bound, *pulled, *coloured)
 
 
 def _direction(entry: Direction) -> str:
@@ -149,6 +157,7 @@ def facts(result: Identification) -> dict[str, Any]:
         "aids": [asdict(entry) for entry in result.aids],
         "correlation": {"names": list(result.belief.names), "rows": result.belief.correlation.round(9).tolist()},
         "stages": [_stage_facts(title, stage) for title, stage in result.stages],
+        "holdout": [asdict(test) for test in result.holdout],
         "notes": list(result.notes),
     }
 
@@ -163,5 +172,6 @@ def _stage_facts(title: str, stage: Estimate) -> dict[str, Any]:
         "not_identifiable": [
             {"weights": dict(entry.weights), "relative_sd": entry.relative_sd} for entry in stage.unseen
         ],
+        "at_bound": list(stage.at_bound),
         "contradictions": [asdict(entry) for entry in stage.contradictions],
     }

@@ -94,9 +94,14 @@ def _places(model: Model) -> Mapping[str, int]:
     return {name: place for place, name in enumerate(coefficient_names(model))}
 
 
+def offset_names(model: Model) -> tuple[str, ...]:
+    """Names of constants added to the inputs, "offset.u_V": the trim of a real rig, estimated like a parameter where asked for."""
+    return tuple(f"offset.{variable}" for variable in model.inputs)
+
+
 def known_names(run: Run, names: Sequence[str]) -> tuple[tuple[int, str], ...]:
     """Of the parameters `names` those that the run's model has: place in `names` and the model's own name."""
-    known = _places(run.bound.model)
+    known = {*_places(run.bound.model), *offset_names(run.bound.model)}
     own = [(place, run.alias.get(name, name)) for place, name in enumerate(names)]
     return tuple((place, name) for place, name in own if name in known)
 
@@ -105,8 +110,19 @@ def parameters_of(run: Run, names: Sequence[str], theta: Array) -> Array:
     """The model's parameter vector with the entries `names` set to theta."""
     known, p = _places(run.bound.model), run.bound.p.copy()
     for place, name in known_names(run, names):
-        p[known[name]] = theta[place]
+        if name in known:
+            p[known[name]] = theta[place]
     return p
+
+
+def inputs_of(run: Run, names: Sequence[str], theta: Array) -> Array:
+    """The run's inputs (n, inputs) with their offsets among `names` added."""
+    offsets = offset_names(run.bound.model)
+    added = np.zeros(len(offsets))
+    for place, name in enumerate(names):
+        if name in offsets:
+            added[offsets.index(name)] = theta[place]
+    return run.u + added if np.any(added) else run.u
 
 
 def with_starts(run: Run, x0: Array) -> Run:

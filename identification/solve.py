@@ -19,6 +19,7 @@ from identification.run import Run, with_starts
 Array = NDArray[np.float64]
 MAX_STEPS = 60
 SETTLED = 1e-3  # a step below this many standard deviations, squared and summed, changes nothing
+ROUNDING = 1e-12
 DAMPING_TOO_HIGH = 1e12
 Watch = Callable[[int, float], None]
 
@@ -70,8 +71,9 @@ class Point:
 
     @property
     def H(self) -> Array:
-        """Information of the data on theta once the starts are eliminated, (parameters, parameters)."""
-        return _reduced(self, 0.0)[0]
+        """Information of the data on theta once the starts are eliminated, (parameters, parameters); positive in spite of rounding."""
+        H = _reduced(self, 0.0)[0]
+        return np.asarray((H + H.T) / 2.0 + ROUNDING * np.diag(np.diag(self.JtJ)))
 
 
 def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED) -> Point:

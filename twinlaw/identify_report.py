@@ -9,7 +9,7 @@ from identification.result import Identification
 from identification.validation import Comparison
 from records.experiment import Experiment
 from sim.bind import BoundPlant
-from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, fit_rows
+from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, fit_rows, test_rows
 from twinlaw.page import Page, Section, Table
 from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
 
@@ -59,7 +59,8 @@ def _fits(result: Identification) -> Section:
         "rms of what is left, beside what the sensor's rounding alone leaves; fit = 1 - |y - prediction| / |y - mean|. "
         "Readings that are more correlated than their rounding explains count for fewer samples in the intervals."
     )
-    return Section("Fits", (sentence,), (Table(fit_rows(result.stages), FIT_HEADING),))
+    rows = [*fit_rows(result.stages), *test_rows("held out", result.holdout)]
+    return Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))
 
 
 def _rotor(bound: BoundPlant, experiment: Experiment, result: Identification) -> Section:

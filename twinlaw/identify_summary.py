@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 
 from identification.estimate import Estimate
+from identification.residuals import ResidualTest
 from identification.result import Estimated
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
-FIT_HEADING = ("data", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
+FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
 
 
 def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
@@ -27,9 +28,15 @@ def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
 
 def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:
     """One row for each channel of each stage."""
+    return [row for title, stage in stages for row in test_rows(title, stage.residuals)]
+
+
+def test_rows(title: str, tests: Sequence[ResidualTest]) -> list[tuple[str, ...]]:
+    """One row for each channel of each run."""
     return [
         (
             title,
+            test.run,
             test.channel,
             f"{test.samples}",
             f"{test.rms:.3g}",
@@ -37,6 +44,5 @@ def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:
             f"{100.0 * test.fit:.2f} %",
             "" if test.white else f"p = {test.whiteness_p:.1g}",
         )
-        for title, stage in stages
-        for test in stage.residuals
+        for test in tests
     ]

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from identification.belief import NOTHING, Belief, stated
 from identification.estimate import Estimate
-from identification.logs import identify_logs
+from identification.logs import identify_logs, prediction_tests
 from identification.result import Identification, facts, identification
 from identification.run import coefficient_names
 from identification.staged import identify_stage, in_order, title
@@ -19,7 +19,7 @@ from records.files import write_atomic
 from records.log import RunLog, load_log
 from records.plant import plant_text
 from records.reading import read_toml
-from sim.bind import BoundPlant
+from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from twinlaw import console
 
@@ -28,10 +28,11 @@ Limits = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Experiments in the paper's order, and logs by the name of their file."""
+    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict."""
 
     experiments: tuple[Experiment, ...]
     logs: Mapping[str, RunLog]
+    holdout: Mapping[str, RunLog]
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,7 @@ class Wishes:
     """What the user asks of the estimation: coefficients (for logs), limits, seed of a search, length of the logs' windows.
 
     `keep_knowledge` takes the plant file's values, sd and correlation for data of their own; without it they are only a start.
+    `offsets` are estimated for the inputs of logs.
     """
 
     names: tuple[str, ...]
@@ -46,9 +48,10 @@ class Wishes:
     search_seed: int | None
     window_s: float | None
     keep_knowledge: bool = False
+    offsets: bool = False
 
 
-def read_inputs(paths: Sequence[Path], bound: BoundPlant) -> Inputs:
+def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlant) -> Inputs:
     """Read experiments and run logs, told apart by the schema of their TOML; a folder stands for the experiments in it."""
     experiments, logs = [], {}
     for path in _files(paths):
@@ -56,12 +59,16 @@ def read_inputs(paths: Sequence[Path], bound: BoundPlant) -> Inputs:
         if read_toml(sidecar, "experiment or sidecar of a run log").get("schema") == EXPERIMENT_SCHEMA:
             experiments.append(load_experiment(sidecar))
         else:
-            logs[path.stem] = load_log(path.with_suffix(".csv"), log_columns(bound.model))
+            logs[path.stem] = _log(path, bound)
     kinds = [entry.kind for entry in experiments]
     for kind in kinds:
         if kinds.count(kind) > 1:
             raise BadInput("experiments", kind, "given twice", "each once", "leave one of them out")
-    return Inputs(in_order(experiments), logs)
+    return Inputs(in_order(experiments), logs, {path.stem: _log(path, bound) for path in holdout})
+
+
+def _log(path: Path, bound: BoundPlant) -> RunLog:
+    return load_log(path.with_suffix(".csv"), log_columns(bound.model))
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -130,17 +137,39 @@ def identify(
         if stage.aids.names:
             aids.append((stage.aids, stage.result.dof))
         save(identification(bound.plant, stages, belief, aids))
+    shifts: dict[str, float] = {}
     if inputs.logs:
-        names = tuple(name for name in wishes.names if name not in belief.names) if belief.names else wishes.names
-        with console.stage(f"{len(inputs.logs)} run logs, {len(names) + len(belief.names)} parameters"):
-            found = identify_logs(
-                bound, inputs.logs, names or belief.names, window_s=wishes.window_s, limits=wishes.limits,
-                before=belief, search_seed=wishes.search_seed,
-            )  # fmt: skip
-        belief = found.belief
+        found = _from_logs(bound, inputs.logs, wishes, belief)
+        trims = tuple(name for name in found.belief.names if name.startswith("offset."))
+        shifts = {name: found.belief.value(name) for name in trims}
+        belief = found.belief.part(tuple(name for name in found.belief.names if name not in trims))
         stages.append((", ".join(inputs.logs), found))
+        if trims:
+            aids.append((found.belief.part(trims), found.dof))
         save(identification(bound.plant, stages, belief, aids))
-    return identification(bound.plant, stages, belief, aids)
+    result = identification(bound.plant, stages, belief, aids)
+    if not inputs.holdout:
+        return result
+    with console.stage("predicting the logs held out"):
+        result = replace(result, holdout=prediction_tests(bind(result.plant), inputs.holdout, shifts))
+    save(result)
+    return result
+
+
+def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, belief: Belief) -> Estimate:
+    """All logs at once, with what is known already."""
+    names = tuple(name for name in wishes.names if name not in belief.names) or belief.names
+    with console.stage(f"{len(logs)} run logs, {len(names) + len(belief.names)} parameters"):
+        return identify_logs(
+            bound,
+            logs,
+            names,
+            window_s=wishes.window_s,
+            limits=wishes.limits,
+            before=belief,
+            search_seed=wishes.search_seed,
+            offsets=wishes.offsets,
+        )
 
 
 def save_result(folder: Path, result: Identification) -> None:

@@ -9,8 +9,10 @@ With --truth the controller designed from the result flies that plant, and the r
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
+from identification.logs import trimmed
 from identification.result import facts
 from identification.validation import compare_flights
 from records.errors import BadInput
@@ -18,14 +20,14 @@ from records.files import write_atomic
 from sim.bind import bind
 from twinlaw import console, options
 from twinlaw.identify_report import identify_page
-from twinlaw.identify_summary import HEADING, estimate_rows
+from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, test_rows
 from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits, save_result
 from twinlaw.page import page_text
 from twinlaw.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --out, --free, --bounds, --search, --window, --truth, --prior, --json, FILES."""
+    """--plant, --out, --free, --bounds, --search, --window, --trim, --truth, --offsets, --prior, --holdout, --json, FILES."""
     options.plant(parser)
     options.out(parser)
     parser.add_argument(
@@ -44,10 +46,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="length of the windows of logs; default: the one that tells most",
     )
     parser.add_argument(
+        "--trim", nargs=2, type=float, metavar=("BEGIN", "END"), help="use only these seconds of the logs to fit"
+    )
+    parser.add_argument(
         "--truth", type=Path, metavar="PLANT.toml", help="fly this plant with the controller designed from the result"
     )
     parser.add_argument(
+        "--offsets", action="store_true", help="estimate a constant added to each input of logs, the rig's trim"
+    )
+    parser.add_argument(
         "--prior", action="store_true", help="what the plant file knows (values, sd, correlation) counts as data"
+    )
+    parser.add_argument(
+        "--holdout",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="LOG.csv",
+        help="predict it, do not fit it; may be repeated",
     )
     options.as_json(parser)
     parser.add_argument("files", nargs="+", type=Path, metavar="FILES", help="experiments, folders of them, run logs")
@@ -60,8 +76,10 @@ def run(chosen: argparse.Namespace) -> int:
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
     names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds)
-    wishes = Wishes(names, limits, chosen.search, chosen.window, chosen.prior)
-    inputs = read_inputs(chosen.files, bound)
+    wishes = Wishes(names, limits, chosen.search, chosen.window, chosen.prior, chosen.offsets)
+    inputs = read_inputs(chosen.files, chosen.holdout, bound)
+    if chosen.trim is not None:
+        inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
     result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
     comparison = None
     if truth is not None:
@@ -72,6 +90,8 @@ def run(chosen: argparse.Namespace) -> int:
         print(json.dumps(facts(result)))
         return 0
     print(console.table(estimate_rows(result.estimates), HEADING))
+    if result.holdout:
+        print("\n" + console.table(test_rows("held out", result.holdout), FIT_HEADING))
     for note in result.notes:
         print(f"- {note}")
     print(f"\n{chosen.out / 'plant.toml'}")
