@@ -25,7 +25,7 @@ COARSE_S = 0.5
 COARSE_WINDOWS = 40  # of each log: enough for a start
 COARSE_SETTLED = 10.0
 HOLDOUT_S = 1.0
-WORSE = 1.5
+WORSE, MOST_LEFT = 1.5, 0.3
 WINDOW_ROWS = (40, 160, 640)
 
 
@@ -73,11 +73,16 @@ def identify_logs(
 def _best(found: Sequence[Estimate]) -> Estimate:
     """Of fits over shorter and longer windows the one that leaves the least volume open.
 
-    Over long windows a fit may have caught a wrong phase: one that predicts the shortest windows clearly worse than the best does not
-    count.
+    Over long windows a fit may have caught a wrong phase, or nothing at all: one that predicts the shortest windows clearly worse than
+    the best does not count, nor one that leaves more than `MOST_LEFT` of what its own readings do.
     """
     costs = [_cost(found[0].runs, entry) for entry in found]
-    return min((entry for entry, cost in zip(found, costs, strict=True) if cost <= WORSE**2 * min(costs)), key=_volume)
+    sound = [
+        entry
+        for entry, cost in zip(found, costs, strict=True)
+        if cost <= WORSE**2 * min(costs) and all(test.fit > 1.0 - MOST_LEFT for test in entry.residuals)
+    ]
+    return min(sound or found[:1], key=_volume)
 
 
 def _cost(runs: tuple[Run, ...], entry: Estimate) -> float:
