@@ -1,8 +1,8 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import behaviour, cost, misra, rounding, totality
+from verification.proofs import behaviour, cost, coverage, misra, rounding, totality
 from verification.proofs.subject import Proof
-from verification.proofs.tools import BITWUZLA, CPPCHECK, FRAMA_C, GAPPA
+from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA
 
 _FLOAT32 = ("float32",)
 
@@ -26,4 +26,5 @@ PROOFS: tuple[Proof, ...] = (
     Proof(
         misra.NAME, "rules of MISRA C in generated C and control path, deviations justified", (CPPCHECK,), misra.prove
     ),
+    Proof(coverage.NAME, "every decision of the C shown to matter both ways", (CLANG,), coverage.prove),
 )
