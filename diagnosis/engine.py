@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case, make_case
-from diagnosis.detect import Detection, detect, gains
+from diagnosis.detect import MEAN_GAIN, Detection, detect, gains
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
@@ -25,7 +25,7 @@ from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
 from diagnosis.standing import with_usual
 from diagnosis.unknown import Suspect, suspects
 from diagnosis.unrest import FIRST_STEP, with_unrest
-from diagnosis.weigh import Weighed, alike, weigh
+from diagnosis.weigh import Weighed, alike, confirmed, weigh
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
 from records.errors import BadInput
 from records.log import RunLog
@@ -35,6 +35,8 @@ ALARM = 0.01
 FIRST_UNREST = -1.5
 ROUNDS = 4
 SETTLED = 0.05
+LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
+NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
 HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
@@ -70,6 +72,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     beyond = retune(case, nominal)
     weighed = weigh(found.tried, stated, _left(left), None if beyond is None else beyond.score)
     blamed = suspects(detection)
+    weighed = _checked(checked, material, weighed, stated, _left(left))
     chosen, predicted = _added(checked, material, weighed, stated, beyond)
     return Result(
         diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks, beyond),
@@ -109,7 +112,19 @@ def nominal_fit(case: Case) -> Fit:
 def _left(detection: Detection) -> float:
     """Nats that the best class of forms still gains."""
     ranked = suspects(detection)
-    return max(ranked[0].gain if ranked else 0.0, float(np.max(gains(detection.scores), initial=0.0)))
+    usual = np.maximum(1.0, detection.null_gain / MEAN_GAIN)
+    return max(ranked[0].gain if ranked else 0.0, float(np.max(gains(detection.scores) / usual, initial=0.0)))
+
+
+def _checked(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, left: float) -> Weighed:
+    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found."""
+    if checked is None or not weighed.tried or weighed.unknown < weighed.probabilities[0]:
+        return weighed
+    first = weighed.tried[0]
+    if left > LITTLE * (first.evidence - retuned.evidence):
+        return weighed
+    gone = shrinkage(checked, _predicted(checked, material, retuned, first)).fraction
+    return weighed if gone is None or gone < NEARLY_ALL else confirmed(weighed, 1.0 - gone)
 
 
 def _added(

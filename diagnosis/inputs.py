@@ -39,7 +39,8 @@ def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
         if name == "loop.dropped_frames":
             continue
         place, kind = name.split(".")
-        variable = kit.bound.model.places.inputs[place].variable
+        places = kit.bound.model.places
+        variable = (places.inputs.get(place) or places.rotors[place]).variable
         column = kit.bound.model.inputs.index(variable)
         u = tape.u.copy()
         if kind == "slew_limit":
@@ -52,7 +53,8 @@ def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
 
 def _quick(name: str) -> bool:
     """Which frames were lost is not known: what arrives on average is their geometric mean."""
-    return name.endswith(("input.lag", "input.slew_limit")) or name == "loop.dropped_frames"
+    late = name.endswith((".lag", ".slew_limit")) and not name.endswith("_sensor.lag")
+    return late or name == "loop.dropped_frames"
 
 
 def _behind(tape: Tape, column: int, stage: str, value: float) -> Array:

@@ -1,7 +1,7 @@
 """From evidence to probabilities that mean something: tempered by how far the forms of the library may be from the truth."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 ALIKE, OFF_FORM, FURTHER, UNKNOWN = 4.0, 0.006, 1.5, 3.0
 UNKNOWN_COST = 12.0
 RETUNE_COST = 10.0
+PLAIN = 0.1  # by which a constant force goes before what fits as well
+SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
 KEPT = 12
 
 
@@ -38,6 +40,9 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     best = max(entry.evidence for entry in named)
     scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
+    scores += [PLAIN * sum(name.endswith(".offset_force") for name in entry.effects) for entry in named]
+    strain = np.array([_strain(entry) for entry in named])
+    scores -= strain - strain.min()
     unknown = (left - UNKNOWN_COST) / scale - UNKNOWN
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
@@ -46,6 +51,26 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     chosen = tuple(named[index] for index in order)
     return Weighed(
         chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
+    )
+
+
+def _strain(entry: Tried) -> float:
+    """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
+    beyond = np.maximum(np.abs(entry.fit.supposed.theta) - SPREAD, 0.0)
+    return 0.5 * float(beyond @ beyond)
+
+
+def confirmed(weighed: Weighed, left: float) -> Weighed:
+    """The same where an effect left at most this share of the gap in logs that were not fitted: no more than that is unknown."""
+    known = sum(weighed.probabilities) + weighed.retune
+    if weighed.unknown <= left or known <= 0.0:
+        return weighed
+    factor = (1.0 - left) / known
+    return replace(
+        weighed,
+        probabilities=tuple(factor * value for value in weighed.probabilities),
+        retune=factor * weighed.retune,
+        unknown=left,
     )
 
 

@@ -194,6 +194,20 @@ static void move_slopes(filter_state *at, const jacobians *j, double h_s)
             at->S[i][k] += h_s * (first[i][k] + 0.5 * h_s * second[i][k]);
 }
 
+/* Half of a step's unrest comes before its motion, so that it reaches the position within the step: else a very sure reading of a
+ * position leaves the speed no freedom at all. What an axis at rest loses by its emptied row all comes after. */
+static void stir(filter_state *at, double *noise)
+{
+    bool rests[N] = {false};
+    for (int a = 0; a < N_AXES; a++)
+        rests[AXIS_VELOCITY[a]] = at->body.move[a] == 0.0;
+    for (int i = 0; i < N; i++)
+        if (!rests[i]) {
+            noise[i] *= 0.5;
+            at->P[i][i] += noise[i];
+        }
+}
+
 /* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. */
 static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
 {
@@ -257,6 +271,7 @@ static void advance(filter_state *at, int64_t step)
             if (r->locked[a])
                 noise[v] = 0.0;
         }
+    stir(at, noise);
     spread(at, F, noise);
     if (r->F)
         for (int i = 0; i < N; i++)
