@@ -27,10 +27,16 @@ def log_run(
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give
     no reading. States that only the inputs drive run on from those of
-    `at_first` (states,) at the first row, by default from 0. Raises BadInput for a log with less than two rows.
+    `at_first` (states,) at the first row, by default from 0. Raises BadInput for a log with less than two rows, or a plant with effects on
+    the way of its inputs or outputs.
     """
     if log.t_s.size < 2:
         raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
+    if bound.input_path or bound.output_path:
+        raise BadInput(
+            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
+            "identify from the plant without them",
+        )  # fmt: skip
     model = bound.model
     begins, stops = _windows(log.t_s, window_s, every)
     part = driven_model(model)

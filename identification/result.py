@@ -9,12 +9,13 @@ import numpy as np
 from identification.belief import Belief
 from identification.estimate import Estimate, interval_factor
 from identification.residuals import ResidualTest
-from identification.uncertainty import BLIND, Direction
+from identification.uncertainty import Direction
 from records.correlation import Correlation
 from records.plant import Parameter, Plant, coefficient_names
 
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
+TOLD = 0.3  # a parameter known to less than so much of its size is not identified: what holds it is that it was given a size at all
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def identification(
     for name in belief.names:
         scales[name] = max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1])
     estimates = tuple(
-        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), BLIND * scales[name])
+        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), TOLD * scales[name])
         for name in belief.names
     )
     found = tuple(

@@ -9,7 +9,6 @@ from identification.belief import NOTHING, Belief, stated
 from identification.estimate import Estimate
 from identification.logs import identify_logs, prediction_tests
 from identification.result import Identification, facts, identification
-from identification.run import coefficient_names
 from identification.staged import identify_stage, in_order, title
 from records import checks
 from records.errors import BadInput
@@ -17,7 +16,7 @@ from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
 from records.experiment import Experiment, load_experiment
 from records.files import write_atomic
 from records.log import RunLog, load_log
-from records.plant import plant_text
+from records.plant import coefficient_names, plant_text
 from records.reading import read_toml
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
@@ -106,9 +105,10 @@ def read_limits(path: Path | None) -> Limits:
 
 def free_names(bound: BoundPlant, wanted: str | None) -> tuple[str, ...]:
     """Coefficients to estimate from logs: those named (a parameter stands for all its coefficients), or all with an sd above 0."""
-    known = coefficient_names(bound.model)
+    known = coefficient_names(bound.plant.parameters)
     if wanted is None:
-        return tuple(name for name, sd in zip(known, bound.sd, strict=True) if sd > 0.0)
+        sds = dict(zip(map(str, bound.model.parameter_symbols), bound.sd.tolist(), strict=True))
+        return tuple(name for name in known if sds[name] > 0.0)
     found: list[str] = []
     for name in filter(None, (part.strip() for part in wanted.split(","))):
         own = [
