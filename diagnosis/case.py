@@ -15,6 +15,7 @@ from sim.simulate import simulate
 Array = NDArray[np.float64]
 START_S = 0.1
 RUN_UP_S = 4.0
+START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
 START_SPEED = 0.3  # how far from rest a speed may be at the start, per s, in units of the output
 START_SHARE = 0.3  # how far from its rest under the first inputs another state may be, as a share
 
@@ -82,7 +83,7 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
         if str(expression) not in kit.states or not good.any():
             continue
         index = kit.states.index(str(expression))
-        x0[index], p0[index] = y[good][0], 4.0 * tape.r[0, place]
+        x0[index], p0[index] = y[good][0], START_ANGLE**2
         slope = np.polyfit(tape.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
         positions[str(expression)] = (name, float(slope))
     speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}

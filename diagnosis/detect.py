@@ -17,7 +17,7 @@ from diagnosis.screen import Look
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
-ALLOWED = 4.0  # nats that friction and stops a little other than the model's may gain
+ALLOWED = 10.0  # nats that friction and stops a little other than the model's may gain
 LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must leave for it to count
 
 

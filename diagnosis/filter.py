@@ -82,6 +82,7 @@ class Filter:
             "y": _double(tape.y),
             "r": _double(tape.r),
             "row": np.ascontiguousarray(tape.row, dtype=np.int64),
+            "place": np.ascontiguousarray(tape.place, dtype=np.int64),
             "p": _double(p),
             "x0": _double(x0),
             "p0": _double(noise.p0),
@@ -132,7 +133,7 @@ class Filter:
             "value": _double(values),
             "target": np.array(targets, dtype=np.int32),
             "slot": np.array(slots, dtype=np.int32),
-            "row": np.ascontiguousarray(tape.row, dtype=np.int64),
+            "place": np.ascontiguousarray(tape.place, dtype=np.int64),
             "dw": dw,
         }
         request = self.ffi.new("response_request *")

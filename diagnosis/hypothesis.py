@@ -62,7 +62,7 @@ def tape_under(case: Case, variant: Variant, flight: Flight, effects: Mapping[st
     return _sent(case.kit, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=16)
 def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]) -> Tape:
     given = {name: dict(values) for name, values in effects}
     return sensed(kit, commanded(kit, flight.tape, given), given)

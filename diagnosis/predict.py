@@ -27,7 +27,8 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
     tape = tape_under(case, variant, flight, supposed.effects)
     given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed, rub_s)
     chosen = variant.filter
-    whole = replace(tape, row=np.arange(len(tape.t_s)), rows=len(tape.t_s))
+    places = np.tile(np.arange(len(tape.t_s))[:, None], (1, tape.y.shape[1]))
+    whole = replace(tape, row=np.arange(len(tape.t_s)), place=places, rows=len(tape.t_s))
     run = chosen.run(whole, given, start_under(variant, flight)[0], noise, case.slots, locked=flight.locked)
     outputs = len(kit.bound.model.outputs)
     found = np.full((len(flight.log.t_s), outputs), np.nan)
@@ -81,7 +82,8 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     y = np.full((count, tape.y.shape[1]), np.nan)
     y[:, :outputs] = 0.0
     r = np.full_like(y, UNSEEN)
-    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), count, np.zeros_like(y))
+    places = np.tile(np.arange(count)[:, None], (1, tape.y.shape[1]))
+    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), places, count, np.zeros_like(y))
 
 
 def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:

@@ -13,11 +13,13 @@ from diagnosis.fit import likelihood, size_scale, stacked
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
 from diagnosis.instants import instants
+from diagnosis.lattice import coarse_step
 from sim.effects.effect import Effect, Values
 
 Array = NDArray[np.float64]
 MOST_STARTS = 8
 SMALL = 0.05
+INPUT_STEPS = 14
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 
 
@@ -144,12 +146,26 @@ def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
         effect = case.kit.effects[name]
         if effect.on_equations and not _limited(effect):
             continue
-        for value in effect.size.starts or (effect.size.reference,):
+        for value in _sizes(case, effect):
             for shapes in shape_starts(effect):
                 entry = _tried(case, ground, effect, {**shapes, effect.size.symbol: value})
                 if entry is not None:
                     found.append(entry)
     return found
+
+
+def _sizes(case: Case, effect: Effect) -> list[float]:
+    """Sizes to try of an effect without first order; those of a sensor's steps are seen in the readings."""
+    if effect.kind != "quantization":
+        return list(effect.size.starts) or [effect.size.reference]
+    kit = case.kit
+    sensor = kit.bound.model.places.sensors.get(effect.place)
+    if sensor is None:
+        return [float(size) for size in np.geomspace(0.15, 6.0, INPUT_STEPS) * effect.size.reference]
+    place = kit.outputs.index(sensor.output)
+    read = np.concatenate([flight.tape.y[:, place] for flight in case.flights])
+    step = coarse_step(read, kit.bound.plant.sensors[sensor.output])
+    return [] if step is None else [step]
 
 
 def _tried(case: Case, ground: Ground, effect: Effect, values: Values) -> Look | None:

@@ -7,20 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import WIDE, Fit, fit
+from diagnosis.fit import WIDE, Fit, fit, likelihood
 from diagnosis.ground import Ground, ground_of
-from diagnosis.hypothesis import Supposed
+from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import Look, look
 from diagnosis.unrest import with_unrest
 from sim.effects.effect import Values
 
-SINGLES, PARTNERS, BEAM = 8, 4, (3, 1)
+SINGLES, PARTNERS, BEAM = 7, 3, (3, 1)
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
-FURTHER_GAIN = 8.0  # that a further effect must promise
+FURTHER_GAIN = 10.0  # that a further effect must promise
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 WORKERS = 2
+POLISHING = (0.2, 0.03, 0.005)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +101,8 @@ def _fit_all(
 def refine(case: Case, supposed: Supposed, effect: str, values: Values) -> Tried | None:
     """The joint fit from a start, with the unrest that then remains."""
     start = supposed.with_effects({**supposed.effects, effect: values})
+    if effect.endswith("_input.quantization"):
+        start = _polished(case, start, effect)
     found = fit(case, start, rounds=4)
     if found is None:
         return None
@@ -108,3 +111,16 @@ def refine(case: Case, supposed: Supposed, effect: str, values: Values) -> Tried
     if again is None:
         return None
     return Tried(tuple(again.supposed.effects), again, evidence(again))
+
+
+def _polished(case: Case, start: Supposed, effect: str) -> Supposed:
+    """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
+    best, value = start, -np.inf
+    for reach in POLISHING:
+        middle = best.effects[effect]["q"]
+        for q in np.linspace(1.0 - reach, 1.0 + reach, 13) * middle:
+            tried = start.with_effects({**start.effects, effect: {"q": float(q)}})
+            runs = passes(case, tried)
+            if runs is not None and likelihood(runs) > value:
+                best, value = tried, likelihood(runs)
+    return best

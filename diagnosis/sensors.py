@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.kit import Kit
+from diagnosis.lattice import grid_evidence
 from diagnosis.tape import Tape, late
 from sim.effects.effect import Values
 
@@ -28,16 +29,16 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
         if kind in ("delay", "lag"):
             tape = late(tape, output, values["tau"])
         elif kind == "quantization":
-            tape = _coarser(tape, output, values["q"])
+            tape = _coarser(tape, output, values["q"], kit.bound.plant.sensors[sensor.output])
         elif kind == "backlash":
             tape = _behind_play(tape, output, values["width"])
     return tape
 
 
-def _coarser(tape: Tape, output: int, step: float) -> Tape:
+def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:
     r = tape.r.copy()
-    r[:, output] += step**2 / 12.0
-    return replace(tape, r=r)
+    r[:, output] += grid**2 / 12.0
+    return replace(tape, r=r, known=tape.known + grid_evidence(tape.y[:, output], grid, step))
 
 
 def _behind_play(tape: Tape, output: int, width: float) -> Tape:
@@ -52,10 +53,18 @@ def _behind_play(tape: Tape, output: int, width: float) -> Tape:
 
 
 def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:
-    """Instants at which a reading has not changed for longer than it usually takes: behind play the axis may be anywhere within it."""
+    """Instants at which an axis behind play may be anywhere within it: the reading has not changed for longer than it usually takes, or
+    changes back next.
+    """
     seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
     moved = np.append(0.0, np.diff(tape.y[seen, output]))
     changes = np.flatnonzero(moved != 0.0)
-    last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
-    typical = float(np.median(np.diff(changes))) if len(changes) > 2 else 1.0
-    return np.asarray(seen[np.arange(len(moved)) - last > 2.0 * typical])
+    if len(changes) < 3:
+        return seen
+    rows = np.arange(len(moved))
+    before = np.clip(np.searchsorted(changes, rows, side="right") - 1, 0, len(changes) - 1)
+    after = np.minimum(before + 1, len(changes) - 1)
+    standing = rows - changes[before]
+    turns = (np.sign(moved[changes[before]]) != np.sign(moved[changes[after]])) & (standing > 0)
+    unsure = turns | (standing < 0) | (standing > 2.0 * float(np.median(np.diff(changes))))
+    return np.asarray(seen[unsure])

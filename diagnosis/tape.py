@@ -16,9 +16,10 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class Tape:
     """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
-    their variances r (m, outputs), and `row` (m,): the log's row whose results an instant fills, -1 for none; `rows` in all.
+    and their variances r (m, outputs).
 
-    `usual` (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
+    `row` (m,) is the log's row that an instant is, -1 for none, `place` (m, outputs) the row of each reading; `rows` in all. `usual`
+    (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
     meaningless.
     """
 
@@ -27,6 +28,7 @@ class Tape:
     y: Array
     r: Array
     row: NDArray[np.int64]
+    place: NDArray[np.int64]
     rows: int
     usual: Array
     known: float = 0.0
@@ -43,7 +45,8 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
             r[:, place] = _variance(y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
     if used is not None:
         y[~used] = np.nan
-    return Tape(log.t_s, log.u, y, r, np.arange(rows), rows, -0.5 * (1.0 + np.log(r)))
+    places = np.tile(np.arange(rows)[:, None], (1, len(outputs)))
+    return Tape(log.t_s, log.u, y, r, np.arange(rows), places, rows, -0.5 * (1.0 + np.log(r)))
 
 
 def _variance(y: Array, step: float, noise: float) -> float:
@@ -74,13 +77,12 @@ def spread(tape: Tape, starts_s: Array, values: Array) -> Tape:
 
 def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     """Measurements put at their instants among `t_s`."""
-    y = np.full((len(t_s), tape.y.shape[1]), np.nan)
-    r = np.ones((len(t_s), tape.y.shape[1]))
-    row = np.full(len(t_s), -1, dtype=np.int64)
-    usual = np.zeros_like(y)
+    shape = (len(t_s), tape.y.shape[1])
+    y, r, usual = np.full(shape, np.nan), np.ones(shape), np.zeros(shape)
+    row, place = np.full(len(t_s), -1, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
     where = np.searchsorted(t_s, tape.t_s)
-    y[where], r[where], row[where], usual[where] = tape.y, tape.r, tape.row, tape.usual
-    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual)
+    y[where], r[where], row[where], usual[where], place[where] = tape.y, tape.r, tape.row, tape.usual, tape.place
+    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place)
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
@@ -89,14 +91,13 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
         return tape
     t_s = np.union1d(tape.t_s, tape.t_s - tau_s)
     t_s = t_s[(t_s >= tape.t_s[0]) & (np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s))]
-    place = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
-    moved = _placed(tape, t_s, tape.u[place])
-    y, r, row = moved.y, moved.r, moved.row.copy()
-    y[:, output] = np.nan
+    held = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
+    moved = _placed(tape, t_s, tape.u[held])
+    y, r, usual, place = moved.y.copy(), moved.r.copy(), moved.usual.copy(), moved.place.copy()
+    y[:, output], place[:, output] = np.nan, -1
     then = tape.t_s - tau_s
-    seen = then >= t_s[0]
-    where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)
-    y[where[seen], output], r[where[seen], output] = tape.y[seen, output], tape.r[seen, output]
-    # Results of that output belong to the log's row of the reading, which is one instant's row only where no other row claims it.
-    row[where[seen & (row[where] < 0)]] = tape.row[seen & (row[where] < 0)]
-    return replace(tape, t_s=t_s, u=moved.u, y=y, r=r, row=row)
+    seen = then >= t_s[0] - 1e-7
+    where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)[seen]
+    y[where, output], r[where, output] = tape.y[seen, output], tape.r[seen, output]
+    usual[where, output], place[where, output] = tape.usual[seen, output], tape.place[seen, output]
+    return replace(moved, y=y, r=r, usual=usual, place=place)

@@ -51,7 +51,7 @@ static void apply(filter_state *at, int64_t step)
 }
 
 /* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
-static void correct(filter_state *at, int64_t step, int64_t row, int output, double predicted, const double *H, const double *E)
+static void correct(filter_state *at, int64_t step, int output, double predicted, const double *H, const double *E)
 {
     filter_request *const r = at->request;
     const double variance = r->r[step * N_OUTPUTS + output];
@@ -78,6 +78,7 @@ static void correct(filter_state *at, int64_t step, int64_t row, int output, dou
             r->H[(step * N_OUTPUTS + output) * N + i] = H[i];
         }
     const int slot = r->slot[output];
+    const int64_t row = r->place[step * N_OUTPUTS + output];
     r->log_likelihood -= 0.5 * (nu * nu / s + log(s));
     if (row >= 0 && slot >= 0) {
         r->w[row * r->slots + slot] = nu * scale;
@@ -127,7 +128,7 @@ static void measure(filter_state *at, int64_t step)
             if (isnan(r->y[step * N_OUTPUTS + o]))
                 continue;
             model_outputs(r->t_s[step], at->body.x, at->c, y);
-            correct(at, step, row, o, y[o], j.H + o * N, j.E + o * N_PARAMETERS);
+            correct(at, step, o, y[o], j.H + o * N, j.E + o * N_PARAMETERS);
         }
     }
     if (row >= 0 && r->filtered)
@@ -318,8 +319,8 @@ static void respond_output(const response_request *r, int64_t step, int output, 
     for (int i = 0; i < N; i++)
         for (int k = 0; k < r->columns; k++)
             e[i][k] -= K[i] * nu[k];
-    const int64_t place = r->row[step] * r->slots + r->slot[output];
-    if (r->row[step] < 0 || r->slot[output] < 0)
+    const int64_t row = r->place[step * N_OUTPUTS + output], place = row * r->slots + r->slot[output];
+    if (row < 0 || r->slot[output] < 0)
         return;
     const double scale = 1.0 / sqrt(r->s[place]);
     for (int k = 0; k < r->columns; k++)

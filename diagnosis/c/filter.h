@@ -11,7 +11,7 @@ typedef struct {
     int64_t steps;
     int32_t columns, slots;
     const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
-    const int64_t *row;                      /* [steps]: where the results go, or -1 */
+    const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
     const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
     const uint8_t *locked;                   /* [AXES] */
@@ -31,7 +31,7 @@ typedef struct {
     const double *F, *K, *H, *s;    /* as above; s by row and slot */
     const double *value;            /* [steps][targets][columns] */
     const int32_t *target, *slot;   /* [targets], [N_OUTPUTS] */
-    const int64_t *row;
+    const int64_t *place;
     double *dw;                     /* [rows][slots][columns] */
 } response_request;
 

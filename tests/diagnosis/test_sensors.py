@@ -1,0 +1,59 @@
+"""What readings say of sensors: play, delay and coarse grids recovered from readings made by their formulas."""
+
+import numpy as np
+import pytest
+
+from diagnosis.lattice import coarse_step, grid_evidence
+from diagnosis.sensors import standing_rows
+from diagnosis.tape import Tape, late
+
+STEP = 1.5e-3
+
+
+def tape(y: np.ndarray) -> Tape:
+    rows = len(y)
+    values = y[:, None]
+    places = np.arange(rows)[:, None]
+    return Tape(
+        t_s=0.01 * np.arange(rows),
+        u=np.zeros((rows, 1)),
+        y=values,
+        r=np.full(values.shape, STEP**2 / 12),
+        row=np.arange(rows),
+        place=places,
+        rows=rows,
+        usual=np.zeros(values.shape),
+    )
+
+
+def test_a_coarse_grid_is_seen_with_its_step() -> None:
+    # 0.011 rad is no multiple of the encoder's step: read to a thousandth of itself.
+    angle = 0.4 * np.sin(np.linspace(0.0, 30.0, 4000))
+    coarse = 0.011 * np.round(angle / 0.011)
+    read = STEP * np.round(coarse / STEP)
+    assert coarse_step(read, STEP) == pytest.approx(0.011, rel=1e-3)
+    assert grid_evidence(read, 0.011, STEP) > 100.0
+    assert grid_evidence(read, 0.008, STEP) == 0.0
+
+
+def test_a_fine_encoder_has_no_coarse_grid() -> None:
+    angle = 0.4 * np.sin(np.linspace(0.0, 30.0, 4000))
+    assert coarse_step(STEP * np.round(angle / STEP), STEP) is None
+
+
+def test_readings_that_turn_stand_for_nothing_behind_play() -> None:
+    # Up, still, down: between the last step up and the first step down the axis crosses the play.
+    up, still, down = np.arange(50) * STEP, np.full(30, 49 * STEP), (49 - np.arange(1, 50)) * STEP
+    standing = standing_rows(tape(np.concatenate([up, still, down])), 0)
+    assert set(range(50, 80)) <= set(standing.tolist())
+    assert not set(range(2, 49)) & set(standing.tolist())
+
+
+@pytest.mark.parametrize("tau_s", [0.004, 0.02, 0.0237])
+def test_late_readings_are_put_back_to_when_they_were_true(tau_s: float) -> None:
+    moved = late(tape(np.arange(100.0)), 0, tau_s)
+    seen = np.isfinite(moved.y[:, 0])
+    # Reading k was taken at 0.01 k s; those from before the log are lost.
+    assert np.allclose(moved.t_s[seen], 0.01 * moved.y[seen, 0] - tau_s, atol=1e-6)
+    assert np.array_equal(moved.place[seen, 0], moved.y[seen, 0].astype(int))
+    assert seen.sum() >= 97
