@@ -2,12 +2,16 @@
 
 `twinlaw import quanser_aero model_verification --out mv.csv` writes mv.csv and mv.toml. A dataset without a record lists its records.
 `twinlaw import FILE.mat --plant ce150 --column psi_rad=Pitch*0.01745329252 --out run.csv` takes vectors or channels that are named
-like the columns of a run log (t_s, u_M_V, ...), or that --column names, with a factor where their unit is another.
+like the columns of a run log (t_s, u_M_V, ...), or that --column names, with a factor where their unit is another. --from and --until
+keep a part, in the record's own time, where not all of it is of the plant: motors off, a wall.
 """
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from recordings.channels import Choice
 from recordings.exported import SUFFIXES, import_file
@@ -18,7 +22,7 @@ from twinlaw import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """DATASET, RECORD or FILE, --plant, --column, --loop, --out, --json."""
+    """DATASET, RECORD or FILE, --plant, --column, --loop, --from, --until, --out, --json."""
     parser.add_argument("dataset", metavar="DATASET|FILE", help=f"{', '.join(IMPORTERS)}; or a .mat or .mf4 file")
     parser.add_argument("record", metavar="RECORD", nargs="?", help="left out: list the dataset's records")
     parser.add_argument("--plant", default="ce150", metavar="NAME", help="of a file: its rig; default: %(default)s")
@@ -31,6 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of a file: the channel of a column; may be repeated",
     )
     parser.add_argument("--loop", choices=LOOPS, help="of a file; default: closed where it holds references")
+    parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="leave out rows before this time")
+    parser.add_argument("--until", dest="until_s", type=float, metavar="S", help="leave out rows after this time")
     parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: RECORD.csv here")
     options.as_json(parser)
 
@@ -49,9 +55,28 @@ def run(chosen: argparse.Namespace) -> int:
     path = chosen.out or Path(f"{Path(chosen.dataset if is_file else chosen.record).stem}.csv")
     if path.suffix != ".csv":
         raise BadInput("--out", str(path), f"a name that ends in {path.suffix!r}", "NAME.csv", "call it .csv")
+    log = _between(log, chosen.from_s, chosen.until_s)
     save_log(path, log)
     _tell(path, log, chosen.json)
     return 0
+
+
+def _between(log: RunLog, from_s: float | None, until_s: float | None) -> RunLog:
+    """The rows within the times that were asked for."""
+    if from_s is None and until_s is None:
+        return log
+    rows = (log.t_s >= (-np.inf if from_s is None else from_s)) & (log.t_s <= (np.inf if until_s is None else until_s))
+    if rows.sum() < 2:
+        within = f"two or more of the record's, which lasts from {log.t_s[0]:g} s to {log.t_s[-1]:g} s"
+        raise BadInput("part of a record", "--from, --until", f"{rows.sum()} rows", within, "choose other times")
+    return replace(
+        log,
+        t_s=log.t_s[rows],
+        u=log.u[rows],
+        y=log.y[rows],
+        extra={name: column[rows] for name, column in log.extra.items()},
+        seq=None if log.seq is None else log.seq[rows],
+    )
 
 
 def _tell(path: Path, log: RunLog, as_json: bool) -> None:
