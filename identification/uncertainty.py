@@ -34,7 +34,7 @@ class Score:
         """How many times more the scores vary than independent residuals would let them: trace(M H^-1) per parameter.
 
         M = sum over pieces of g g^T. Only directions that this run informs count; `weak` is the information that holds the others. So few
-        pieces tell a variance to a share sqrt(2 / pieces) only, which is added.
+        pieces tell a variance to a share sqrt(2 / pieces) only; twice that is added, which makes it an upper limit.
         """
         A = np.linalg.inv(self.H + weak)
         informed = float(np.trace(A @ self.H))
@@ -42,7 +42,7 @@ class Score:
         if informed < 0.5 or pieces <= informed + 1.0:
             return 1.0
         M = self.g.T @ self.g * (pieces / (pieces - informed))
-        return max(float(np.trace(A @ M)) / informed, least) * float(1.0 + np.sqrt(2.0 / pieces))
+        return max(float(np.trace(A @ M)) / informed, least) * float(1.0 + 2.0 * np.sqrt(2.0 / pieces))
 
 
 def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece_s: float = PIECE_S) -> Score:
