@@ -23,7 +23,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A rule, the files (shell pattern) and lines (regular expression) where it may be broken, and why.
+    """A rule (* for any), the files (shell pattern) and lines (regular expression) where it may be broken, and why.
 
     `arithmetic` limits it to the law in one arithmetic; one that `depends_on_table` may find nothing to cover.
     """
@@ -38,7 +38,7 @@ class Deviation:
     def covers(self, finding: Finding) -> bool:
         """Whether the finding is of this rule and at this place."""
         here = fnmatch(finding.file, self.files) and re.search(self.line, finding.text)
-        return finding.rule == self.rule and bool(here)
+        return self.rule in (finding.rule, "*") and bool(here)
 
     def __str__(self) -> str:
         return f"{self.rule} in {self.files}" + (f" at /{self.line}/" if self.line else "")

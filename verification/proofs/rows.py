@@ -1,8 +1,8 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import behaviour, cost, coverage, misra, rounding, totality
+from verification.proofs import behaviour, cost, coverage, misra, mutation, rounding, totality
 from verification.proofs.subject import Proof
-from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA
+from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA, PYCPARSER
 
 _FLOAT32 = ("float32",)
 
@@ -27,4 +27,11 @@ PROOFS: tuple[Proof, ...] = (
         misra.NAME, "rules of MISRA C in generated C and control path, deviations justified", (CPPCHECK,), misra.prove
     ),
     Proof(coverage.NAME, "every decision of the C shown to matter both ways", (CLANG,), coverage.prove),
+    Proof(
+        mutation.NAME,
+        "small wrong changes of C, table and twin that the checks notice",
+        (PYCPARSER,),
+        mutation.prove,
+        _FLOAT32,
+    ),
 )

