@@ -68,11 +68,11 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         return _no_gap(case, checked, material, detection, stated, looks)
     found = search(case, nominal, kit.candidates, ground, looks)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
-    left = detect(case, ground_of(case, best.fit), [])
+    left = _left(detect(case, ground_of(case, best.fit), []))
     beyond = retune(case, nominal)
-    weighed = weigh(found.tried, stated, _left(left), None if beyond is None else beyond.score)
+    weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
-    weighed = _checked(checked, material, weighed, stated, _left(left))
+    weighed = _checked(checked, material, weighed, stated, left)
     chosen, predicted = _added(checked, material, weighed, stated, beyond)
     return Result(
         diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks, beyond),
@@ -81,6 +81,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         detection=detection,
         search=found,
         weighed=weighed,
+        left=left,
         suspects=tuple(blamed),
         chosen=chosen,
         predicted=predicted,
@@ -230,7 +231,16 @@ def _no_gap(
         notes=(*material.notes, *notes_of(case, looks, retuned, None)),
     )
     return Result(
-        diagnosis, improved_plant(case, retuned.fit), case, detection, None, None, tuple(ranked), retuned, predicted
+        diagnosis,
+        improved_plant(case, retuned.fit),
+        case,
+        detection,
+        None,
+        None,
+        0.0,
+        tuple(ranked),
+        retuned,
+        predicted,
     )
 
 

@@ -14,7 +14,8 @@ from records.plant import Plant
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """`chosen` is the hypothesis whose effects were added (the nominal plant re-tuned where none was), `predicted` by hold-out log."""
+    """`left` nats are what forms still gain beside the best hypothesis; `chosen` is the hypothesis whose effects were added (the nominal
+    plant re-tuned where none was), `predicted` by hold-out log."""
 
     diagnosis: Diagnosis
     plant: Plant
@@ -22,6 +23,7 @@ class Result:
     detection: Detection
     search: Search | None
     weighed: Weighed | None
+    left: float
     suspects: tuple[Suspect, ...]
     chosen: Tried
     predicted: tuple[Predicted, ...]

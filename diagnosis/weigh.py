@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from diagnosis.search import Tried
 
 Array = NDArray[np.float64]
-# Fitted on development cases of the sealed benchmark's generator, see calibration.py: nats below which two hypotheses are alike, the
-# share of the whole gain that a form a little off the truth may cost, and what each further effect and an unknown one must overcome.
-ALIKE, OFF_FORM, FURTHER, UNKNOWN = 4.0, 0.006, 1.5, 3.0
-UNKNOWN_COST = 12.0
+# Set on development cases of the sealed benchmark's generator (seed 11): nats below which two hypotheses are alike, the share of the
+# whole gain that a form a little off the truth may cost, what each further effect must overcome; and what a right effect of the library
+# may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
+ALIKE, OFF_FORM, FURTHER = 4.0, 0.006, 4.0
+LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.08, 2.5, 1.5
 RETUNE_COST = 10.0
 PLAIN = 0.1  # by which a constant force goes before what fits as well
 SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
@@ -43,7 +44,8 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     scores += [PLAIN * sum(name.endswith(".offset_force") for name in entry.effects) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
     scores -= strain - strain.min()
-    unknown = (left - UNKNOWN_COST) / scale - UNKNOWN
+    expected = LEFT_NATS + LEFT_SHARE * max(best - nominal.evidence, 0.0)
+    unknown = LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - UNKNOWN
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
