@@ -27,6 +27,9 @@ EXTRAS: Mapping[str, str] = {
 }
 PROGRAMS: Mapping[str, tuple[str, str]] = {
     "openocd": ("flash: through an ST-LINK", "apt install openocd"),
+    "gappa": ("verify --proofs: rounding bound", "apt install gappa"),
+    "frama-c": ("verify --proofs: no undefined behaviour", "apt install frama-c-base"),
+    "clang-19": ("verify --proofs: MC/DC", "apt install clang-19 llvm-19"),
     "stm32flash": ("flash --port: through the serial boot loader", "apt install stm32flash"),
 }
 NEEDED = "every verb"
