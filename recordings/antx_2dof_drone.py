@@ -1,7 +1,8 @@
 """ANT-X 2-DOF drone: MATLAB structs of PX4 streams, each with its own time stamps, 4 ms apart with jitter and losses.
 
-A row stands at the stamp of a torque command, from which that command holds. Angle, rate and set-points of the row are the samples of
-the same cycle, unchanged; they are stamped within half a millisecond of it. A cycle without one leaves NaN.
+A row stands at the stamp of a torque command, from which that command holds. Set-points of the row are the samples of the same cycle,
+unchanged. Angle and rate are stamped up to half a millisecond off it, on either side, which is 0.7 ms between the two and shows in their
+motion: both are read at the row's stamp, on a line between samples. A cycle without a sample leaves NaN.
 """
 
 from collections.abc import Mapping
@@ -13,6 +14,7 @@ from recordings.recording import Array, Load, Recording, gap_notes, missing_note
 
 SAMPLE_PERIOD_S = 0.004
 _STREAMS: Mapping[str, str] = {"theta_rad": "theta", "q_rad_s": "q", "theta_ref_rad": "theta0", "q_ref_rad_s": "q0"}
+_MEASURED = ("theta_rad", "q_rad_s")
 _OPEN_LOOP = "Lab01_part2__log_0_2024-5-22-17-22-44_2dd"
 
 RECORDS = (
@@ -37,9 +39,13 @@ def read(record: str, load: Load) -> Recording:
     t_s, torque = stream(found, "M", file)
     columns, notes = {"M": torque}, [*gap_notes(t_s, SAMPLE_PERIOD_S)]
     for name, key in _STREAMS.items():
-        columns[name], skew_s = _same_cycle(t_s, *stream(found, key, file))
+        stamps_s, values = stream(found, key, file)
+        columns[name], skew_s = _same_cycle(t_s, stamps_s, values)
+        if name in _MEASURED:
+            columns[name] = np.where(np.isnan(columns[name]), np.nan, np.interp(t_s, stamps_s, values))
         notes += [
-            f"{name} is stamped {skew_s * 1e3:+.2f} ms from its row (median)",
+            f"{name} is stamped {skew_s * 1e3:+.2f} ms from its row (median)"
+            + (", read at the row's time" if name in _MEASURED else ""),
             *missing_notes(name, columns[name]),
         ]
     return Recording(
