@@ -80,10 +80,12 @@ def c_score(subject: Subject) -> Score:
 
 
 def table_score(subject: Subject) -> Score:
-    """Mutants of the table, through the twin that is made from it."""
+    """Mutants of the table, through the twin that is made from it; one that gives the law the same numbers is none."""
     twin = mutated_twin(subject.arithmetic, None)
-    truths = _truths(twin(subject.table), subject)
-    mutants = _sampled(list(table_mutants(subject.table)), subject)
+    genuine = twin(subject.table)
+    truths = _truths(genuine, subject)
+    others = [entry for entry in table_mutants(subject.table) if twin(entry[1]).law != genuine.law]
+    mutants = _sampled(others, subject)
     judged = [(title, is_table_noticed(twin(table), truths)) for title, table in mutants]
     return _score("table", judged, subject)
 
