@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from identification.driven import driven_model
+from identification.motion import move
 from identification.run import Carried, Run
 from identification.subsystem import subsystem
 from records.errors import BadInput
@@ -13,6 +14,7 @@ from sim.model import Model
 
 Array = NDArray[np.float64]
 SLOPE_ROWS = 4  # on either side, for a velocity guess
+FORGOTTEN = 0.002  # of a driven state's reach
 AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
 POSITION_STEPS, POSITION_SHARE = (
     20.0,
@@ -25,10 +27,9 @@ def log_run(
 ) -> Run:
     """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept.
 
-    A reading's error is that of `rounding_sd`. Rows where nothing was measured give
-    no reading. States that only the inputs drive run on from those of
-    `at_first` (states,) at the first row, by default from 0. Raises BadInput for a log with less than two rows, or a plant with effects on
-    the way of its inputs or outputs.
+    A reading's error is that of `rounding_sd`. Rows where nothing was measured give no reading. States that only the inputs drive run on
+    from those of `at_first` (states,) at the first row; where these are not given the log is used once they no longer matter. Raises
+    BadInput for a log with less than two rows, or a plant with effects on the way of its inputs or outputs.
     """
     if log.t_s.size < 2:
         raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
@@ -38,8 +39,10 @@ def log_run(
             "identify from the plant without them",
         )  # fmt: skip
     model = bound.model
-    begins, stops = _windows(log.t_s, window_s, every)
     part = driven_model(model)
+    carried = None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first))
+    forgotten_s = 0.0 if carried is None or at_first is not None else _forgotten_s(model, carried, log)
+    begins, stops = _windows(log.t_s, window_s, every, forgotten_s)
     used = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     rows = np.isfinite(log.y) & np.isin(np.arange(log.t_s.size), used)[:, None]
     select = np.flatnonzero(rows.ravel())
@@ -63,7 +66,7 @@ def log_run(
         x0=x0,
         free=free,
         start_sd=start_sd,
-        carried=None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first)),
+        carried=carried,
         step=step,
     )
 
@@ -71,6 +74,18 @@ def log_run(
 def _carried_start(model: Model, part: Model, x0: ArrayLike | None) -> Array:
     whole = np.zeros(len(model.states)) if x0 is None else np.asarray(x0, dtype=float)
     return np.asarray(whole[[model.states.index(state) for state in part.states]])
+
+
+def _forgotten_s(model: Model, carried: Carried, log: RunLog) -> float:
+    """How long after the first row it still shows with what states the log began: two runs from far starts are compared."""
+    part = carried.bound.model
+    u = log.u[:, [model.inputs.index(variable) for variable in part.inputs]]
+    whole = (slice(0, log.t_s.size),)
+    still = move(part, log.t_s, u, carried.bound.p, whole, carried.x0[None, :], ()).x
+    reach = np.max(np.abs(still), axis=0)
+    other = move(part, log.t_s, u, carried.bound.p, whole, reach[None, :], ()).x
+    apart = np.flatnonzero(np.any(np.abs(other - still) > FORGOTTEN * reach, axis=1))
+    return float(log.t_s[apart[-1]] - log.t_s[0]) if apart.size else 0.0
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:
@@ -92,10 +107,11 @@ def rounding_sd(readings: Array, step: float, noise: float = 0.0) -> Array:
     return np.sqrt(step**2 / 12.0 * repeats + noise**2)
 
 
-def _windows(t_s: Array, window_s: float, every: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First rows of windows of about `window_s`, and the rows behind their last."""
-    count = max(1, round((t_s[-1] - t_s[0]) / window_s)) if np.isfinite(window_s) else 1
-    edges = t_s[0] + (t_s[-1] - t_s[0]) * np.arange(count) / count
+def _windows(t_s: Array, window_s: float, every: int, from_s: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First rows of windows of about `window_s`, and the rows behind their last; `from_s` at the beginning, or a quarter, is left out."""
+    first_s = t_s[0] + min(from_s, 0.25 * (t_s[-1] - t_s[0]))
+    count = max(1, round((t_s[-1] - first_s) / window_s)) if np.isfinite(window_s) else 1
+    edges = first_s + (t_s[-1] - first_s) * np.arange(count) / count
     begins = np.unique(np.searchsorted(t_s, edges - 1e-9)).astype(np.int64)
     stops = np.append(begins[1:], t_s.size).astype(np.int64)
     return begins[::every], stops[::every]

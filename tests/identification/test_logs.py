@@ -111,3 +111,14 @@ def test_the_positioning_system_s_inertia_is_within_a_hundredth_of_the_published
     assert found.belief.value("M") == pytest.approx(95.11, rel=0.01)
     assert found.belief.value("F_c") == pytest.approx(20.39, rel=0.05)
     assert found.belief.value("offset") == pytest.approx(-3.16, rel=0.1)
+
+
+def test_a_log_that_begins_in_flight_is_used_once_its_rotors_start_no_longer_shows(bound, flown):
+    """Cut out of a flight, with rotors at speeds that the log does not hold: no window begins before they are forgotten."""
+    rows = slice(2000, 6000)
+    log = replace(flown, t_s=flown.t_s[rows], u=flown.u[rows], y=flown.y[rows], extra={})
+    run = run_of(bound, log, "log", 2.0)
+    begun_s = run.t_s[run.begins[0]] - run.t_s[0]
+    assert 0.5 < begun_s < 5.0
+    found = identify_logs(off(bound, {"J_A": 1.2}), {"log": log}, ("J_A",), window_s=1.0)
+    assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.01)

@@ -81,10 +81,11 @@ def test_readings_that_repeat_share_one_rounding_error():
 
 
 def test_a_row_without_a_measurement_gives_no_reading(bound):
-    log = task(bound).log
+    work = task(bound)
+    log = work.log
     y = log.y.copy()
     y[100:200, 0] = np.nan
-    run = log_run(bound, replace(log, y=y), "log", 5.0)
+    run = log_run(bound, replace(log, y=y), "log", 5.0, at_first=work.x0)
     assert run.y.size == log.y.size - 100
     assert np.isfinite(run.y).all()
     assert sum(block.residual.size for block in blocks(run, (), np.zeros(0))) == run.y.size

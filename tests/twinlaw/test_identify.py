@@ -2,12 +2,16 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from identification.bench import task
+from records.log import save_log
 from records.plant import load_plant
+from sim.bind import bind
 from twinlaw import identifying
 from twinlaw.command import main
 
@@ -110,3 +114,23 @@ def test_the_same_experiment_twice_or_on_the_wrong_mount_is_refused(folder, tmp_
     copy.write_text(copy.read_text().replace('"turned"', '"upright"'))
     assert main(["identify", "--out", str(tmp_path / "out"), str(copy)]) == 2
     assert "mount: got 'upright', expected 'turned'" in capsys.readouterr().err
+
+
+def test_a_log_with_a_trim_of_its_inputs_is_fitted_and_another_predicted(tmp_path, capsys):
+    """The rig adds 0.1 V to its tail rotor: the offset is told to 0.02 V, and the log held out is predicted by it."""
+    bound = bind(load_plant(Path("plants/ce150.toml")))
+    log = task(bound).log
+    shifted = replace(log, u=log.u - np.array([0.0, 0.1]))
+    for name, rows in (("fitted", slice(0, 4000)), ("other", slice(3000, 6000))):
+        part = replace(shifted, t_s=log.t_s[rows], u=shifted.u[rows], y=log.y[rows])
+        save_log(tmp_path / f"{name}.csv", part)
+    options = ["--free", "J_A,b_vA", "--offsets", "--trim", "2", "30", "--window", "2"]
+    files = ["--holdout", str(tmp_path / "other.csv"), str(tmp_path / "fitted.csv")]
+    assert main(["identify", "--out", str(tmp_path / "out"), "--json", *options, *files]) == 0
+    told = json.loads(capsys.readouterr().out)
+    offsets = {entry["name"]: entry["value"] for entry in told["aids"]}
+    assert offsets["offset.u_T_V"] == pytest.approx(0.1, abs=0.02)
+    assert {test["channel"] for test in told["holdout"]} == {"psi_rad", "phi_rad"}
+    assert min(test["fit"] for test in told["holdout"]) > 0.95
+    assert main(["identify", "--out", str(tmp_path / "out"), "--trim", "70", "80", *files[2:]]) == 2
+    assert "a part of 0 s to 39.99 s" in capsys.readouterr().err
