@@ -21,6 +21,7 @@ VERBS: Mapping[str, str] = {
     "flash": "flash",
     "validate": "validate",
     "import": "import_record",
+    "export": "export",
     "experiments": "experiments",
     "identify": "identify",
     "diagnose": "diagnose",

@@ -1,0 +1,59 @@
+"""A run log as MDF4: every number, time and unit comes back through the importer's own reader."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recordings.mdf4_channels import read_mdf4
+from recordings.mdf4_export import mdf4_bytes, unit_of
+from records.errors import BadInput
+from records.log import RunLog, save_log
+from sim.columns import log_columns
+from sim.plants import MODELS
+from twinlaw.command import main
+
+T_S = np.array([0.0, 0.01, 0.0203, 0.04])
+
+
+def log() -> RunLog:
+    """Four samples with a jittered time, a gap, a NaN and the board's sequence numbers."""
+    y = np.array([[0.1, -0.2], [np.nan, -0.21], [0.12, -0.22], [0.13, -0.23]])
+    u = np.array([[1.0, 2.0], [1.5, 2.5], [9.75, -10.0], [0.0, 0.0]])
+    extra = {"omega_M_rad_s": np.arange(4.0)}
+    seq = np.array([7, 8, 9, 11])
+    return RunLog(log_columns(MODELS["ce150"]()), 0.01, "closed", T_S, u, y, extra, seq, table_digest="ab" * 32)
+
+
+def test_units_are_those_of_the_names() -> None:
+    named = {"u_M_V": "V", "psi_rad": "rad", "omega_M_rad_s": "rad/s", "q_m": "m", "seq": "", "M": ""}
+    assert {name: unit_of(name) for name in named} == named
+
+
+def test_what_was_exported_reads_back_exactly(tmp_path: Path) -> None:
+    pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
+    (tmp_path / "run.mf4").write_bytes(mdf4_bytes(log()))
+    channels = read_mdf4(tmp_path / "run.mf4")
+    for name in ("u_M_V", "u_T_V", "psi_rad", "phi_rad", "omega_M_rad_s"):
+        np.testing.assert_array_equal(channels[name].values, log().column(name))
+        np.testing.assert_array_equal(channels[name].t_s, T_S)
+        assert channels[name].unit == unit_of(name)
+    np.testing.assert_array_equal(channels["seq"].values, [7, 8, 9, 11])
+
+
+def test_the_verb_writes_beside_the_log_and_refuses_another_ending(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    save_log(tmp_path / "run.csv", log())
+    assert main(["export", str(tmp_path / "run.csv"), "--out", str(tmp_path / "run.xlsx")]) == 2
+    assert "NAME.mf4" in capsys.readouterr().err
+    pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
+    assert main(["export", str(tmp_path / "run.csv")]) == 0
+    assert (tmp_path / "run.mf4").stat().st_size > 0
+
+
+def test_without_asammdf_it_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "asammdf", None)
+    with pytest.raises(BadInput, match="mdf4"):
+        mdf4_bytes(log())

@@ -1,0 +1,35 @@
+"""Export a run log as an ASAM MDF4 file (.mf4) for measurement tools; needs the optional extra `mdf4`.
+
+`twinlaw export build/run.csv --out run.mf4` keeps every column with its unit, the log's true times, and what its sidecar says.
+"""
+
+import argparse
+from pathlib import Path
+
+from recordings.mdf4_export import mdf4_bytes
+from records.errors import BadInput
+from records.files import write_atomic
+from records.log import load_log, plant_of_log
+from sim.columns import log_columns
+from sim.plants import MODELS
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """LOG.csv, --out."""
+    parser.add_argument("log", type=Path, metavar="LOG.csv")
+    parser.add_argument("--out", type=Path, metavar="NAME.mf4", help="default: LOG.mf4 beside the log")
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Read, convert, write."""
+    out: Path = chosen.out or chosen.log.with_suffix(".mf4")
+    if out.suffix != ".mf4":
+        raise BadInput("--out", str(out), f"a name that ends in {out.suffix!r}", "NAME.mf4", "call it .mf4")
+    plant = plant_of_log(chosen.log)
+    if plant not in MODELS:
+        where = f"{chosen.log.with_suffix('.toml')}: plant"
+        raise BadInput("plant", where, repr(plant), f"one of {', '.join(MODELS)}", "name a known plant")
+    log = load_log(chosen.log, log_columns(MODELS[plant]()))
+    write_atomic(out, mdf4_bytes(log))
+    print(f"{out}  {len(log.t_s)} rows")
+    return 0
