@@ -65,26 +65,28 @@ def error(case: Case, predicted: Sequence[Predicted], bar: str) -> float:
     """Mean square error of a bar, each output in units of its floor."""
     outputs = list(case.kit.bound.model.outputs)
     floor = np.array([case.flights[0].tape.r[0, case.kit.outputs.index(name)] for name in outputs])
-    return float(np.sum(np.nanmean(_squares(predicted, bar), axis=0) / floor))
+    return float(np.nansum(np.nanmean(_squares(predicted, bar), axis=0) / floor))
 
 
 def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
-    """Mean square error by window and output."""
+    """Mean square error by window and output; NaN for an output that a log does not hold; windows lacking another are left out."""
     found = []
     for entry in predicted:
         square = (entry.by[bar] - entry.y) ** 2
+        held: NDArray[np.bool_] = np.asarray(np.isfinite(entry.y).any(axis=0))
         for first, last in windows(entry.t_s):
-            if np.isfinite(square[first:last]).any(axis=0).all():
-                found.append(np.nanmean(square[first:last], axis=0))
+            if held.any() and np.isfinite(square[first:last, held]).any(axis=0).all():
+                found.append(np.full(len(held), np.nan))
+                found[-1][held] = np.nanmean(square[first:last, held], axis=0)
     return np.array(found) if found else np.full((1, predicted[0].y.shape[1]), np.nan)
 
 
 def _fraction(squares: Mapping[str, Array], floor: Array, rows: NDArray[np.int64]) -> float | None:
     before, after = (np.nanmean(squares[bar][rows[rows < len(squares[bar])]], axis=0) for bar in ("before", "after"))
-    removable = float(np.sum(before / floor**2 - 1.0))
+    removable = float(np.nansum(before / floor**2 - 1.0))
     if not np.isfinite(removable) or removable <= 0.0:
         return None
-    return float(np.sum((before - after) / floor**2) / removable)
+    return float(np.nansum((before - after) / floor**2) / removable)
 
 
 def _named(outputs: Sequence[str], values: Array) -> dict[str, float]:
