@@ -1,7 +1,8 @@
 """Make sealed cases for a diagnosis, or score what it said of them.
 
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld; `twinlaw blind score DIR RESULTS` opens the seal and
-scores RESULTS/case-XXXX/diagnosis.json. The generator shares no code with simulation or diagnosis.
+scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind baseline NAME DIR RESULTS` answers all cases in a plain way, to be beaten. The
+generator shares no code with simulation or diagnosis.
 """
 
 import argparse
@@ -9,24 +10,36 @@ import json
 from pathlib import Path
 
 import blind
+from diagnosis.baselines import BASELINES
+from records.diagnosis import save_diagnosis
+from records.errors import BadInput
+from records.log import load_log
+from records.plant import load_plant
+from sim.bind import bind
+from sim.columns import log_columns
 from twinlaw import options
 from twinlaw.console import stage
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """make --seed --out --cases --kinds; score DIR RESULTS; --json."""
-    verbs = parser.add_subparsers(title="what to do", metavar="make|score", required=True)
+    verbs = parser.add_subparsers(title="what to do", metavar="make|baseline|score", required=True)
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
     maker.add_argument("--cases", type=options.count, default=60, help="default: %(default)s")
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
     maker.set_defaults(part=_make)
+    plain = verbs.add_parser("baseline", help="answer all cases in a plain way that a diagnosis has to beat")
+    plain.add_argument("name", choices=BASELINES)
+    plain.add_argument("cases", type=Path, metavar="DIR")
+    plain.add_argument("results", type=Path, metavar="RESULTS")
+    plain.set_defaults(part=_baseline)
     scorer = verbs.add_parser("score", help="score answers against the truth")
     scorer.add_argument("cases", type=Path, metavar="DIR")
     scorer.add_argument("results", type=Path, metavar="RESULTS")
     scorer.set_defaults(part=_score)
-    for part in (maker, scorer):
+    for part in (maker, plain, scorer):
         part.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -39,6 +52,24 @@ def _make(chosen: argparse.Namespace) -> int:
     with stage(f"flying {chosen.cases} cases"):
         path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")))
     print(json.dumps({"cases": str(path)}) if chosen.json else f"{path}  {chosen.cases} cases, seed {chosen.seed}")
+    return 0
+
+
+def _baseline(chosen: argparse.Namespace) -> int:
+    folders = sorted(chosen.cases.glob("case-*"))
+    if not folders:
+        raise BadInput(
+            "cases", str(chosen.cases), "no folder case-*", "what `twinlaw blind make` wrote", "name its DIR"
+        )
+    for folder in folders:
+        bound = bind(load_plant(folder / "plant.toml"))
+        columns = log_columns(bound.model)
+        with stage(f"answering {folder.name} by {chosen.name}"):
+            logs = [load_log(path, columns) for path in sorted(folder.glob("train-*.csv"))]
+            answer = BASELINES[chosen.name](bound, logs)
+        save_diagnosis(chosen.results / folder.name / "diagnosis.json", answer)
+    told = {"results": str(chosen.results), "cases": len(folders), "baseline": chosen.name}
+    print(json.dumps(told) if chosen.json else f"{chosen.results}  {len(folders)} cases answered by {chosen.name}")
     return 0
 
 

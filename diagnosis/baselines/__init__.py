@@ -1,0 +1,17 @@
+"""Plain ways to diagnose that a good one has to beat, on the same files and with the same answers."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from diagnosis.baselines.bic import by_bic
+from diagnosis.baselines.residual_size import by_residual_size
+from diagnosis.baselines.sparse_regression import by_sparse_regression
+from records.diagnosis import Diagnosis
+from records.log import RunLog
+from sim.bind import BoundPlant
+
+# By name: what reads a nominal plant and its logs and answers as `twinlaw diagnose` does.
+BASELINES: Mapping[str, Callable[[BoundPlant, Sequence[RunLog]], Diagnosis]] = {
+    "residual-size": by_residual_size,
+    "bic": by_bic,
+    "sparse-regression": by_sparse_regression,
+}
