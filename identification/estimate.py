@@ -9,7 +9,7 @@ from scipy.stats import t as student
 
 from identification.belief import Belief, prior, widened
 from identification.residuals import ResidualTest, residual_tests
-from identification.run import Run, known_names, with_sd
+from identification.run import Run, with_sd
 from identification.search import search
 from identification.solve import Point, Problem, Watch, solve
 from identification.uncertainty import Direction, inflations, pieces, unseen
@@ -186,8 +186,3 @@ def _contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
         if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
             found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
     return tuple(found)
-
-
-def involved(run: Run, names: Sequence[str]) -> tuple[str, ...]:
-    """Of the parameters `names` those that a run's model has."""
-    return tuple(names[place] for place, _ in known_names(run, names))

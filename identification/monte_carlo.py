@@ -1,6 +1,6 @@
 """Many rigs with other true parameters, each identified anew: do the intervals hold what they promise?"""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,18 +63,6 @@ def interval_factors(stages: tuple[Stage, ...]) -> dict[str, float]:
         for name in stage.result.own:
             factors.setdefault(name, interval_factor(stage.result.dof))
     return factors
-
-
-def repeat(
-    bound: BoundPlant, seeds: range, watch: Callable[[Repetition], None] | None = None
-) -> tuple[Repetition, ...]:
-    """One repetition for each seed."""
-    found = []
-    for seed in seeds:
-        found.append(repetition(bound, seed))
-        if watch is not None:
-            watch(found[-1])
-    return tuple(found)
 
 
 def coverage(repetitions: tuple[Repetition, ...]) -> dict[str, float]:
