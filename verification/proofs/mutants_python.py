@@ -35,15 +35,16 @@ _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
 
 @dataclass(frozen=True)
 class PythonMutant:
-    """One change: the module, its line, and what is changed to what; `index` counts the places of change in the module."""
+    """One change: the module, its line and its text, what is changed to what; `index` counts the places of change in the module."""
 
     module: str
     line: int
     change: str
     index: int
+    source: str
 
     def __str__(self) -> str:
-        return f"{self.module}.py:{self.line}: {self.change}"
+        return f"{self.module}.py:{self.line}: {self.change} in {self.source}"
 
 
 def python_mutants(arithmetic: str) -> tuple[PythonMutant, ...]:
@@ -51,8 +52,11 @@ def python_mutants(arithmetic: str) -> tuple[PythonMutant, ...]:
     modules, _ = TWINS[arithmetic]
     found: list[PythonMutant] = []
     for module in modules:
-        nodes = list(_mutable_nodes(_tree(module)))
-        found += [PythonMutant(module, node.lineno, _change(node), index) for index, node in enumerate(nodes)]
+        lines = (_CODEGEN / f"{module}.py").read_text(encoding="utf-8").splitlines()
+        found += [
+            PythonMutant(module, node.lineno, _change(node), index, lines[node.lineno - 1].strip())
+            for index, node in enumerate(_mutable_nodes(_tree(module)))
+        ]
     return tuple(found)
 
 
