@@ -81,13 +81,22 @@ def _events(case: Case, ground: Ground, drawn: Array) -> tuple[list[float], Arra
         share = ground.solve @ (ground.slopes.T @ answers)
         score = answers.T @ drawn - share.T @ (ground.slopes.T @ drawn)
         gram = scores.gram
-        first, last = np.triu_indices(len(gram), 1)
+        first, last = _spans(len(gram))
         norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)
         null = 0.5 * (score[first] - score[last]) ** 2 / norm[:, None]
         usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
         seen.append(float(np.max(0.5 * (scores.score[first] - scores.score[last]) ** 2 / norm / usual)))
         found.append(np.max(null / usual[:, None], axis=0))
     return seen, np.array(found)
+
+
+def _spans(count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of a step and a later one, at distances that grow as Fibonacci's numbers."""
+    lengths = [1, 2]
+    while lengths[-1] + lengths[-2] < count:
+        lengths.append(lengths[-1] + lengths[-2])
+    pairs = [(start, start + length) for length in lengths for start in range(count - length)]
+    return np.array([one for one, _ in pairs], dtype=int), np.array([other for _, other in pairs], dtype=int)
 
 
 def _effect_columns(case: Case, ground: Ground, looks: Sequence[Look]) -> Array:

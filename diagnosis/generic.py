@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.ground import Ground
+from diagnosis.waves import likely_waves
 from sim.model import TIME
 
 Array = NDArray[np.float64]
 REST = 0.02  # of a speed's typical size: below it the sign of the speed fades
-WAVES_RAD_S = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 11.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Form:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time."""
+    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time, waves."""
 
     t: Array
     h: Array
@@ -38,9 +38,10 @@ class Signals:
     thrust: Mapping[tuple[str, str], Array]
     inertia: Mapping[str, Array]
     u: Mapping[str, Array]
+    waves: Mapping[str, tuple[float, ...]]
 
 
-def signals(ground: Ground, flight: int) -> Signals:
+def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]]) -> Signals:
     """The signals that the filter predicts for a flight."""
     kit = ground.case.kit
     model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
@@ -67,6 +68,7 @@ def signals(ground: Ground, flight: int) -> Signals:
         },
         inertia={name: _relative(value(axis.inertia)) for name, axis in axes.items()},
         u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
+        waves=waves,
     )
 
 
@@ -83,7 +85,13 @@ def _by_step(x: Array, row: NDArray[np.int64]) -> Array:
 def forms(ground: Ground) -> list[Form]:
     """All forms for the case's plant, in a fixed order."""
     case = ground.case
-    each = [list(_forms(case, signals(ground, flight))) for flight in range(len(case.flights))]
+    states = case.kit.states
+    waves = {
+        axis.name: likely_waves(ground, states.index(str(axis.velocity)))
+        for axis in case.kit.bound.model.axes
+        if axis.position is not None
+    }
+    each = [list(_forms(case, signals(ground, flight, waves))) for flight in range(len(case.flights))]
     return [
         Form(place, text, target, tuple(flight[index][3] for flight in each))
         for index, (place, text, target, _) in enumerate(each[0])
@@ -118,7 +126,7 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, Array]]:
     a, v = s.angle[axis], s.speed[axis]
     q, w, sign = names[axis], f"{names[axis]}_dot", np.tanh(v / REST)
     yield from _shapes(q, a, (np.sin, lambda x: x, np.square, lambda x: np.sin(2 * x), lambda x: x**3))
-    yield from _shapes(q, a, tuple(_wave(k) for k in (5, 6, 7, 8, 9, 10, 11, 12)))
+    yield from _shapes(q, a, tuple(_wave(k, shift) for k in range(3, 17) for shift in (0.0, np.pi / 2)))
     yield from _shapes(w, v, (lambda x: x * np.abs(x), lambda x: x**3))
     yield from _shapes(f"sgn {w}", v, (lambda x: sign, lambda x: sign * np.exp(-np.abs(x) / 0.1), np.abs))
     yield f"{q}, sgn {w}", a * sign
@@ -126,7 +134,7 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, Array]]:
     yield from ((f"{q}, {w}", shape * v) for shape in (a, a**2, np.sin(a), np.cos(a)))
     time = s.t / s.t[-1]
     yield from (("t", shape) for shape in (time, time**2))
-    for rate in WAVES_RAD_S:
+    for rate in s.waves.get(axis, ()):
         yield from (("t", wave(rate * s.t)) for wave in (np.sin, np.cos))
     yield f"t, {w}", time * v
     for rotor, speed in s.rotor.items():
@@ -206,7 +214,7 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
             continue
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
         target = len(kit.states) + kit.outputs.index(sensor.output)
-        for shape in (a, np.square(a), *(wave(a) for wave in map(_wave, (8, 10, 12, 14, 16, 18, 20, 22, 24)))):
+        for shape in (a, np.square(a), *(_wave(k, shift)(a) for k in range(3, 33) for shift in (0.0, np.pi / 2))):
             yield place, f"output({q}) of {q}", target, shape
         yield place, f"output({q}_dot) of {q}", target, v
         yield place, f"output(sgn {q}_dot) of {q}", target, np.tanh(v / REST)
@@ -230,8 +238,8 @@ def _shapes(depends: str, x: Array, shapes: Sequence[Callable[[Array], Array]]) 
     return ((depends, np.asarray(shape(x), float)) for shape in shapes)
 
 
-def _wave(count: int) -> Callable[[Array], Array]:
-    return lambda x: np.sin(count * x)
+def _wave(count: int, shift: float) -> Callable[[Array], Array]:
+    return lambda x: np.asarray(np.sin(count * x + shift))
 
 
 def _follower(x: Array, width: float) -> Array:

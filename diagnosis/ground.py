@@ -13,8 +13,8 @@ from diagnosis.hypothesis import passes, tape_under
 from diagnosis.tape import Tape
 
 Array = NDArray[np.float64]
-GRID_S = 0.5
-MOST_STEPS = 150
+GRID_S = 0.3
+MOST_STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from diagnosis.ground import Ground
 from diagnosis.hypothesis import noise_of
 
 Array = NDArray[np.float64]
-COUNT = 64
+COUNT = 48
 SEED = 20
 
 

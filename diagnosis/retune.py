@@ -12,6 +12,7 @@ from diagnosis.unrest import with_unrest
 
 WIDER = 8.0
 FAR = 4.0  # standard deviations
+PULLED = 2.5  # by which the fit within the spread must have moved something
 NATS_PER_PARAMETER = 4.0
 MOST = 4
 
@@ -29,6 +30,8 @@ class Retune:
 
 def retune(case: Case, nominal: Fit) -> Retune | None:
     """The re-tune beyond the stated spread; None where no parameter leaves it, or too many do."""
+    if not moved_parameters(case, nominal.supposed.theta, PULLED):
+        return None
     bound = replace(case.kit.bound, sd=case.kit.bound.sd * WIDER)
     wider = replace(case, kit=replace(case.kit, bound=bound))
     start = replace(nominal.supposed, theta=nominal.supposed.theta / WIDER)

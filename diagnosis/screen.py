@@ -13,6 +13,7 @@ from diagnosis.fit import likelihood, size_scale, stacked
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
 from diagnosis.instants import instants
+from diagnosis.kit import is_lag
 from diagnosis.lattice import coarse_step
 from sim.effects.effect import Effect, Values
 
@@ -128,7 +129,7 @@ def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]
     supposed = ground.fit.supposed
     for name in names:
         effect = case.kit.effects[name]
-        if effect.on_equations or not effect.smooth or len(effect.parameters) != 1:
+        if effect.on_equations or not effect.smooth or len(effect.parameters) != 1 or is_lag(name):
             continue
         unit = size_scale(effect.size)
         small = {effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}

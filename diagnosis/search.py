@@ -12,7 +12,6 @@ from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import Look, look
 from diagnosis.unrest import with_unrest
-from sim.effects.effect import Values
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 1)
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
@@ -21,6 +20,7 @@ SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of i
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 WORKERS = 2
+WORTH_REFINING = 0.2  # of the best first fit's gain
 POLISHING = (0.2, 0.03, 0.005)
 
 
@@ -65,12 +65,12 @@ def search(case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks
     first = Tried((), nominal, evidence(nominal))
     with ThreadPoolExecutor(WORKERS) as pool:
         chosen = [entry for entry in looks if entry.gain > max(LEAST_GAIN, LEAST_SHARE * looks[0].gain)][:SINGLES]
-        _fit_all(case, pool, [(nominal.supposed, entry) for entry in chosen], found)
+        _fit_all(case, pool, [(nominal.supposed, entry) for entry in chosen], found, first)
         for beam in BEAM:
             size = max((len(chosen) for chosen in found), default=0)
             best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
             grown = [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best) for job in jobs]
-            if not _fit_all(case, pool, grown, found):
+            if not _fit_all(case, pool, grown, found, best[0] if best else first):
                 break
     tried = sorted([first, *found.values()], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
@@ -84,33 +84,40 @@ def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[st
 
 
 def _fit_all(
-    case: Case, pool: ThreadPoolExecutor, jobs: Sequence[tuple[Supposed, Look]], found: dict[frozenset[str], Tried]
+    case: Case,
+    pool: ThreadPoolExecutor,
+    jobs: Sequence[tuple[Supposed, Look]],
+    found: dict[frozenset[str], Tried],
+    known: Tried,
 ) -> bool:
-    """Fit each job that is new; whether anything was added."""
+    """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
     fresh: dict[frozenset[str], tuple[Supposed, Look]] = {}
     for supposed, entry in jobs:
         fresh.setdefault(frozenset((*supposed.effects, entry.effect)), (supposed, entry))
     wanted = [job for names, job in fresh.items() if names not in found]
-    done = [
-        tried for tried in pool.map(lambda job: refine(case, job[0], job[1].effect, job[1].values), wanted) if tried
-    ]
-    found.update({frozenset(tried.effects): tried for tried in done})
-    return bool(done)
+    rough = [entry for entry in pool.map(lambda job: _rough(case, *job), wanted) if entry]
+    if not rough:
+        return False
+    best, first = max(entry.evidence for entry in rough), known.evidence
+    good = [entry for entry in rough if entry.evidence - first >= WORTH_REFINING * (best - first)]
+    done = [entry for entry in pool.map(lambda entry: refined(case, entry), good) if entry]
+    found.update({frozenset(entry.effects): entry for entry in (*rough, *done)})
+    return True
 
 
-def refine(case: Case, supposed: Supposed, effect: str, values: Values) -> Tried | None:
-    """The joint fit from a start, with the unrest that then remains."""
-    start = supposed.with_effects({**supposed.effects, effect: values})
-    if effect.endswith("_input.quantization"):
-        start = _polished(case, start, effect)
+def _rough(case: Case, supposed: Supposed, entry: Look) -> Tried | None:
+    """A first joint fit from a start, under the unrest that was there before."""
+    start = supposed.with_effects({**supposed.effects, entry.effect: entry.values})
+    if entry.effect.endswith("_input.quantization"):
+        start = _polished(case, start, entry.effect)
     found = fit(case, start, rounds=4)
-    if found is None:
-        return None
-    calmer = with_unrest(case, found.supposed)
-    again = fit(case, calmer, rounds=5)
-    if again is None:
-        return None
-    return Tried(tuple(again.supposed.effects), again, evidence(again))
+    return None if found is None else Tried(tuple(found.supposed.effects), found, evidence(found))
+
+
+def refined(case: Case, tried: Tried) -> Tried | None:
+    """The fit with the unrest that then remains."""
+    found = fit(case, with_unrest(case, tried.fit.supposed), rounds=5)
+    return None if found is None else Tried(tuple(found.supposed.effects), found, evidence(found))
 
 
 def _polished(case: Case, start: Supposed, effect: str) -> Supposed:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import LEAST_LEFT, Detection
+from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection
 from diagnosis.generic import Form
-from diagnosis.ground import Scores
 
 Array = NDArray[np.float64]
-RIDGE = 1e-6
 NATS_PER_FORM = 2.0
+MOST_FORMS = 4
+OWN = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
 @dataclass(frozen=True)
@@ -25,28 +25,35 @@ class Suspect:
 
 
 def suspects(detection: Detection) -> list[Suspect]:
-    """Classes of forms, best first: each by the joint gain of its forms."""
+    """Classes of forms, best first: each by the joint gain of the forms that it takes one after another."""
     groups: dict[tuple[str, str], list[int]] = {}
     for index, form in enumerate(detection.forms):
         groups.setdefault((form.place, form.class_text), []).append(index)
-    found = []
-    for (place, text), members in groups.items():
-        gain = joint_gain(detection.scores, members)
-        worst = max(1.0, *(2.0 * detection.null_gain[index] for index in members))
-        found.append(Suspect(place, text, gain / worst - NATS_PER_FORM * len(members)))
+    found = [Suspect(place, text, class_gain(detection, members)) for (place, text), members in groups.items()]
     return sorted(found, key=lambda suspect: -suspect.gain)
 
 
-def joint_gain(scores: Scores, members: Sequence[int]) -> float:
-    """What all forms of a class together take away, to first order."""
+def class_gain(detection: Detection, members: Sequence[int]) -> float:
+    """What the forms of a class take away: the best, then what the best of the others adds to it, each less the cost of choosing it."""
+    scores = detection.scores
     norm = np.diag(scores.gram)
     chosen = [i for i in members if norm[i] > LEAST_LEFT * max(scores.raw[i], 1e-12)]
-    if not chosen:
-        return 0.0
     unit = 1.0 / np.sqrt(norm[chosen])
     gram = scores.gram[np.ix_(chosen, chosen)] * np.outer(unit, unit)
     score = scores.score[chosen] * unit
-    return 0.5 * float(score @ np.linalg.solve(gram + RIDGE * np.eye(len(chosen)), score))
+    usual = np.maximum(1.0, detection.null_gain[chosen] / MEAN_GAIN)
+    cost, total = NATS_PER_FORM + float(np.log(len(members))), 0.0
+    for _ in range(min(MOST_FORMS, len(chosen))):
+        left = np.diag(gram)
+        gains = np.where(left > OWN, 0.5 * score**2 / np.maximum(left, OWN), 0.0) / usual
+        best = int(np.argmax(gains))
+        if gains[best] < cost:
+            break
+        total += float(gains[best]) - cost
+        share = gram[:, best] / gram[best, best]
+        score = score - share * score[best]
+        gram = gram - np.outer(share, gram[best])
+    return total
 
 
-__all__ = ["Form", "Suspect", "joint_gain", "suspects"]
+__all__ = ["Form", "Suspect", "class_gain", "suspects"]
