@@ -1,10 +1,12 @@
-"""Is there a gap at all? The largest score of all effects and forms, against its law in replicas without gap."""
+"""Is there a gap at all? The largest score of all effects and forms against its law in replicas without gap, and how far the plant's
+own parameters had to leave what is stated of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from diagnosis.case import Case
 from diagnosis.fit import size_scale
@@ -48,7 +50,9 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     first = columns[0].shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
-    return Detection(tail.probability(largest - ALLOWED), tail, largest, tuple(found), part, null[first:].mean(axis=1))
+    strain = float(chi2.sf(ground.fit.supposed.theta @ ground.fit.supposed.theta, len(case.free)))
+    p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strain))
+    return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
 
 
 def gains(scores: Scores) -> Array:

@@ -15,12 +15,12 @@ from diagnosis.hypothesis import passes
 from diagnosis.instants import instants
 from diagnosis.kit import is_lag
 from diagnosis.lattice import coarse_step
+from diagnosis.quantised import likely_steps
 from sim.effects.effect import Effect, Values
 
 Array = NDArray[np.float64]
 MOST_STARTS = 8
 SMALL = 0.05
-INPUT_STEPS = 14
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 
 
@@ -147,7 +147,7 @@ def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
         effect = case.kit.effects[name]
         if effect.on_equations and not _limited(effect):
             continue
-        for value in _sizes(case, effect):
+        for value in _sizes(case, ground, effect):
             for shapes in shape_starts(effect):
                 entry = _tried(case, ground, effect, {**shapes, effect.size.symbol: value})
                 if entry is not None:
@@ -155,14 +155,14 @@ def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     return found
 
 
-def _sizes(case: Case, effect: Effect) -> list[float]:
+def _sizes(case: Case, ground: Ground, effect: Effect) -> list[float]:
     """Sizes to try of an effect without first order; those of a sensor's steps are seen in the readings."""
     if effect.kind != "quantization":
         return list(effect.size.starts) or [effect.size.reference]
     kit = case.kit
     sensor = kit.bound.model.places.sensors.get(effect.place)
     if sensor is None:
-        return [float(size) for size in np.geomspace(0.15, 6.0, INPUT_STEPS) * effect.size.reference]
+        return likely_steps(ground, effect.place)
     place = kit.outputs.index(sensor.output)
     read = np.concatenate([flight.tape.y[:, place] for flight in case.flights])
     step = coarse_step(read, kit.bound.plant.sensors[sensor.output])

@@ -31,7 +31,12 @@ def fly(plant: BoundPlant) -> Fly:
     """fly(seed, effects): a run of 30 s about level under lively references, with the spread of parameters and turbulence of `seed`."""
     table, _ = design(plant, read_settings(plant))
 
-    def flown(seed: int, effects: Mapping[str, Mapping[str, float]] | None = None, seconds: float = SECONDS) -> RunLog:
+    def flown(
+        seed: int,
+        effects: Mapping[str, Mapping[str, float]] | None = None,
+        seconds: float = SECONDS,
+        factors: Mapping[str, float] | None = None,
+    ) -> RunLog:
         rng = np.random.default_rng(seed)
         t_s = np.arange(0.0, seconds, 0.01)
         waves = rng.uniform(0.1, 0.9, (2, 4))
@@ -43,6 +48,9 @@ def fly(plant: BoundPlant) -> Fly:
         p = rig.p.copy()
         own = len(plant.p)
         p[:own] += 0.5 * plant.sd * rng.standard_normal(own)
+        names = [str(symbol) for symbol in plant.model.parameter_symbols]
+        for name, factor in (factors or {}).items():
+            p[names.index(name)] = factor * plant.p[names.index(name)]
         x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
         noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3])
         run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy")

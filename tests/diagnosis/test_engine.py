@@ -1,5 +1,7 @@
 """The whole diagnosis on flights whose truth is known: nothing there, one effect, two at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,20 @@ def test_predictions_cover_the_hold_out(spring: Result) -> None:
     (predicted,) = spring.predicted
     for bar in ("nominal", "before", "after"):
         assert np.isfinite(predicted.by[bar]).mean() > 0.9
+
+
+def test_a_parameter_beyond_its_spread_is_named_and_no_effect(plant: BoundPlant, fly: Fly) -> None:
+    # J_A 60 % up is 12 of its standard deviations.
+    logs = [fly(seed, factors={"J_A": 1.6}) for seed in (21, 22)]
+    diagnosis = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None])).diagnosis
+    assert diagnosis.verdict == "gap"
+    assert diagnosis.found == ()
+    assert any("parameter J_A" in note for note in diagnosis.notes)
+    assert diagnosis.places[0].place == "azimuth"
+
+
+def test_a_rig_at_rest_gives_no_name(plant: BoundPlant, fly: Fly) -> None:
+    log = fly(31, seconds=6.0)
+    still = replace(log, t_s=log.t_s[:300], u=np.tile(log.u[:1], (300, 1)), y=np.zeros((300, 2)))
+    diagnosis = diagnose(plant, Material([still], [], [], [None])).diagnosis
+    assert diagnosis.verdict != "gap" or diagnosis.found == ()

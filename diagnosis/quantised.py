@@ -1,0 +1,58 @@
+"""Steps of an input seen in the motion: which step's rounding errors the innovations follow."""
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+
+from diagnosis.ground import Ground
+
+Array = NDArray[np.float64]
+COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike
+SMALLEST, LARGEST = 0.004, 0.12  # of the input's range
+APART = 1.004
+MOST = 3
+
+
+def likely_steps(ground: Ground, place: str) -> list[float]:
+    """The steps q of an input whose errors q round(u/q) - u explain most, to first order; a rough step hits only near the true one."""
+    model = ground.case.kit.bound.model
+    entry = model.places.inputs[place]
+    target = _target(ground, entry.variable)
+    if target is None:
+        return []
+    column = model.inputs.index(entry.variable)
+    steps = np.geomspace(SMALLEST, LARGEST, COUNT) * entry.size
+    parts = np.split(steps, COUNT // AT_ONCE)
+    gains = np.concatenate([_gains(ground, column, target, part) for part in parts])
+    found: list[float] = []
+    for index in np.argsort(-gains).tolist():
+        step = float(steps[index])
+        if all(max(step, other) > APART * min(step, other) for other in found):
+            found.append(step)
+        if len(found) == MOST:
+            break
+    return found
+
+
+def _gains(ground: Ground, column: int, target: int, steps: Array) -> Array:
+    values = []
+    for tape in ground.tapes:
+        u = tape.u[:, column, None]
+        h = np.append(np.diff(tape.t_s), 0.0)[:, None]
+        values.append((steps * np.round(u / steps) - u) * h)
+    # Errors that the rig has move the innovations as its answer says; what the model would add moves them the other way.
+    scores = ground.scores_of(-ground.answer(values, target))
+    return np.asarray(0.5 * np.maximum(scores.score, 0.0) ** 2 / np.maximum(np.diag(scores.gram), 1e-12))
+
+
+def _target(ground: Ground, variable: sympy.Symbol) -> int | None:
+    """The state that an input drives: its rotor's speed, or the speed of the axis that it pushes."""
+    kit = ground.case.kit
+    for rotor in kit.bound.model.places.rotors.values():
+        if rotor.variable != variable:
+            continue
+        if rotor.drive is not None:
+            return kit.states.index(str(rotor.speed))
+        axis = next(iter(rotor.thrusts))
+        return kit.states.index(next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis))
+    return None
