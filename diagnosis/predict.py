@@ -89,6 +89,8 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
 def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:
     """What a reading behind play follows of the predicted angle, in place; each window starts from its own first reading."""
     for first, last in windows(flight.log.t_s):
+        if not np.isfinite(predicted[first:last]).all():
+            continue
         stands = read[first] if np.isfinite(read[first]) else predicted[first]
         for row in range(first, last):
             stands = min(max(stands, predicted[row] - 0.5 * width), predicted[row] + 0.5 * width)

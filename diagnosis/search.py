@@ -20,6 +20,7 @@ SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of i
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 WORKERS = 2
+LEAST_SLIP = 1.5  # counts
 WORTH_REFINING = 0.2  # of the best first fit's gain
 POLISHING = (0.2, 0.03, 0.005)
 
@@ -111,13 +112,28 @@ def _rough(case: Case, supposed: Supposed, entry: Look) -> Tried | None:
     if entry.effect.endswith("_input.quantization"):
         start = _polished(case, start, entry.effect)
     found = fit(case, start, rounds=4)
-    return None if found is None else Tried(tuple(found.supposed.effects), found, evidence(found))
+    return None if found is None or not _whole_counts(case, found) else _tried(found)
+
+
+def _tried(found: Fit) -> Tried:
+    return Tried(tuple(found.supposed.effects), found, evidence(found))
+
+
+def _whole_counts(case: Case, found: Fit) -> bool:
+    """Whether every slip of a sensor is at least a count: what is smaller is rounding."""
+    kit = case.kit
+    for name, values in found.supposed.effects.items():
+        if name.endswith(".count_slip"):
+            sensor = kit.bound.model.places.sensors[name.split(".")[0]].output
+            if abs(values["jump"]) < LEAST_SLIP * kit.bound.plant.sensors[sensor]:
+                return False
+    return True
 
 
 def refined(case: Case, tried: Tried) -> Tried | None:
     """The fit with the unrest that then remains."""
     found = fit(case, with_unrest(case, tried.fit.supposed), rounds=5)
-    return None if found is None else Tried(tuple(found.supposed.effects), found, evidence(found))
+    return None if found is None else _tried(found)
 
 
 def _polished(case: Case, start: Supposed, effect: str) -> Supposed:
