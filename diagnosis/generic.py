@@ -175,6 +175,11 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
         for target, gain in through:
             for shape in (np.tanh(u / 0.03), np.abs(u), u * np.abs(u), np.append(0.0, np.diff(u)), _jitter(u)):
                 yield place, f"{text}", target, shape * gain
+            pull = u - s.rotor[name]
+            yield from ((place, f"limit({text})", target, shape * gain) for shape in _beyond(u))
+            if rotor.drive is not None:
+                limit = f"limit({text}, {rotor_name(case, name)})"
+                yield from ((place, limit, target, shape * gain) for shape in _beyond(pull))
             for other, value in s.u.items():
                 if other != place:
                     yield place, f"{text}, {other}", target, u * np.abs(value) * gain
@@ -240,6 +245,13 @@ def _shapes(depends: str, x: Array, shapes: Sequence[Callable[[Array], Array]]) 
 
 def _wave(count: int, shift: float) -> Callable[[Array], Array]:
     return lambda x: np.asarray(np.sin(count * x + shift))
+
+
+def _beyond(x: Array) -> Iterator[Array]:
+    """What of x lies beyond its rare values on either side."""
+    for share in (2.0, 5.0, 15.0, 85.0, 95.0, 98.0):
+        edge = float(np.percentile(x, share))
+        yield np.maximum(x - edge, 0.0) if share > 50.0 else np.minimum(x - edge, 0.0)
 
 
 def _follower(x: Array, width: float) -> Array:
