@@ -20,6 +20,8 @@ SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of i
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 WORKERS = 2
+SETTLED = 5
+CERTAIN = 3.5  # standard deviations
 LEAST_SLIP = 1.5  # counts
 WORTH_REFINING = 0.2  # of the best first fit's gain
 POLISHING = (0.2, 0.03, 0.005)
@@ -73,8 +75,31 @@ def search(case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks
             grown = [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best) for job in jobs]
             if not _fit_all(case, pool, grown, found, best[0] if best else first):
                 break
-    tried = sorted([first, *found.values()], key=lambda entry: -entry.evidence)
+        _settle(case, pool, found)
+    certain = [entry for entry in found.values() if _certain(entry.fit)]
+    tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
+
+
+def _settle(case: Case, pool: ThreadPoolExecutor, found: dict[frozenset[str], Tried]) -> None:
+    """Once more the best of all, until effect and unrest agree: a fit not yet at its end would lose to one with an idle effect."""
+    best = sorted((entry for entry in found.values() if _certain(entry.fit)), key=lambda entry: -entry.evidence)
+    for entry in pool.map(lambda entry: refined(case, entry), best[:SETTLED]):
+        if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
+            found[frozenset(entry.effects)] = entry
+
+
+def _certain(fit: Fit) -> bool:
+    """Whether every effect has a size that is not zero within its spread."""
+    count = len(fit.supposed.theta)
+    spread = np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0))[count:]
+    sizes: dict[str, float] = {}
+    for entry, sd in zip(fit.free, spread, strict=True):
+        if entry.parameter.is_size:
+            away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
+            certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
+            sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
+    return all(certainty > CERTAIN for certainty in sizes.values())
 
 
 def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[str]) -> list[tuple[Supposed, Look]]:
