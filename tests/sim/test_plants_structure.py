@@ -114,6 +114,6 @@ def test_an_input_beyond_its_limit_acts_as_the_limit(name: str) -> None:
 def test_a_sensor_of_another_quantity_bears_its_own_unit() -> None:
     plant = load_plant(PLANTS / "antx_2dof_drone.toml")
     assert plant.sensors["q_rad_s"] == 1.0e-6
-    assert plant.sensor_noise == {"theta_rad": 5.0e-6, "q_rad_s": 2.0e-3}
+    assert plant.sensor_noise == {"theta_rad": 4.0e-5, "q_rad_s": 2.0e-3}
     assert "resolution_rad_s" in plant_text(plant)
     assert replace(plant, sensor_noise={}) != plant
