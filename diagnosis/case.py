@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 START_S = 0.1
 RUN_UP_S = 4.0
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
-START_SPEED = 0.3  # how far from rest a speed may be at the start, per s, in units of the output
-START_SHARE = 0.3  # how far from its rest under the first inputs another state may be, as a share
+START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
+START_SHARE = 0.6  # how far from its rest under the first inputs another state may be, as a share
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
             p0[index] = START_SPEED**2
         else:
             x0[index] = rest[index]
-            p0[index] = (START_SHARE * max(abs(rest[index]), 0.1 * float(np.max(np.abs(rest))), 1e-3)) ** 2
+            p0[index] = (START_SHARE * max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)) ** 2
     return x0, p0
 
 
