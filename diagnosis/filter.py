@@ -13,10 +13,14 @@ from sim.generate import model_header
 from sim.kernel import C_DIR as SIM_C
 from sim.model import Model
 from sim.sincos import sincos_header
-from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
+from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 
 C_DIR = Path(__file__).parent / "c"
 MAX_COLUMNS = 256
+# Read once, when this module is: what is compiled later and how it is called stay of one make, whatever happens to the files.
+SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c"))
+HEADERS = tuple(c_text(path) for folder in (C_DIR, SIM_C) for path in sorted(folder.glob("*.h")))
+DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.h")
 Array = NDArray[np.float64]
 
 
@@ -74,6 +78,7 @@ class Filter:
 
         None where the state left all bounds: the parameters do not fit at all.
         """
+        assert len(columns) <= MAX_COLUMNS
         rows, width = tape.rows, max(slots) + 1
         n, outputs, steps = self.states, self.outputs, len(tape.t_s)
         arrays: dict[str, NDArray[Any] | None] = {
@@ -122,6 +127,7 @@ class Filter:
         A target below the number of states is a state, disturbed over the step from an instant; beyond, an output at that instant.
         """
         assert run.gains is not None
+        assert values.shape[2] <= MAX_COLUMNS
         F, K, H = run.gains
         width, columns = max(slots) + 1, values.shape[2]
         dw = np.zeros((tape.rows, width, columns))
@@ -156,17 +162,12 @@ def compiled_filter(model: Model) -> Filter:
 
 def build_filter(model: Model) -> Path:
     """Compile the filter of `model`; returns the library's path."""
-    sources: list[Source] = [
-        CText("model.h", model_header(model)),
-        CText("sincos_coefficients.h", sincos_header()),
-        SIM_C / "events.c",
-        C_DIR / "filter.c",
-    ]
-    return build_shared(f"filter-{model.name}", sources, include_dirs=[C_DIR, SIM_C], flags=FAST_FLAGS)
+    made = (CText("model.h", model_header(model)), CText("sincos_coefficients.h", sincos_header()))
+    return build_shared(f"filter-{model.name}", (*made, *SOURCES, *HEADERS), flags=FAST_FLAGS)
 
 
 def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...]) -> Filter:
     """Load a compiled filter whose model has `sizes["states"]` states and `sizes["outputs"]` outputs."""
-    declarations = (C_DIR / "filter.h").read_text(encoding="utf-8").splitlines()
-    ffi, lib = load_shared("\n".join(line for line in declarations if not line.startswith("#")), path)
+    declarations = "\n".join(line for line in DECLARATIONS.splitlines() if not line.startswith("#"))
+    ffi, lib = load_shared(declarations, path)
     return Filter(sizes["states"], sizes["outputs"], axes, ffi, lib)

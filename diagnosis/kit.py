@@ -177,7 +177,7 @@ def observed(model: Model, nominal: Model) -> Model:
 
 def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
     """What was noted on disk under this content, or what `make` gives, noted."""
-    digest = hashlib.sha256(_sources())
+    digest = hashlib.sha256(MADE_FROM)
     digest.update(bound.plant.model.encode())
     note = CACHE_DIR / "kits" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
     try:
@@ -191,7 +191,6 @@ def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
     return known
 
 
-@cache
 def _sources() -> bytes:
     """Digest of everything that a variant is made from: simulation, effects, filter."""
     digest = hashlib.sha256()
@@ -201,3 +200,7 @@ def _sources() -> bytes:
     for path in sorted([*files, *(here / name for name in ("kit.py", "filter.py", "lagged.py"))]):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.digest()
+
+
+# Taken when this module is read: a note made later in this process is of the code that runs in it, whatever the files have become.
+MADE_FROM = _sources()

@@ -48,6 +48,11 @@ class CText:
 Source = Path | CText
 
 
+def c_text(path: Path) -> CText:
+    """A C file as it is now."""
+    return CText(path.name, path.read_text(encoding="utf-8"))
+
+
 def zig_environment() -> dict[str, str]:
     """Environment of a zig call: its caches stay in the project's own cache folder."""
     zig_cache = str(CACHE_DIR / "zig")
@@ -82,9 +87,11 @@ def build_shared(
 ) -> Path:
     """Compile `sources` into a shared library and return its path; the same content is compiled once only.
 
-    Headers in `include_dirs` count as content too. Raises BadInput when the compiler refuses.
+    Headers in `include_dirs` count as content too. Any number of processes may ask at once: each compiles on its own, and a library
+    appears whole under the name of its content. Raises BadInput when the compiler refuses.
     """
-    target = CACHE_DIR / "host" / f"{name}-{content_digest(sources, include_dirs, flags)}.so"
+    digest = content_digest(sources, include_dirs, flags)
+    target = CACHE_DIR / "host" / f"{name}-{digest}.so"
     if target.exists():
         return target
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -94,8 +101,11 @@ def build_shared(
         built = Path(work) / "out.so"
         compiled = [str(path) for path in files if path.suffix == ".c"]
         run_zig(["cc", "-shared", "-fPIC", *flags, *includes, *compiled, "-o", str(built), "-lm"], name)
-        built.replace(target)
-    return target
+        if content_digest(sources, include_dirs, flags) == digest:
+            built.replace(target)
+            return target
+    # A file was changed while the compiler read it: what came out bears no name that would be true.
+    return build_shared(name, sources, include_dirs=include_dirs, flags=flags)
 
 
 def load_shared(cdef: str, path: Path) -> tuple[FFI, Any]:
