@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from identification.margins import (
-    FOOT_m,
     MARGINS,
+    FOOT_m,
     correlation,
     fit_percent,
     held_s,
