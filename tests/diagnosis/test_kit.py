@@ -1,0 +1,52 @@
+"""Compiled filters that several diagnoses want at once, with nothing in the cache yet."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.test_project import ROOT
+from toolchain.host import CACHE_DIR
+
+# Three threads of a process ask for two variants of one kit, as a search does; then the filter runs in all of them.
+ASK = """
+from concurrent.futures import ThreadPoolExecutor
+import numpy as np
+from diagnosis.case import make_case
+from diagnosis.hypothesis import nothing_supposed, passes
+from diagnosis.kit import make_kit
+from records.log import RunLog
+from sim.columns import log_columns
+from tests.plants import bound
+
+plant = bound("aeroshield")
+kit = make_kit(plant)
+t_s = np.arange(200) * 0.01
+log = RunLog(log_columns(plant.model), 0.01, "open", t_s, np.full((200, 1), 1.5), np.sin(t_s)[:, None])
+case = make_case(kit, [log])
+
+def likelihood(_):
+    kit.variant(()), kit.variant(kit.wide_names)
+    return passes(case, nothing_supposed(case, -1.5))[0].log_likelihood
+
+with ThreadPoolExecutor(3) as pool:
+    print(repr(list(pool.map(likelihood, range(6)))))
+"""
+
+
+def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(tmp_path: Path) -> None:
+    # The compiler keeps its own cache, which knows of processes; the project's starts empty.
+    (tmp_path / "zig").symlink_to(CACHE_DIR / "zig")
+    environment = {**os.environ, "TWINLAW_CACHE": str(tmp_path)}
+    command = [sys.executable, "-c", ASK]
+    pipe = subprocess.PIPE
+    both = [subprocess.Popen(command, cwd=ROOT, env=environment, stdout=pipe, stderr=pipe, text=True) for _ in range(2)]
+    said = [process.communicate() for process in both]
+    assert [process.returncode for process in both] == [0, 0], said
+    (first, _), (second, _) = said
+    assert first == second
+    assert len(set(first.strip("[]\n").split(", "))) == 1
+    left = sorted(path.name.split("-")[0] for path in (tmp_path / "host").iterdir() if "filter" in path.name)
+    assert left == ["filter", "filter"]
+    assert not [path for path in (tmp_path / "host").iterdir() if path.is_dir()]
+    assert not list((tmp_path / "kits").glob(".*"))

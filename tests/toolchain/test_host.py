@@ -1,0 +1,48 @@
+"""The host compiler's cache: what a library is called is what it was made from, whoever asks at once and whatever changes meanwhile."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from toolchain import host
+from toolchain.host import CACHE_DIR, CText, build_shared, c_text, content_digest, load_shared
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache, but for the compiler's own."""
+    (tmp_path / "cache").mkdir()
+    (tmp_path / "cache" / "zig").symlink_to(CACHE_DIR / "zig")
+    monkeypatch.setattr(host, "CACHE_DIR", tmp_path / "cache")
+    return tmp_path / "cache" / "host"
+
+
+def test_a_source_that_changes_while_it_is_compiled_never_lends_its_name_to_the_other(
+    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source, asked = tmp_path / "answer.c", []
+    source.write_text("int answer(void) { return 1; }\n")
+    before = content_digest([source], (), ())
+    compile_once = host.run_zig
+
+    def changed_behind_our_back(arguments: Sequence[str], what: str) -> None:
+        if not asked:
+            source.write_text("int answer(void) { return 2; }\n")
+        asked.append(what)
+        compile_once(arguments, what)
+
+    monkeypatch.setattr(host, "run_zig", changed_behind_our_back)
+    path = build_shared("answer", [source], flags=())
+    assert len(asked) == 2
+    assert [found.name for found in cache.iterdir()] == [path.name]
+    assert before not in path.name
+    assert load_shared("int answer(void);", path)[1].answer() == 2
+
+
+def test_a_text_and_the_file_that_it_was_read_from_are_one_content(tmp_path: Path) -> None:
+    source = tmp_path / "answer.c"
+    source.write_text("int answer(void) { return 3; }\n")
+    kept = c_text(source)
+    assert kept == CText("answer.c", source.read_text())
+    assert content_digest([kept], (), ()) == content_digest([source], (), ())
