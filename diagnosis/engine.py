@@ -29,6 +29,7 @@ from diagnosis.weigh import Weighed, alike, confirmed, weigh
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
 from records.errors import BadInput
 from records.log import RunLog
+from records.table import ControllerTable
 from sim.bind import BoundPlant
 
 ALARM = 0.01
@@ -50,6 +51,9 @@ class Material:
     used: Sequence[NDArray[np.bool_] | None]
     firmware: Firmware | None = None
     notes: tuple[str, ...] = ()
+    tables: Sequence[
+        ControllerTable | None
+    ] = ()  # the controller that flew each hold-out log, None where it is not at hand
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -183,7 +187,7 @@ def _gap(
         ),
         unknown=Unknown(weighed.unknown, first.place if first else None, first.class_text if first else None),
         found=chosen.effects,
-        shrinkage=shrinkage(checked, predicted) if checked is not None else None,
+        shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
         next_experiment=next_experiment(weighed),
         notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
     )
@@ -227,7 +231,7 @@ def _no_gap(
         false_alarm_probability=detection.p,
         places=places,
         firmware=material.firmware,
-        shrinkage=shrinkage(checked, predicted) if checked is not None else None,
+        shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
         notes=(*material.notes, *notes_of(case, looks, retuned, None)),
     )
     return Result(

@@ -36,6 +36,11 @@ def replay_log(log: RunLog, path: Path, tables: Sequence[ControllerTable] = ()) 
     return FirmwareReplay(False, False, None, TABLE_NOT_FOUND, sentence)
 
 
+def table_of(log: RunLog, path: Path) -> ControllerTable | None:
+    """The table that the log at `path` names, where it lies beside it."""
+    return next((table for table in _beside(path) if table.digest == log.table_digest), None)
+
+
 def _beside(path: Path) -> tuple[ControllerTable, ...]:
     """The table in the log's folder, if one is there and whole."""
     try:

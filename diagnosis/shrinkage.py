@@ -6,10 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.agreement import agreements
 from diagnosis.case import Case
 from diagnosis.hypothesis import Supposed
 from diagnosis.predict import predictions, windows
+from diagnosis.reflight import closed_loop
 from records.diagnosis import Shrinkage
+from records.table import ControllerTable
 
 Array = NDArray[np.float64]
 BARS = ("nominal", "before", "after")
@@ -18,12 +21,16 @@ DRAWS, SEED = 1000, 7
 
 @dataclass(frozen=True, eq=False)
 class Predicted:
-    """Readings of a hold-out log predicted by each of BARS: (rows, outputs), NaN where a row could not be predicted."""
+    """Readings of a hold-out log predicted by each of BARS: (rows, outputs), NaN where a row could not be predicted.
+
+    `bars` are the models that predicted.
+    """
 
     name: str
     t_s: Array
     y: Array
     by: Mapping[str, Array]
+    bars: Mapping[str, Supposed]
 
 
 def predict_all(case: Case, names: Sequence[str], bars: Mapping[str, Supposed]) -> tuple[Predicted, ...]:
@@ -34,13 +41,17 @@ def predict_all(case: Case, names: Sequence[str], bars: Mapping[str, Supposed]) 
             flight.log.t_s,
             flight.log.y,
             {bar: predictions(case, flight, supposed) for bar, supposed in bars.items()},
+            bars,
         )
         for name, flight in zip(names, case.flights, strict=True)
     )
 
 
-def shrinkage(case: Case, predicted: Sequence[Predicted]) -> Shrinkage:
-    """RMS by output, the share of the removable error that the effects remove, and its bootstrap interval over windows."""
+def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[ControllerTable | None] = ()) -> Shrinkage:
+    """RMS by output, the share of the removable error that the effects remove, and its bootstrap interval over windows.
+
+    `tables` are the controllers that flew the logs of `case`, None where it is not at hand: those logs are flown again.
+    """
     outputs = list(case.kit.bound.model.outputs)
     squares = {bar: _squares(predicted, bar) for bar in BARS}
     floor = np.sqrt([case.flights[0].tape.r[0, case.kit.outputs.index(name)] for name in outputs])
@@ -58,6 +69,8 @@ def shrinkage(case: Case, predicted: Sequence[Predicted]) -> Shrinkage:
         rms_floor=_named(outputs, floor),
         fraction=fraction,
         fraction_ci95=None if fraction is None else interval,
+        agreement=agreements(outputs, [(entry.t_s, entry.y, entry.by) for entry in predicted]),
+        closed_loop=closed_loop(case, [e.name for e in predicted], tables, predicted[0].bars) if any(tables) else None,
     )
 
 

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -93,8 +93,27 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class Shrinkage:
-    """Errors of prediction on the hold-out logs by output, and which share of the removable error the effects remove."""
+class Agreement:
+    """How well one output's predictions agree with its readings, each figure by bar ("nominal", "before", "after").
+
+    `margin` is the tolerance in the output's unit, None where no rule gives one; `inside_margin` the shares of time within it.
+    A figure that the data leave undefined is absent.
+    """
+
+    margin: float | None
+    inside_margin: Mapping[str, float]
+    correlation: Mapping[str, float]
+    theil_fit_percent: Mapping[str, float]
+    nrmse_fit_percent: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """Flights of the log's own controller code on each model, against the logs: rms by output and input of what differs.
+
+    `rms_floor` is what unrest and rounding alone make of it; `fraction` as for Shrinkage, over the outputs. `diverged` names the bars
+    whose flight left the log's; their rms says no more than that it is large. `logs` are those that were flown again.
+    """
 
     rms_nominal: Mapping[str, float]
     rms_before: Mapping[str, float]
@@ -102,6 +121,26 @@ class Shrinkage:
     rms_floor: Mapping[str, float]
     fraction: float | None
     fraction_ci95: tuple[float, float] | None
+    diverged: tuple[str, ...]
+    logs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Shrinkage:
+    """Errors of prediction on the hold-out logs by output, and which share of the removable error the effects remove.
+
+    `agreement` tells of the same predictions by output and, under the name of its rate, of how fast it changes; `closed_loop` of
+    flights by the logs' own controller, None where it is not at hand.
+    """
+
+    rms_nominal: Mapping[str, float]
+    rms_before: Mapping[str, float]
+    rms_after: Mapping[str, float]
+    rms_floor: Mapping[str, float]
+    fraction: float | None
+    fraction_ci95: tuple[float, float] | None
+    agreement: Mapping[str, Agreement] = field(default_factory=dict)
+    closed_loop: ClosedLoop | None = None
 
 
 @dataclass(frozen=True)
@@ -215,11 +254,20 @@ def _list(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> tu
 
 
 def _record(kind: type[T], entry: Any, where: str) -> T:
-    """A record whose keys are the fields of `kind`, each read as its annotation says."""
+    """A record whose keys are the fields of `kind`, each read as its annotation says; one with a default may be absent."""
     section = checks.table(entry, where)
-    names = {_json_name(field.name): field for field in fields(kind)}  # type: ignore[arg-type]
-    checks.keys(section, where, names)
-    return kind(**{field.name: _READ[str(field.type)](section[key], f"{where}.{key}") for key, field in names.items()})
+    names = {_json_name(entry.name): entry for entry in fields(kind)}  # type: ignore[arg-type]
+    spare = [
+        key for key, entry in names.items() if entry.default is not MISSING or entry.default_factory is not MISSING
+    ]
+    checks.keys(section, where, [key for key in names if key not in spare], spare)
+    return kind(
+        **{
+            entry.name: _READ[str(entry.type)](section[key], f"{where}.{key}")
+            for key, entry in names.items()
+            if key in section
+        }
+    )
 
 
 def _flag(value: Any, where: str) -> bool:
@@ -240,6 +288,10 @@ def _numbers_by_name(value: Any, where: str) -> Mapping[str, float]:
 
 def _estimates(value: Any, where: str) -> Mapping[str, Estimate]:
     return {name: _record(Estimate, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
+
+
+def _agreements(value: Any, where: str) -> Mapping[str, Agreement]:
+    return {name: _record(Agreement, entry, f"{where}.{name}") for name, entry in checks.table(value, where).items()}
 
 
 def _interval(value: Any, where: str) -> tuple[float, float]:
@@ -263,5 +315,7 @@ _READ: Mapping[str, Callable[[Any, str], Any]] = {
         (tuple[float, float] | None, _or_none(_interval)),
         (Mapping[str, float], _numbers_by_name),
         (Mapping[str, Estimate], _estimates),
+        (Mapping[str, Agreement], _agreements),
+        (ClosedLoop | None, _or_none(lambda value, where: _record(ClosedLoop, value, where))),
     )
 }

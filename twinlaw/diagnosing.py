@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from diagnosis.engine import Material, diagnose
-from diagnosis.firmware_replay_table import replay_log
+from diagnosis.firmware_replay_table import replay_log, table_of
 from diagnosis.integrity import demand, examine
 from diagnosis.result import Result
 from diagnosis.shrinkage import Predicted
@@ -55,6 +55,7 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
         used=[~entry.excluded for entry in integrity.logs],
         firmware=firmware,
         notes=(*integrity.notes, *told),
+        tables=[table_of(log, path) for log, path in zip(read[split:], holdout, strict=True)],
     )
 
 

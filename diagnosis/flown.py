@@ -1,0 +1,154 @@
+"""A supposed plant in motion, sample by sample, with the equations that the filters already hold: nothing more is compiled.
+
+The mean alone moves: RK4 over each stretch of constant input, with located friction and stops, as the filter predicts (c/filter.c).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.hypothesis import Supposed, coefficients
+from sim.effects.build import paths_with
+from sim.paths import Held, OutputStage, Trace, pass_inputs, pass_output
+from sim.plants import MODELS
+
+Array = NDArray[np.float64]
+UNSEEN = 1e8  # variance of a reading that only asks
+
+
+class Flown:
+    """The plant of `case` under `supposed` at time `t_s` in state `x` (states of its variant,).
+
+    `x0` holds the plant's own states first; what effects brought and x0 lacks starts at 0. Axes `locked` stay where they stand. With a
+    `seed` the supposed unrest shakes the axes. `lost` is set once the state has left all bounds; then nothing moves any more.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        supposed: Supposed,
+        x0: Array,
+        t_s: float = 0.0,
+        *,
+        locked: tuple[str, ...] = (),
+        seed: int | None = None,
+    ) -> None:
+        kit = case.kit
+        variant = kit.variant(supposed.effects)
+        further = {name: values for name, values in supposed.effects.items() if name not in variant.names}
+        on_input, on_output = paths_with(MODELS[kit.bound.plant.model](), further)
+        self._case, self._filter, self.t_s, self.lost = case, variant.filter, t_s, False
+        self._outputs = len(kit.bound.model.outputs)
+        self._steps = np.array([kit.bound.plant.sensors[name] for name in kit.bound.model.outputs])
+        self._stepped = self._steps > 0.0
+        self._divisors = np.where(self._stepped, self._steps, 1.0)
+        self._rng = None if seed is None else np.random.default_rng(seed)
+        self._shaken = _shaken(case, supposed, locked)
+        self._on_input = on_input
+        self._input_memory: tuple[Any, ...] | None = None
+        self._ways = [(place, [s for s in on_output if s.output == place]) for place in range(self._outputs)]
+        self._memory: dict[int, Any] = {}
+        self._make_request(coefficients(case, variant, supposed), locked)
+        own = np.append(x0, np.zeros(max(0, variant.filter.states - len(x0))))
+        self._arrays["x0"][:] = own[: variant.filter.states]
+        self._ask(1)
+        self._y = self._behind(np.array([t_s]))
+
+    @property
+    def x(self) -> Array:
+        """A copy of the state."""
+        return self._arrays["x0"].copy()
+
+    def measured(self) -> Array:
+        """The outputs (outputs,) as their sensors read them, in whole steps."""
+        return np.where(self._stepped, np.rint(self._y / self._divisors) * self._steps, self._y)
+
+    def advance(self, u: Array, until_s: float) -> None:
+        """Hold the inputs u (inputs,) until `until_s`; the plant's own limits apply."""
+        if not self._on_input:
+            self._hold(u, until_s)
+            self._y = self._behind(np.array([until_s]))
+            return
+        command = Held(np.array([self.t_s, until_s]), np.asarray(u, dtype=float)[np.newaxis])
+        held, self._input_memory = pass_inputs(self._on_input, command, self._input_memory)
+        for value, end_s in zip(held.values, held.edges_s[1:].tolist(), strict=True):
+            self._hold(value, end_s)
+        self._y = self._behind(np.array([until_s]))
+
+    def _hold(self, u: Array, until_s: float) -> None:
+        if self.lost:
+            return
+        arrays = self._arrays
+        arrays["t_s"][:] = self.t_s, until_s
+        arrays["u"][:] = u
+        self.lost = not self._ask(2)
+        if self.lost:
+            return
+        arrays["x0"][:] = arrays["x"][1]
+        if self._rng is not None:
+            arrays["x0"] += self._shaken * np.sqrt(until_s - self.t_s) * self._rng.standard_normal(len(arrays["x0"]))
+        self.t_s = until_s
+
+    def _ask(self, steps: int) -> bool:
+        """Run the filter over `steps` instants without learning anything; whether the state kept within all bounds."""
+        self._request.steps = steps
+        good = bool(self._filter.lib.filter_run(self._request) == steps)
+        w, s = self._arrays["w"], self._arrays["s"]
+        self._read = -w[steps - 1] * np.sqrt(s[steps - 1]) if good else np.full(self._outputs, np.nan)
+        return good
+
+    def _behind(self, t_s: Array) -> Array:
+        """The outputs behind what they pass on their way."""
+        y = self._read.copy()
+        for place, stages in self._ways:
+            if stages and np.isfinite(y[place]):
+                before = self._memory.get(-1 - place, (t_s[0], y[place]))
+                rate = (y[place] - before[1]) / (t_s[0] - before[0]) if t_s[0] > before[0] else 0.0
+                trace = Trace(t_s, y[place : place + 1].copy(), np.array([rate]))
+                self._memory[-1 - place] = (t_s[0], float(y[place]))
+                y[place], self._memory[place] = self._passed(stages, trace, self._memory.get(place))
+        return y
+
+    def _passed(self, stages: list[OutputStage], trace: Trace, memory: Any) -> tuple[float, Any]:
+        behind, kept = pass_output(stages, trace, memory)
+        return float(behind.y[-1]), kept
+
+    def _make_request(self, p: Array, locked: tuple[str, ...]) -> None:
+        chosen, inputs = self._filter, len(self._case.kit.bound.model.inputs)
+        n, outputs, width = chosen.states, chosen.outputs, self._outputs
+        y = np.full((2, outputs), np.nan)
+        y[:, :width] = 0.0
+        self._arrays: dict[str, NDArray[Any]] = {
+            "t_s": np.array([self.t_s, self.t_s]),
+            "u": np.zeros((2, inputs)),
+            "y": y,
+            "r": np.full((2, outputs), UNSEEN),
+            "row": np.arange(2, dtype=np.int64),
+            "place": np.tile(np.arange(2, dtype=np.int64)[:, None], (1, outputs)),
+            "p": np.ascontiguousarray(p),
+            "x0": np.zeros(n),
+            "p0": np.zeros(n),
+            "q": np.zeros(n),
+            "rub": np.zeros(max(1, len(chosen.axes))),
+            "locked": np.array([axis in locked for axis in chosen.axes] or [False], dtype=np.uint8),
+            "slot": np.array([place if place < width else -1 for place in range(outputs)], dtype=np.int32),
+            "w": np.full((2, width), np.nan),
+            "s": np.full((2, width), np.nan),
+            "x": np.zeros((2, n)),
+        }
+        self._request = chosen.ffi.new("filter_request *")
+        for name, array in self._arrays.items():
+            setattr(self._request, name, chosen.ffi.cast("void *", array.ctypes.data))
+        self._request.columns, self._request.slots = 0, width
+
+
+def _shaken(case: Case, supposed: Supposed, locked: tuple[str, ...]) -> Array:
+    """Unrest (states,) per square root of a second: on the speeds of axes that are free."""
+    states = case.kit.states
+    found = np.zeros(case.kit.variant(supposed.effects).filter.states)
+    for axis, unrest in zip(case.kit.bound.model.axes, supposed.unrest, strict=True):
+        if axis.name not in locked:
+            found[states.index(str(axis.velocity))] = 10.0**unrest
+    return found

@@ -1,0 +1,198 @@
+"""The loop closed again: the controller's own generated code flies each model along a log's references, against what was logged.
+
+The law first runs on the log's own readings, and each model's filter with it, until that knows where the rig is; from there on the law
+reads the model's sensors instead. So a model that predicts each second well must also make the controller do what it did.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.firmware_replay_flight import Flight as Samples
+from diagnosis.firmware_replay_flight import flight_of, has_replayable_columns
+from diagnosis.flown import Flown
+from diagnosis.hypothesis import Supposed, passes
+from diagnosis.predict import SETTLE_S
+from records.diagnosis import ClosedLoop
+from records.table import ControllerTable
+from verification.host_law import HostLaw, host_law
+
+Array = NDArray[np.float64]
+BARS = ("nominal", "before", "after")
+SEEDS = (1, 2)  # flights of the floor
+WINDOW_S = 3.0
+ASTRAY_S = 1.0  # so long in all a flight may be further from the log than the log's own range
+DRAWS, SEED = 500, 7
+
+
+@dataclass(frozen=True, eq=False)
+class Reflown:
+    """One log flown again at t_s (n,): errors (n, outputs + inputs) by bar, and the mean squares of the floor likewise.
+
+    `reach` (outputs + inputs,) is the log's own range, `present` (n,) whether the log has the sample.
+    """
+
+    name: str
+    t_s: Array
+    reach: Array
+    present: NDArray[np.bool_]
+    errors: Mapping[str, Array]
+    floor: Array
+
+
+def closed_loop(
+    case: Case, names: Sequence[str], tables: Sequence[ControllerTable | None], bars: Mapping[str, Supposed]
+) -> ClosedLoop | None:
+    """Fly every log of `case` again whose table is given; None where there is none. `bars` are the models by BARS."""
+    flown = [
+        refly(case.with_flights([flight]), name, table, bars)
+        for flight, name, table in zip(case.flights, names, tables, strict=True)
+        if table is not None and flight.log.loop == "closed" and has_replayable_columns(flight.log)
+    ]
+    found = [entry for entry in flown if entry is not None]
+    return _summary(case, found) if found else None
+
+
+def refly(case: Case, name: str, table: ControllerTable, bars: Mapping[str, Supposed]) -> Reflown | None:
+    """The one flight of `case`; None where a model cannot be filtered along it or it ends before the filter is sure."""
+    (flight,) = case.flights
+    samples = flight_of(flight.log, table)
+    first = int(np.searchsorted(samples.t_s, samples.t_s[0] + SETTLE_S))
+    if first + 2 >= len(samples.t_s):
+        return None
+    law = host_law(table)
+    led = _led(law, samples, first)
+    starts = {bar: _state_at(case, bars[bar], float(samples.t_s[first])) for bar in BARS}
+    if any(start is None for start in starts.values()):
+        return None
+
+    def fly(bar: str, seed: int | None = None) -> Array:
+        start = starts[bar]
+        assert start is not None
+        plant = Flown(case, bars[bar], start, float(samples.t_s[first]), locked=flight.locked, seed=seed)
+        return _flight(law, led.copy(), samples, first, plant)
+
+    logged = np.hstack([samples.angle_rad, samples.logged_V])[first:]
+    plain = {bar: fly(bar) for bar in BARS}
+    floor = np.mean([(fly("after", seed) - plain["after"]) ** 2 for seed in SEEDS], axis=0)
+    floor = np.where(np.isfinite(logged), floor, np.nan)
+    errors = {bar: values - logged for bar, values in plain.items()}
+    reach = np.nanmax(logged, axis=0) - np.nanmin(logged, axis=0)
+    return Reflown(name, samples.t_s[first:], reach, np.isfinite(logged[:, -1]), errors, floor)
+
+
+def _led(law: HostLaw, samples: Samples, first: int) -> NDArray[np.uint32]:
+    """The law's state in front of sample `first`, from the log's own readings; what the log lacks stays as it was."""
+    inputs = _held(np.hstack([samples.reference_rad, samples.angle_rad])[: first + 1]).astype(np.float32)
+    words = np.ascontiguousarray(inputs[:, np.newaxis]).view(np.uint32)
+    state, _ = law.run(law.start(np.ascontiguousarray(words[0, :, 2:])), np.ascontiguousarray(words[:first]))
+    return state
+
+
+def _held(columns: Array) -> Array:
+    """NaN replaced by what stood before, or by the first number where nothing did."""
+    found = columns.copy()
+    for column in found.T:
+        good = np.flatnonzero(np.isfinite(column))
+        if good.size:
+            column[:] = column[good[np.maximum(np.searchsorted(good, np.arange(len(column)), side="right") - 1, 0)]]
+    return found
+
+
+def _state_at(case: Case, supposed: Supposed, t_s: float) -> Array | None:
+    """The filter's state under `supposed` at the first row at or behind t_s, with that row's readings."""
+    runs = passes(case, supposed)
+    if runs is None:
+        return None
+    filtered = runs[0].filtered
+    row = int(np.searchsorted(case.flights[0].log.t_s, t_s - 1e-9))
+    return np.asarray(filtered[row]) if row < len(filtered) and np.isfinite(filtered[row]).all() else None
+
+
+def _flight(law: HostLaw, state: NDArray[np.uint32], samples: Samples, first: int, plant: Flown) -> Array:
+    """Outputs and inputs (n, outputs + inputs) of the closed loop from sample `first` on; NaN from where the plant is lost."""
+    count = len(samples.t_s) - first
+    reference = _held(samples.reference_rad)[first:]
+    times = samples.t_s[first:].tolist()
+    found = np.full((count, 4), np.nan)
+    given = np.empty((1, 1, 4), dtype=np.float32)
+    for k in range(count):
+        y = plant.measured()
+        if plant.lost:
+            break
+        given[0, 0, :2], given[0, 0, 2:] = reference[k], y
+        state, words = law.run(state, given.view(np.uint32))
+        u = words[0, 0].view(np.float32).astype(float)
+        found[k, :2], found[k, 2:] = y, u
+        if k + 1 < count:
+            plant.advance(u, times[k + 1])
+    return found
+
+
+def _summary(case: Case, flown: Sequence[Reflown]) -> ClosedLoop:
+    columns = case.flights[0].log.columns
+    names = [*columns.outputs, *columns.inputs]
+    squares = {bar: np.concatenate([entry.errors[bar] ** 2 for entry in flown]) for bar in BARS}
+    floor = np.concatenate([entry.floor for entry in flown])
+    diverged = tuple(bar for bar in BARS if any(_astray(entry, bar, len(columns.outputs)) for entry in flown))
+    windows = np.concatenate([_numbers(entry.t_s) + 10_000 * place for place, entry in enumerate(flown)])
+    outputs = len(columns.outputs)
+    fraction, interval = _fraction(squares, floor, windows, outputs) if not diverged else (None, None)
+    rms = {bar: _named(names, values) for bar, values in (*squares.items(), ("floor", floor))}
+    return ClosedLoop(
+        rms["nominal"],
+        rms["before"],
+        rms["after"],
+        rms["floor"],
+        fraction,
+        interval,
+        diverged,
+        tuple(e.name for e in flown),
+    )
+
+
+def _astray(entry: Reflown, bar: str, outputs: int) -> bool:
+    """Whether a flight was lost, or further from the log than the log's own range for more than ASTRAY_S."""
+    error = entry.errors[bar][:, :outputs]
+    step_s = float(np.median(np.diff(entry.t_s)))
+    far = np.any(np.abs(error) > entry.reach[:outputs], axis=1)
+    lost = entry.present & ~np.isfinite(entry.errors[bar][:, -1])
+    return bool(lost.any() or far.sum() * step_s > ASTRAY_S)
+
+
+def _numbers(t_s: Array) -> NDArray[np.int64]:
+    return np.asarray(np.floor((t_s - t_s[0]) / WINDOW_S + 1e-9), dtype=np.int64)
+
+
+def _fraction(
+    squares: Mapping[str, Array], floor: Array, windows: NDArray[np.int64], outputs: int
+) -> tuple[float | None, tuple[float, float] | None]:
+    """(before^2 - after^2) / (before^2 - floor^2) over the outputs, each scaled by its floor; its bootstrap interval over windows."""
+    _, number = np.unique(windows, return_inverse=True)
+    columns = np.concatenate([values[:, :outputs] for values in (squares["before"], squares["after"], floor)], axis=1)
+    sums = np.stack([np.bincount(number, np.nan_to_num(column)) for column in columns.T], axis=1)
+
+    def share(total: Array) -> float | None:
+        before, after, least = total[:outputs], total[outputs : 2 * outputs], total[2 * outputs :]
+        scale = np.maximum(sums[:, 2 * outputs :].sum(axis=0), 1e-30)
+        removable = float(np.sum((before - least) / scale))
+        return float(np.sum((before - after) / scale)) / removable if removable > 0.0 else None
+
+    fraction = share(sums.sum(axis=0))
+    rng = np.random.default_rng(SEED)
+    drawn = [share(sums[rng.integers(0, len(sums), len(sums))].sum(axis=0)) for _ in range(DRAWS)]
+    known = [value for value in drawn if value is not None]
+    if fraction is None or not known:
+        return fraction, None
+    return fraction, (float(np.percentile(known, 2.5)), float(np.percentile(known, 97.5)))
+
+
+def _named(names: Sequence[str], squares: Array) -> dict[str, float]:
+    found = {}
+    for name, column in zip(names, squares.T, strict=True):
+        good = column[np.isfinite(column)]
+        found[name] = float(np.sqrt(good.mean())) if good.size else 0.0
+    return found
