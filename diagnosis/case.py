@@ -1,7 +1,7 @@
 """A diagnosis' material: the plant's kit and its logs as tapes, with where each starts."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from diagnosis.kit import Kit
 from diagnosis.tape import Tape, tape_of
 from records.log import RunLog
 from sim.bind import BoundPlant
+from sim.effects.effect import Values
 from sim.simulate import simulate
 
 Array = NDArray[np.float64]
@@ -33,12 +34,21 @@ class Flight:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """All flights of one plant, and the slot that each output's innovations take (-1: never measured)."""
+    """All flights of one plant, and the slot that each output's innovations take (-1: never measured).
+
+    `stated` are effects that the plant file itself states, by symbol, with `stated_sd`: every hypothesis supposes them.
+    """
 
     kit: Kit
     flights: tuple[Flight, ...]
     slots: tuple[int, ...]
     free: NDArray[np.int64]
+    stated: Mapping[str, Values] = field(default_factory=dict)
+    stated_sd: Mapping[str, Values] = field(default_factory=dict)
+
+    def added(self, effects: Iterable[str]) -> tuple[str, ...]:
+        """Those of `effects` that the plant file does not state."""
+        return tuple(name for name in effects if name not in self.stated)
 
     @property
     def sd(self) -> Array:
@@ -56,13 +66,21 @@ class Case:
         return replace(self, flights=tuple(flights))
 
 
-def make_case(kit: Kit, logs: Sequence[RunLog], used: Sequence[NDArray[np.bool_] | None] | None = None) -> Case:
-    """The logs ready for the filter; rows not `used` count as not measured."""
+def make_case(
+    kit: Kit,
+    logs: Sequence[RunLog],
+    used: Sequence[NDArray[np.bool_] | None] | None = None,
+    stated: BoundPlant | None = None,
+) -> Case:
+    """The logs ready for the filter; rows not `used` count as not measured. `stated` is the plant whose effects are stated."""
     masks = used or [None] * len(logs)
     flights = tuple(_flight(kit, log, mask) for log, mask in zip(logs, masks, strict=True))
     seen = np.any([np.isfinite(flight.tape.y).any(axis=0) for flight in flights], axis=0)
     slots = tuple(int(np.sum(seen[:place])) if seen[place] else -1 for place in range(len(seen)))
-    return Case(kit, flights, slots, np.flatnonzero(kit.bound.sd > 0.0))
+    entries = {} if stated is None else stated.effects
+    values = {name: {symbol: entry.values[0] for symbol, entry in own.items()} for name, own in entries.items()}
+    sd = {name: {symbol: entry.sds[0] for symbol, entry in own.items()} for name, own in entries.items()}
+    return Case(kit, flights, slots, np.flatnonzero(kit.bound.sd > 0.0), values, sd)
 
 
 def _flight(kit: Kit, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from diagnosis.case import Case
-from diagnosis.fit import size_scale
+from diagnosis.fit import away, size_scale
 from diagnosis.generic import Form, forms
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
@@ -50,7 +50,8 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     first = columns[0].shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
-    strain = float(chi2.sf(ground.fit.supposed.theta @ ground.fit.supposed.theta, len(case.free)))
+    moved = away(ground.fit.supposed, ground.fit.free)
+    strain = float(chi2.sf(moved @ moved, len(moved)))
     p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strain))
     return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
 

@@ -31,6 +31,7 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
+from sim.effects.api import without_effects
 
 ALARM = 0.01
 FIRST_UNREST = -1.5
@@ -57,11 +58,11 @@ class Material:
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
-    """Find what `bound` lacks to explain the logs. Raises BadInput where the plant as stated cannot be run along them."""
-    kit = make_kit(bound)
+    """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
+    kit = make_kit(without_effects(bound) if bound.effects else bound)
     split = len(material.logs)
-    case = make_case(kit, material.logs, material.used[:split])
-    checked = make_case(kit, material.holdout, material.used[split:]) if material.holdout else None
+    case = make_case(kit, material.logs, material.used[:split], bound)
+    checked = make_case(kit, material.holdout, material.used[split:], bound) if material.holdout else None
     nominal = nominal_fit(case)
     case = with_usual(case, nominal.supposed)
     ground = ground_of(case, nominal)
@@ -207,9 +208,7 @@ def _hypothesis(case: Case, weighed: Weighed, tried: Tried, probability: float) 
     own = estimates(case, tried.fit)
     single = len(tried.effects) == 1
     parameters = {
-        symbol if single else f"{name}.{symbol}": entry
-        for name, given in own.items()
-        for symbol, entry in given.items()
+        symbol if single else f"{name}.{symbol}": entry for name in tried.effects for symbol, entry in own[name].items()
     }
     same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, tried))
     return Hypothesis(" + ".join(tried.effects), " + ".join(classes), probability, parameters, same)

@@ -20,11 +20,15 @@ WIDE = 20.0  # sd of an effect's size before the data, in its reference
 
 @dataclass(frozen=True)
 class Free:
-    """One free number of an effect: its effect, its parameter, and the unit in which the fit counts it."""
+    """One free number of an effect: its effect, its parameter, and the unit in which the fit counts it.
+
+    `stated` is its value in the plant file, known to one `scale`; None where the file does not state the effect.
+    """
 
     effect: str
     parameter: EffectParameter
     scale: float
+    stated: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +50,10 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
     found = []
     for name, values in supposed.effects.items():
         for parameter in case.kit.effects[name].parameters:
-            if parameter.is_size:
+            if name in case.stated:
+                stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
+                found += [Free(name, parameter, sd, stated)] if sd > 0.0 else []
+            elif parameter.is_size:
                 found.append(Free(name, parameter, size_scale(parameter)))
             elif shapes:
                 found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
@@ -75,13 +82,24 @@ def likelihood(runs: Sequence[Pass]) -> float:
 
 
 def log_prior(supposed: Supposed, free: Sequence[Free]) -> float:
-    """Of theta, standard normal, and of sizes, wide."""
+    """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [
         (supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
         for entry in free
-        if entry.parameter.is_size
+        if entry.parameter.is_size and entry.stated is None
     ]
-    return -0.5 * float(supposed.theta @ supposed.theta) - 0.5 * float(np.sum(np.square(sizes)))
+    moved = away(supposed, free)
+    return -0.5 * float(moved @ moved) - 0.5 * float(np.sum(np.square(sizes)))
+
+
+def away(supposed: Supposed, free: Sequence[Free]) -> Array:
+    """How far all numbers that the plant file states are from there, in standard deviations: theta, then those of its effects."""
+    stated = [
+        (supposed.effects[entry.effect][entry.parameter.symbol] - entry.stated) / entry.scale
+        for entry in free
+        if entry.stated is not None
+    ]
+    return np.append(supposed.theta, stated)
 
 
 def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) -> Fit | None:
@@ -151,9 +169,14 @@ def _add_prior(supposed: Supposed, free: Sequence[Free], information: Array, pul
     information[np.diag_indices(count)] += 1.0
     pull[:count] += supposed.theta
     for row, entry in enumerate(free, count):
-        away = supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
+        value = supposed.effects[entry.effect][entry.parameter.symbol]
+        if entry.stated is not None:
+            information[row, row] += 1.0
+            pull[row] += (value - entry.stated) / entry.scale
+            continue
+        size = value - (entry.parameter.zero or 0.0)
         information[row, row] += 1.0 / WIDE**2 if entry.parameter.is_size else 1e-6
-        pull[row] += away / entry.scale / WIDE**2 if entry.parameter.is_size else 0.0
+        pull[row] += size / entry.scale / WIDE**2 if entry.parameter.is_size else 0.0
 
 
 def _add_differences(

@@ -36,8 +36,8 @@ class Supposed:
 
 
 def nothing_supposed(case: Case, unrest: float) -> Supposed:
-    """The plant as stated."""
-    return Supposed(np.zeros(len(case.free)), {}, np.full(len(case.kit.bound.model.axes), unrest))
+    """The plant as stated, with the effects that its file states."""
+    return Supposed(np.zeros(len(case.free)), case.stated, np.full(len(case.kit.bound.model.axes), unrest))
 
 
 def coefficients(case: Case, variant: Variant, supposed: Supposed) -> Array:
@@ -82,9 +82,15 @@ def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:
     """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
     further = variant.states[len(flight.x0) :]
     own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
-    read = [flight.log.y[np.isfinite(flight.log.y[:, own[s]]), own[s]][0] if s in own else 0.0 for s in further]
+    read = [_first(flight.log.y[:, own[s]]) if s in own else 0.0 for s in further]
     sure = [flight.tape.r[0, own[s]] if s in own else START_SD**2 for s in further]
     return np.append(flight.x0, read), np.append(flight.p0, sure)
+
+
+def _first(values: Array) -> float:
+    """The first reading; 0 of an output that was never measured."""
+    present = values[np.isfinite(values)]
+    return float(present[0]) if present.size else 0.0
 
 
 def passes(

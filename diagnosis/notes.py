@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import size_scale
+from diagnosis.fit import Fit, Free, away, size_scale
+from diagnosis.hypothesis import coefficients
 from diagnosis.screen import Look
 from diagnosis.search import Tried
 from diagnosis.weigh import Weighed, alike
@@ -31,15 +32,30 @@ def moved_parameters(case: Case, theta: np.ndarray, far: float = FAR) -> list[in
     return [index for index in np.argsort(-np.abs(theta)).tolist() if abs(theta[index]) > far]
 
 
+def moved_effects(fit: Fit, far: float = FAR) -> list[Free]:
+    """Numbers of effects that the plant file states, further than `far` from there."""
+    numbers = [entry for entry in fit.free if entry.stated is not None]
+    distances = away(fit.supposed, fit.free)[len(fit.supposed.theta) :]
+    return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]
+
+
 def _moved(case: Case, chosen: Tried) -> Iterator[str]:
     names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
     theta = chosen.fit.supposed.theta
+    p = coefficients(case, case.kit.plain, chosen.fit.supposed.with_effects({}))  # what cannot be negative is not
     for index in moved_parameters(case, theta):
         place = int(case.free[index])
-        value, sd = case.kit.bound.p[place], case.sd[index]
         yield (
             f"parameter {names[place]} is {theta[index]:+.1f} standard deviations from its stated value: "
-            f"{value + theta[index] * sd:.4g} instead of {value:.4g}"
+            f"{p[place]:.4g} instead of {case.kit.bound.p[place]:.4g}"
+        )
+    for entry in moved_effects(chosen.fit):
+        symbol, stated = entry.parameter.symbol, entry.stated or 0.0
+        sd = case.stated_sd[entry.effect][symbol]
+        value = chosen.fit.supposed.effects[entry.effect][symbol]
+        yield (
+            f"{symbol} of {entry.effect} is {(value - stated) / sd:+.1f} standard deviations from its stated value: "
+            f"{value:.4g} instead of {stated:.4g}"
         )
 
 

@@ -55,8 +55,9 @@ def evidence(found: Fit) -> float:
     """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
     size = len(found.supposed.theta)
     sign, volume = np.linalg.slogdet(found.information)
-    prior = sum(-np.log(WIDE) if entry.parameter.is_size else -SHAPE_COST for entry in found.free)
-    shapes = [row for row, entry in enumerate(found.free, size) if not entry.parameter.is_size]
+    new = [(row, entry.parameter.is_size) for row, entry in enumerate(found.free, size) if entry.stated is None]
+    prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
+    shapes = [row for row, is_size in new if not is_size]
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 
@@ -95,7 +96,7 @@ def _certain(fit: Fit) -> bool:
     spread = np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0))[count:]
     sizes: dict[str, float] = {}
     for entry, sd in zip(fit.free, spread, strict=True):
-        if entry.parameter.is_size:
+        if entry.parameter.is_size and entry.stated is None:
             away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
             certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
             sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
@@ -119,7 +120,7 @@ def _fit_all(
     """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
     fresh: dict[frozenset[str], tuple[Supposed, Look]] = {}
     for supposed, entry in jobs:
-        fresh.setdefault(frozenset((*supposed.effects, entry.effect)), (supposed, entry))
+        fresh.setdefault(frozenset((*case.added(supposed.effects), entry.effect)), (supposed, entry))
     wanted = [job for names, job in fresh.items() if names not in found]
     rough = [entry for entry in pool.map(lambda job: _rough(case, *job), wanted) if entry]
     if not rough:
@@ -137,11 +138,11 @@ def _rough(case: Case, supposed: Supposed, entry: Look) -> Tried | None:
     if entry.effect.endswith("_input.quantization"):
         start = _polished(case, start, entry.effect)
     found = fit(case, start, rounds=4)
-    return None if found is None or not _whole_counts(case, found) else _tried(found)
+    return None if found is None or not _whole_counts(case, found) else _tried(case, found)
 
 
-def _tried(found: Fit) -> Tried:
-    return Tried(tuple(found.supposed.effects), found, evidence(found))
+def _tried(case: Case, found: Fit) -> Tried:
+    return Tried(case.added(found.supposed.effects), found, evidence(found))
 
 
 def _whole_counts(case: Case, found: Fit) -> bool:
@@ -158,7 +159,7 @@ def _whole_counts(case: Case, found: Fit) -> bool:
 def refined(case: Case, tried: Tried) -> Tried | None:
     """The fit with the unrest that then remains."""
     found = fit(case, with_unrest(case, tried.fit.supposed), rounds=5)
-    return None if found is None else _tried(found)
+    return None if found is None else _tried(case, found)
 
 
 def _polished(case: Case, start: Supposed, effect: str) -> Supposed:

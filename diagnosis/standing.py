@@ -24,7 +24,9 @@ def with_usual(case: Case, nominal: Supposed) -> Case:
     kit = case.kit
     for place, sensor in kit.bound.model.places.sensors.items():
         name = f"{place}.backlash"
-        without = passes(case, nominal.with_effects({name: {"width": 0.0}})) if name in kit.effects else None
+        if name not in kit.effects or name in nominal.effects:
+            continue
+        without = passes(case, nominal.with_effects({**nominal.effects, name: {"width": 0.0}}))
         if without is not None:
             case = _levelled(case, kit.outputs.index(sensor.output), runs, without)
     return case

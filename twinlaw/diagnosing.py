@@ -33,7 +33,7 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
         nominal = without_effects(bound) if bound.effects else bound
         material = _material(nominal, logs, holdout)
     with stage("searching for what the model lacks"):
-        result = diagnose(nominal, material)
+        result = diagnose(bound, material)
     write_result(result, [path.name for path in logs], out)
     return result
 

@@ -28,7 +28,10 @@ def plant() -> BoundPlant:
 
 @pytest.fixture(scope="session")
 def fly(plant: BoundPlant) -> Fly:
-    """fly(seed, effects): a run of 30 s about level under lively references, with the spread of parameters and turbulence of `seed`."""
+    """fly(seed, effects): a run of 30 s about level under lively references, with turbulence and parameters of `seed`.
+
+    With a `rig_seed` the parameters are that rig's, the same in every run.
+    """
     table, _ = design(plant, read_settings(plant))
 
     def flown(
@@ -36,6 +39,7 @@ def fly(plant: BoundPlant) -> Fly:
         effects: Mapping[str, Mapping[str, float]] | None = None,
         seconds: float = SECONDS,
         factors: Mapping[str, float] | None = None,
+        rig_seed: int | None = None,
     ) -> RunLog:
         rng = np.random.default_rng(seed)
         t_s = np.arange(0.0, seconds, 0.01)
@@ -47,7 +51,8 @@ def fly(plant: BoundPlant) -> Fly:
         rig = with_effects(plant, effects) if effects else plant
         p = rig.p.copy()
         own = len(plant.p)
-        p[:own] += 0.5 * plant.sd * rng.standard_normal(own)
+        own_rng = rng if rig_seed is None else np.random.default_rng(rig_seed)
+        p[:own] += 0.5 * plant.sd * own_rng.standard_normal(own)
         names = [str(symbol) for symbol in plant.model.parameter_symbols]
         for name, factor in (factors or {}).items():
             p[names.index(name)] = factor * plant.p[names.index(name)]

@@ -1,0 +1,64 @@
+"""A plant file that already states an effect: that is no gap, what comes beside it is, and so is another size of it."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from diagnosis.engine import Material, diagnose
+from diagnosis.result import Result
+from sim.bind import BoundPlant, bind
+from sim.effects.api import with_effects
+from tests.diagnosis.conftest import Fly
+
+RIG = 7
+SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}}
+
+
+@pytest.fixture(scope="module")
+def improved(plant: BoundPlant, fly: Fly) -> Result:
+    """What a diagnosis of the rig with the spring makes of the plant file without."""
+    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
+
+
+def diagnosed_again(improved: Result, fly: Fly, effects: Mapping[str, Mapping[str, float]]) -> Result:
+    logs = [fly(seed, effects, rig_seed=RIG) for seed in (13, 14)]
+    return diagnose(bind(improved.plant), Material(logs[:1], logs[1:], ["hold"], [None, None]))
+
+
+def test_the_improved_plant_fed_back_in_shows_no_gap(improved: Result, fly: Fly) -> None:
+    assert set(improved.diagnosis.found) == {"azimuth.cable_spring"}
+    again = diagnosed_again(improved, fly, SPRING)
+    assert again.diagnosis.verdict == "no gap"
+    assert again.diagnosis.found == ()
+    assert set(bind(again.plant).effects) == {"azimuth.cable_spring"}
+    # As stated it now predicts like the improved plant did.
+    shrunk, before = again.diagnosis.shrinkage, improved.diagnosis.shrinkage
+    assert shrunk is not None
+    assert before is not None
+    assert shrunk.rms_nominal["phi_rad"] < 0.2 * before.rms_nominal["phi_rad"]
+
+
+def test_a_second_effect_is_found_beside_the_stated_one(improved: Result, fly: Fly) -> None:
+    again = diagnosed_again(improved, fly, {**SPRING, "elevation.quadratic_drag": {"c": 2e-3}})
+    assert again.diagnosis.verdict == "gap"
+    assert again.diagnosis.found == ("elevation.quadratic_drag",)
+    top = again.diagnosis.effects[0]
+    assert top.effect == "elevation.quadratic_drag"
+    assert top.parameters["c"].value == pytest.approx(2e-3, rel=0.15)
+    assert set(bind(again.plant).effects) == {"azimuth.cable_spring", "elevation.quadratic_drag"}
+
+
+def test_another_size_of_the_stated_effect_is_told_as_that(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that: 20 standard deviations, and nothing else is missing.
+    stated = with_effects(
+        plant, {"elevation.quadratic_drag": {"c": 2e-3}}, sd={"elevation.quadratic_drag": {"c": 1e-4}}
+    )
+    logs = [fly(seed, {"elevation.quadratic_drag": {"c": 4e-3}}, rig_seed=RIG) for seed in (13, 14)]
+    result = diagnose(stated, Material(logs[:1], logs[1:], ["hold"], [None, None]))
+    assert result.diagnosis.verdict == "gap"
+    assert result.diagnosis.found == ()
+    assert any(note.startswith("c of elevation.quadratic_drag is +") for note in result.diagnosis.notes)
+    assert result.diagnosis.places[0].place == "elevation"
+    c = bind(result.plant).effects["elevation.quadratic_drag"]["c"].values[0]
+    assert c == pytest.approx(4e-3, rel=0.1)
