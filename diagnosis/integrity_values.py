@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from diagnosis.integrity_held import held_findings
 from records.log import RunLog
 from sim.columns import reference_name
 
@@ -72,6 +73,7 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     yield from _missing_numbers(log, name)
     yield from _constant(log, name)
     yield from _copies(log, name)
+    yield from held_findings(log, name)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 
@@ -100,6 +102,14 @@ def _constant(log: RunLog, name: str) -> Iterator[Found]:
     elif len(still) == len(log.columns.inputs) + len(log.columns.outputs):
         sentence = "every input and every output is one constant"
         yield Found(Finding("constant", name, None, *span, sentence, REFUSE, 0, "a run that moves", "record one"))
+        return
+    elif np.isnan(log.y).all():
+        sentence = "no output was ever measured: NaN in every row"
+        yield Found(
+            Finding(
+                "not_recorded", name, None, *span, sentence, REFUSE, 0, "outputs that were read", "record another run"
+            )
+        )
         return
     elif set(log.columns.outputs) <= set(still) and not log.locked:
         sentence = (

@@ -93,6 +93,9 @@ def test_a_clean_log_has_no_findings_and_its_numbers_are_told() -> None:
         (lambda log: _column(log, "psi_rad", log.extra["psi_ref_rad"]), "copied_column", "psi_rad"),
         (lambda log: replace(log, u=0.0 * log.u, y=0.0 * log.y + 0.1, extra={}), "constant", None),
         (lambda log: replace(log, y=0.0 * log.y + 0.1, extra={}), "stuck_sensors", None),
+        (lambda log: replace(log, y=np.nan * log.y, extra={}), "not_recorded", None),
+        (lambda log: _column(log, "phi_rad", np.full(2001, 0.2)), "axis_stands", "phi_rad"),
+        (lambda log: _column(log, "psi_rad", np.full(2001, 0.1)), "axis_stands", "psi_rad"),
         (lambda log: rows_of(log, np.arange(len(log.t_s)) < 10), "too_short", "t_s"),
     ],
 )
@@ -136,6 +139,23 @@ def test_repeated_and_disordered_rows_are_left_out() -> None:
     found = _examined(replace(log, seq=seq))
     assert _kinds(found, "exclude") == {"repeated_rows", "disordered_rows"}
     assert np.flatnonzero(found.logs[0].excluded).tolist() == [500, 800]
+
+
+def test_an_axis_that_is_declared_locked_may_stand() -> None:
+    log = _column(clean(), "phi_rad", np.full(2001, 0.2))
+    assert _kinds(_examined(replace(log, locked=("azimuth",)))) == {"constant"}
+
+
+@pytest.mark.parametrize("period", [2, 7])
+def test_readings_that_are_repeated_until_the_next_one_are_left_out(period: int) -> None:
+    # Rows 3, 3 + m, ... hold fresh readings, as the sensor was sampled from there on at every m-th row of the log.
+    log, rows = clean(), np.arange(2001)
+    fresh = np.maximum((rows - 3) // period * period + 3, 3 - period * (3 // period))
+    found = _examined(replace(log, y=log.y[fresh]))
+    assert _kinds(found, "exclude") == {"held_readings"}
+    excluded = found.logs[0].excluded
+    assert not excluded[(rows % period == 3 % period) & (rows >= 3)].any()
+    assert excluded.mean() == pytest.approx(1.0 - 1.0 / period, abs=0.01)
 
 
 def test_a_clock_that_is_off_and_one_that_jitters_are_told_apart() -> None:
