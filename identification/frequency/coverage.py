@@ -1,0 +1,45 @@
+"""How often the truth lies within the intervals: flights of one plant with other noise each, matched from other starts each."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.frequency.fit import match
+from identification.frequency.helicopter import sweep_flights
+from identification.frequency.lateral_record import lateral_model, lateral_records
+from identification.frequency.sweep import Sweep
+from records.plant import Plant
+
+FACTOR = 1.96
+
+
+@dataclass(frozen=True, eq=False)
+class Repetition:
+    """One set of flights: estimates and their sd by parameter, and whether the truth lies within 95 %."""
+
+    seed: int
+    J: float
+    value: Mapping[str, float]
+    sd: Mapping[str, float]
+    inside: Mapping[str, bool]
+
+
+def repetition(plant: Plant, sweep: Sweep, amplitudes: tuple[float, float], repeats: int, seed: int) -> Repetition:
+    """Fly and match; the search never begins at the truth, but where `seed` draws it from the file's sd."""
+    logs = {k: v for k, v in sweep_flights(plant, sweep, amplitudes, repeats, seed).items() if k != "doublets"}
+    model = lateral_model(plant)
+    found = match(model, lateral_records(logs, plant), (sweep.low_rad_s, sweep.high_rad_s), seed=seed)
+    inside = np.abs(found.theta - model.start) <= FACTOR * found.sd
+    return Repetition(
+        seed,
+        found.J,
+        dict(zip(model.names, found.theta.tolist(), strict=True)),
+        dict(zip(model.names, found.sd.tolist(), strict=True)),
+        dict(zip(model.names, inside.tolist(), strict=True)),
+    )
+
+
+def coverage(repetitions: Sequence[Repetition]) -> Mapping[str, float]:
+    """Share of the repetitions in which each parameter lies within its interval."""
+    return {name: float(np.mean([entry.inside[name] for entry in repetitions])) for name in repetitions[0].inside}

@@ -1,0 +1,198 @@
+"""A linear model matched with the frequency responses of records: points, search, correction for finite windows, intervals."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.frequency.cost import N_OMEGA, Target, residual, target, with_response
+from identification.frequency.intervals import covariance, slopes
+from identification.frequency.linear_run import linear_run
+from identification.frequency.models import LinearModel, held_response
+from identification.frequency.record import Record, with_instruments
+from identification.frequency.responses import Responses, frequency_responses, replaced, responses_with
+from identification.frequency.secant import Found, Residual, restarted, secant_search
+from identification.frequency.sweep import RECORD_PERIODS, WINDOW_PERIODS, highest_rad_s
+from records.errors import BadInput
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+POINTS = 3 * N_OMEGA
+LENGTHS = 5  # of windows, each half of the one before
+CORRECTIONS = 4
+CORRECTED = 1e-3  # a correction that moves the residual by less than this share of J is the last
+SLOPE_STEP = 1e-5
+RESTARTS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyFit:
+    """A model matched with responses.
+
+    `responses` are those measured, corrected for finite windows, `points` those of them that were matched, `T` (f, outputs, inputs) the
+    model's, J the cost (7) and r its terms' roots; `left` (n, outputs) is what the model leaves of each record. `searches` are the
+    secant searches, best first.
+    """
+
+    model: LinearModel
+    theta: Array
+    covariance: Array
+    J: float
+    r: Array
+    responses: Responses
+    points: Target
+    T: Complex
+    slopes: Array
+    records: tuple[Record, ...]
+    left: tuple[Array, ...]
+    searches: tuple[Found, ...]
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviations of theta."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+
+def match(
+    model: LinearModel,
+    records: Sequence[Record],
+    band_rad_s: tuple[float, float] | None = None,
+    seed: int | None = None,
+) -> FrequencyFit:
+    """Match `model` with all records over a band, by default what their length and sampling allow.
+
+    The search begins at the model's own start and, by a normal distribution of its spread, at four more; with a `seed` at those alone.
+    Raises BadInput for records too short for the band, a band that is none, inputs that cannot be told apart, or coherence that is too
+    low everywhere.
+    """
+    swept = with_instruments(records)
+    low, high = band_of(swept, band_rad_s)
+    omega = np.geomspace(low, high, POINTS)
+    measured = frequency_responses(swept, omega, window_lengths_s(swept, low))
+    points = target(measured)
+    if not points.T.size:
+        best = float(np.max(measured.coherence))
+        raise BadInput(
+            "coherence", ", ".join(record.name for record in records), f"at most {best:.2f} from {low:.3g} to {high:.3g} rad/s",
+            "0.6 or more over a part of the band", "sweep with more amplitude, or longer, or over another band",
+        )  # fmt: skip
+    size = np.maximum(np.abs(model.start), np.maximum(model.spread, 1e-12))
+    period_s = swept[0].period_s
+    searches = restarted(_mismatch(model, points, omega, period_s), _starts(model, seed), size)
+    if not searches:
+        raise BadInput("start", "frequency search", "no response there", "a model that has one", "mend the plant file")
+    return _corrected(model, swept, measured, points, searches, size)
+
+
+def _starts(model: LinearModel, seed: int | None) -> list[Array]:
+    rng = np.random.default_rng([0 if seed is None else seed, 7])
+    drawn = [model.start + model.spread * rng.standard_normal(model.start.size) for _ in range(RESTARTS)]
+    return drawn if seed is not None else [model.start, *drawn]
+
+
+def _mismatch(model: LinearModel, points: Target, omega: Array, period_s: float) -> Residual:
+    def F(theta: Array) -> Array | None:
+        of = model.matrices(theta)
+        if of is None:
+            return None
+        with np.errstate(all="ignore"):
+            r = residual(points, held_response(of, omega, period_s))
+        return r if np.all(np.isfinite(r)) else None
+
+    return F
+
+
+def _corrected(
+    model: LinearModel,
+    records: tuple[Record, ...],
+    measured: Responses,
+    points: Target,
+    searches: tuple[Found, ...],
+    size: Array,
+) -> FrequencyFit:
+    """Refit with the error of finite windows taken off, which the model itself tells: its records give what its T is not."""
+    omega, period_s = measured.omega_rad_s, records[0].period_s
+    best, now = searches[0], measured
+    for _ in range(CORRECTIONS):
+        of = model.matrices(best.theta)
+        assert of is not None
+        runs = [linear_run(of, record) for record in records]
+        simulated = [replace(record, y=run.y) for record, run in zip(records, runs, strict=True)]
+        leak = responses_with(measured, simulated) - held_response(of, omega, period_s)
+        before, now = now, replaced(measured, measured.T - leak)
+        moved = residual(with_response(points, now.T), before.T)
+        points = with_response(points, now.T)
+        again = secant_search(_mismatch(model, points, omega, period_s), best.theta, size)
+        assert again is not None
+        best = again
+        if float(moved @ moved) < CORRECTED * best.J:
+            break
+    return _with_intervals(model, records, now, points, best, searches, size)
+
+
+def _with_intervals(
+    model: LinearModel,
+    records: tuple[Record, ...],
+    now: Responses,
+    points: Target,
+    best: Found,
+    searches: tuple[Found, ...],
+    size: Array,
+) -> FrequencyFit:
+    of = model.matrices(best.theta)
+    assert of is not None
+    left = tuple(record.y - linear_run(of, record).y for record in records)
+    F = _mismatch(model, points, now.omega_rad_s, records[0].period_s)
+    J = _slopes(F, best.theta, size)
+    r = F(best.theta)
+    assert r is not None
+    spread = covariance(now, records, left, points, slopes(J, size))
+    T = held_response(of, now.omega_rad_s, records[0].period_s)
+    return FrequencyFit(model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches)
+
+
+def _slopes(F: Residual, theta: Array, size: Array) -> Array:
+    columns = []
+    for place in range(theta.size):
+        step = np.zeros(theta.size)
+        step[place] = SLOPE_STEP * size[place]
+        upper, lower = F(theta + step), F(theta - step)
+        assert upper is not None
+        assert lower is not None
+        columns.append((upper - lower) / (2.0 * step[place]))
+    return np.column_stack(columns)
+
+
+def band_of(records: Sequence[Record], wanted: tuple[float, float] | None) -> tuple[float, float]:
+    """Lowest and highest frequency in rad/s that the records carry, or those wanted where they do; raises BadInput."""
+    longest = max(records, key=lambda record: record.duration_s)
+    most = highest_rad_s(longest.period_s)
+    if wanted is None:
+        return RECORD_PERIODS * 2.0 * math.pi / longest.duration_s, most
+    low, high = wanted
+    if not 0.0 < low < high <= most:
+        raise BadInput(
+            "band",
+            "command line",
+            f"{low:g} to {high:g} rad/s",
+            f"0 < lowest < highest <= {most:.4g} rad/s",
+            "give another",
+        )
+    least_s = RECORD_PERIODS * 2.0 * math.pi / low
+    if longest.duration_s < least_s * 0.999:
+        raise BadInput(
+            "record", longest.name, f"{longest.duration_s:.4g} s",
+            f"at least {least_s:.4g} s, {RECORD_PERIODS:g} periods of the lowest frequency, {low:g} rad/s",
+            f"sweep longer, or ask from {RECORD_PERIODS * 2.0 * math.pi / longest.duration_s:.3g} rad/s on",
+        )  # fmt: skip
+    return low, high
+
+
+def window_lengths_s(records: Sequence[Record], low_rad_s: float) -> tuple[float, ...]:
+    """Five lengths, each half of the one before; the longest holds two and a half periods of the lowest frequency."""
+    longest_s = max(record.duration_s for record in records)
+    first_s = min(longest_s, 1.25 * WINDOW_PERIODS * 2.0 * math.pi / low_rad_s)
+    least_s = 32.0 * records[0].period_s
+    return tuple(first_s / 2.0**k for k in range(LENGTHS) if first_s / 2.0**k >= least_s or k == 0)

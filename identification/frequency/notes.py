@@ -1,0 +1,73 @@
+"""What a match with frequency responses cannot tell, and why: by parameter, by pair, by search."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.frequency.cost import GOOD_COHERENCE
+from identification.frequency.fit import FrequencyFit
+from identification.frequency.models import held_response
+from identification.frequency.responses import Responses
+from identification.result import Estimated
+
+Array = NDArray[np.float64]
+POOR_J = 100.0
+SAME_J = 1.01
+
+
+def notes_on(
+    estimates: Sequence[Estimated], fit: FrequencyFit, unmatched: Sequence[tuple[str, str, float]]
+) -> tuple[str, ...]:
+    """One sentence for each parameter that is not told, for each of the `unmatched` pairs (input, output, best coherence), and for a
+    match or a search that is in doubt.
+    """
+    untold = [
+        f"{entry.name}: not told (sd {entry.sd:.2g} {entry.unit} about {entry.value:.3g}); {_reason(fit, entry.name)}; "
+        "the plant file's value is kept"
+        for entry in estimates
+        if not entry.identified
+    ]
+    silent = [
+        f"{name} to {output}: not matched, as its coherence is nowhere {GOOD_COHERENCE:g} over four frequencies (at most {best:.2f})"
+        for name, output, best in unmatched
+    ]
+    matched = len(fit.model.inputs) * len(fit.model.outputs) - len(unmatched)
+    mean = fit.J / matched
+    poor = [
+        f"J is {mean:.0f} on average over the pairs, above {POOR_J:g}: the model has not the form of these responses"
+    ]
+    alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
+    lonely = [f"only one of {len(fit.searches)} searches came to this J; try other starts with --search SEED"]
+    return (*untold, *silent, *(poor if mean > POOR_J else []), *(lonely if alone else []))
+
+
+def _reason(fit: FrequencyFit, name: str) -> str:
+    """Where a parameter would show best, and over which frequencies coherence lacks there."""
+    shown = _shows(fit, fit.model.names.index(name))
+    o, i = np.unravel_index(int(np.argmax(shown)), shown.shape)
+    weak = _weak_bands(fit.responses, int(o), int(i))
+    where = f"it shows most in {fit.model.inputs[i]} to {fit.model.outputs[o]}"
+    if not weak:
+        return f"{where}, whose coherence is good: sweep longer or with more amplitude, or hold a parameter that does the same"
+    bands = " and ".join(f"{low:.3g} to {high:.3g} rad/s" for low, high in weak)
+    return f"{where}, whose coherence is below {GOOD_COHERENCE:g} from {bands}"
+
+
+def _shows(fit: FrequencyFit, place: int) -> Array:
+    """Rms change of ln T (outputs, inputs) over the band by a tenth of the parameter's spread."""
+    step = np.zeros(fit.theta.size)
+    step[place] = 0.1 * max(fit.model.spread[place], 1e-3 * abs(fit.theta[place]))
+    of = fit.model.matrices(fit.theta + step) or fit.model.matrices(fit.theta - step)
+    if of is None:
+        return np.zeros(fit.T.shape[1:])
+    T = held_response(of, fit.responses.omega_rad_s, fit.records[0].period_s)
+    return np.asarray(np.sqrt(np.mean(np.abs(np.log(T / fit.T)) ** 2, axis=0)))
+
+
+def _weak_bands(of: Responses, o: int, i: int) -> list[tuple[float, float]]:
+    weak = np.concatenate([[False], of.coherence[:, o, i] < GOOD_COHERENCE, [False]])
+    edges = np.flatnonzero(np.diff(weak.astype(int)))
+    return [
+        (float(of.omega_rad_s[a]), float(of.omega_rad_s[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)
+    ]

@@ -1,0 +1,65 @@
+"""A run log as evenly spaced readings, in the form from which spectra are made."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from records.log import RunLog
+from sim.columns import reference_name
+
+Array = NDArray[np.float64]
+MOVED = 1e-9  # a signal whose range is below that is constant
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Inputs u (n, inputs), held from one row to the next, outputs y (n, outputs), and what was swept, r (n, inputs).
+
+    In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach.
+    """
+
+    name: str
+    period_s: float
+    u: Array
+    y: Array
+    r: Array
+
+    @property
+    def duration_s(self) -> float:
+        """From the first row to the end of the last one's hold."""
+        return self.period_s * float(self.u.shape[0])
+
+
+def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
+    """A log's readings of `outputs` on an even grid: lines between readings (also across NaN), inputs held.
+
+    Raises BadInput for a log without two readings of an output.
+    """
+    count = round(float(log.t_s[-1] - log.t_s[0]) / log.sample_period_s) + 1
+    grid_s = log.t_s[0] + log.sample_period_s * np.arange(count)
+    held = np.clip(np.searchsorted(log.t_s, grid_s + 0.5 * log.sample_period_s) - 1, 0, log.t_s.size - 1)
+    y = np.column_stack([_line(log, output, grid_s, name) for output in outputs])
+    references = [reference_name(output) for output in log.columns.outputs[: log.u.shape[1]]]
+    r = log.u
+    if log.loop == "closed" and all(reference in log.extra for reference in references):
+        r = np.column_stack([np.nan_to_num(log.extra[reference]) for reference in references])
+    return Record(name, log.sample_period_s, log.u[held], y, r[held])
+
+
+def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:
+    values = log.column(output)
+    good = np.isfinite(values)
+    if good.sum() < 2:
+        raise BadInput(f"column {output!r}", name, f"{int(good.sum())} readings", "a record of it", "give another log")
+    return np.asarray(np.interp(grid_s, log.t_s[good], values[good]))
+
+
+def with_instruments(records: Sequence[Record]) -> tuple[Record, ...]:
+    """The records with r such that all inputs are told apart: where not every reference moves in some record, r is u itself."""
+    spread = np.max([np.ptp(record.r, axis=0) for record in records], axis=0)
+    if np.all(spread > MOVED):
+        return tuple(records)
+    return tuple(Record(entry.name, entry.period_s, entry.u, entry.y, entry.u) for entry in records)

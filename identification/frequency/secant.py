@@ -1,0 +1,96 @@
+"""The secant search of seed 002, section 4.1, for several unknowns, restarted from other first approximations.
+
+Where one unknown has the secant through F(u_1) and F(u_2), n unknowns have the affine function through n + 1 evaluations of F,
+
+    (1)  F(theta + s) ~ F(theta) + S s,      S s_k = F_k - F for each of them,
+
+and each later evaluation turns S so that it goes through the newest two (Broyden's update),
+
+    (2)  S <- S + (F(theta + s) - F(theta) - S s) s^T / (s^T s)
+
+in units of the parameters' sizes. The next approximation minimises |F + S s|^2 + mu |s|^2; mu grows while no better one is found. A search
+that stalls is set up anew through n + 1 points about its best one, and ends when that does not help either. No derivative is asked for.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Residual = Callable[[Array], Array | None]
+FIRST_STEP, LATER_STEP = 0.05, 1e-4  # of a parameter's size, for the first n + 1 points and for later ones
+MOST_STEPS = 200
+SETTLED = 1e-7  # relative gain of J by a new set of points that is none
+MU_MOST = 1e8
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The best theta of one search, its J, how often F was evaluated, and whether the search settled."""
+
+    theta: Array
+    J: float
+    evaluations: int
+    settled: bool
+
+
+def secant_search(residual: Residual, start: Array, size: Array) -> Found | None:
+    """Minimise J = |F|^2 from `start`; None where F does not exist there. `residual` gives F (m,), or None where there is none."""
+    F = residual(start)
+    if F is None:
+        return None
+    best = Found(np.array(start), float(F @ F), 1, False)
+    step, stalls = FIRST_STEP, 0
+    for _ in range(MOST_STEPS):
+        S, spent = _through_points(residual, best.theta, F, size, step)
+        after, F = _descend(residual, best, F, S, size)
+        gain = best.J - after.J
+        best = Found(after.theta, after.J, after.evaluations + spent, False)
+        stalls = stalls + 1 if gain <= SETTLED * best.J else 0
+        step = max(LATER_STEP, step / 10.0)
+        if stalls and step == LATER_STEP:
+            return Found(best.theta, best.J, best.evaluations, True)
+    return best
+
+
+def restarted(residual: Residual, starts: Iterable[Array], size: Array) -> tuple[Found, ...]:
+    """The search from each of `starts`, best first; those from which it cannot begin are left out."""
+    found = [entry for start in starts if (entry := secant_search(residual, start, size)) is not None]
+    return tuple(sorted(found, key=lambda entry: entry.J))
+
+
+def _through_points(residual: Residual, theta: Array, F: Array, size: Array, step: float) -> tuple[Array, int]:
+    """S of (1) through theta and n points, each with one parameter moved; a point that does not exist is taken on the other side."""
+    S, spent = np.zeros((F.size, theta.size)), 0
+    for place in range(theta.size):
+        for way in (step, -step):
+            point = theta.copy()
+            point[place] += way * size[place]
+            other, spent = residual(point), spent + 1
+            if other is not None:
+                S[:, place] = (other - F) / way
+                break
+    return S, spent
+
+
+def _descend(residual: Residual, best: Found, F: Array, S: Array, size: Array) -> tuple[Found, Array]:
+    """Steps by (1) and (2) until none is better."""
+    theta, J, count, mu, failed = best.theta, best.J, best.evaluations, 1e-3, 0
+    while mu < MU_MOST and failed < 2 * theta.size + 8:
+        s = np.linalg.solve(S.T @ S + mu * np.diag(np.diag(S.T @ S) + 1e-12), -S.T @ F)
+        other, count = residual(theta + s * size), count + 1
+        if other is None:
+            mu, failed = mu * 10.0, failed + 1
+            continue
+        predicted = F + S @ s
+        S = S + np.outer(other - predicted, s) / max(float(s @ s), 1e-300)
+        if float(other @ other) < J:
+            small = J - float(other @ other) < 1e-10 * J
+            theta, F, J, mu, failed = theta + s * size, other, float(other @ other), max(mu / 5.0, 1e-10), 0
+            if small:
+                break
+        else:
+            mu, failed = mu * 5.0, failed + 1
+    return Found(theta, J, count, False), F
