@@ -67,8 +67,8 @@ def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Gen
     kit, tape = ground.case.kit, ground.tapes[index]
     name = kit.outputs[place]
     step = kit.bound.plant.sensors.get(name, 0.0)
-    beyond = np.maximum(tape.r[:, place] - step**2 / 12.0, 0.0)[:, None]
-    error = rng.standard_normal((len(tape.t_s), count)) * np.sqrt(np.where(beyond < 1e-3 * step**2, 0.0, beyond))
+    beyond = tape.variance(place) - step**2 / 12.0
+    error = rng.standard_normal((len(tape.t_s), count)) * np.sqrt(beyond if beyond > 1e-3 * step**2 else 0.0)
     if step <= 0.0 or name not in kit.bound.model.outputs:
         return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
     symbol = str(kit.bound.model.outputs[name])

@@ -37,7 +37,7 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
 
 def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:
     r = tape.r.copy()
-    r[:, output] += grid**2 / 12.0
+    r[:, output] *= 1.0 + grid**2 / 12.0 / tape.variance(output)
     return replace(tape, r=r, known=tape.known + grid_evidence(tape.y[:, output], grid, step))
 
 

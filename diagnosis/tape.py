@@ -33,6 +33,10 @@ class Tape:
     usual: Array
     known: float = 0.0
 
+    def variance(self, output: int) -> float:
+        """Variance of one reading of an output by itself."""
+        return float(np.min(self.r[np.isfinite(self.y[:, output]), output], initial=np.inf))
+
 
 def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None) -> Tape:
     """The tape of a log: `outputs` are the plant's own and then the states that the log may carry; rows not `used` have no measurement."""
@@ -42,11 +46,23 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
     for place, name in enumerate(outputs):
         if name in log.columns.outputs or name in log.extra:
             y[:, place] = log.column(name)
-            r[:, place] = _variance(y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
+            r[:, place] = _standing(y[:, place]) * _variance(
+                y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0)
+            )
     if used is not None:
         y[~used] = np.nan
     places = np.tile(np.arange(rows)[:, None], (1, len(outputs)))
     return Tape(log.t_s, log.u, y, r, np.arange(rows), places, rows, -0.5 * (1.0 + np.log(r)))
+
+
+def _standing(y: Array) -> Array:
+    """How many rows each reading stands for: the same count read again and again says no more than once."""
+    count = np.ones(len(y))
+    seen = np.flatnonzero(np.isfinite(y))
+    if len(seen):
+        number = np.append(0, np.cumsum(np.diff(y[seen]) != 0.0))
+        count[seen] = np.bincount(number)[number]
+    return count
 
 
 def _variance(y: Array, step: float, noise: float) -> float:
