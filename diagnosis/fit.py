@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
+OUT_OF_REACH = 1e3  # references
 WIDE = 20.0  # sd of an effect's size before the data, in its reference
 
 
@@ -53,11 +54,17 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
                 found += [Free(name, parameter, sd, stated)] if sd > 0.0 else []
-            elif parameter.is_size:
+            elif from_zero(parameter):
                 found.append(Free(name, parameter, size_scale(parameter)))
             elif shapes:
                 found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
     return tuple(found)
+
+
+def from_zero(parameter: EffectParameter) -> bool:
+    """Whether a number counts from where its effect vanishes: a size does, but for a limit that only vanishes out of all reach."""
+    out_of_reach = parameter.reference != 0.0 and abs(parameter.zero or 0.0) > OUT_OF_REACH * abs(parameter.reference)
+    return parameter.is_size and not out_of_reach
 
 
 def size_scale(parameter: EffectParameter) -> float:
@@ -86,7 +93,7 @@ def log_prior(supposed: Supposed, free: Sequence[Free]) -> float:
     sizes = [
         (supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
         for entry in free
-        if entry.parameter.is_size and entry.stated is None
+        if from_zero(entry.parameter) and entry.stated is None
     ]
     moved = away(supposed, free)
     return -0.5 * float(moved @ moved) - 0.5 * float(np.sum(np.square(sizes)))
@@ -175,8 +182,8 @@ def _add_prior(supposed: Supposed, free: Sequence[Free], information: Array, pul
             pull[row] += (value - entry.stated) / entry.scale
             continue
         size = value - (entry.parameter.zero or 0.0)
-        information[row, row] += 1.0 / WIDE**2 if entry.parameter.is_size else 1e-6
-        pull[row] += size / entry.scale / WIDE**2 if entry.parameter.is_size else 0.0
+        information[row, row] += 1.0 / WIDE**2 if from_zero(entry.parameter) else 1e-6
+        pull[row] += size / entry.scale / WIDE**2 if from_zero(entry.parameter) else 0.0
 
 
 def _add_differences(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import WIDE, Fit, fit, likelihood
+from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import Look, look
@@ -55,7 +55,7 @@ def evidence(found: Fit) -> float:
     """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
     size = len(found.supposed.theta)
     sign, volume = np.linalg.slogdet(found.information)
-    new = [(row, entry.parameter.is_size) for row, entry in enumerate(found.free, size) if entry.stated is None]
+    new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
     prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
     shapes = [row for row, is_size in new if not is_size]
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
