@@ -26,6 +26,7 @@ from diagnosis.standing import with_usual
 from diagnosis.unknown import Suspect, suspects
 from diagnosis.unrest import FIRST_STEP, with_unrest
 from diagnosis.weigh import Weighed, alike, confirmed, weigh
+from diagnosis.wiring import demand_wiring
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
 from records.errors import BadInput
 from records.log import RunLog
@@ -71,6 +72,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     stated = Tried((), nominal, evidence(nominal))
     if detection.p > ALARM:
         return _no_gap(case, checked, material, detection, stated, looks)
+    demand_wiring(case, nominal, nominal_fit)
     found = search(case, nominal, kit.candidates, ground, looks)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = _left(detect(case, ground_of(case, best.fit), []))
@@ -189,7 +191,7 @@ def _gap(
         unknown=Unknown(weighed.unknown, first.place if first else None, first.class_text if first else None),
         found=chosen.effects,
         shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
-        next_experiment=next_experiment(weighed),
+        next_experiment=next_experiment(case, weighed),
         notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
     )
 

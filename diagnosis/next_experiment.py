@@ -1,130 +1,173 @@
-"""What to record next: of the rig's own menu, the run that best separates the hypotheses that are still alike."""
+"""What to record next: of the rig's own menu, the run that best separates the hypotheses that are still alike, flown in advance."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.menu import Plan, plans, rooms
+from diagnosis.rehearsal import Rehearsal, missed, outcomes, recorded, rehearse, setting
+from diagnosis.search import Tried
+from diagnosis.stand_in import StandIn, stand_in
 from diagnosis.weigh import Weighed
 
+Array = NDArray[np.float64]
 LEAST = 0.02  # of probability that must be at stake
+LEADING = 3
+SURE, ENOUGH = 5.0, 2.0  # standard deviations: more than these tell no more, fewer than these tell nothing
+EFFORT = 0.2  # of what a sure separation is worth, for an experiment of effort 1
+BEYOND = 0.05  # likewise, for each factor of ten beyond SURE: no model is so right that the noise alone decides
+LIMITS = 0.3  # likewise for one that leaves the limits
+LONGEST_PERIOD_S = 0.02
+INPUT_FLOOR = 0.02  # of an input's range: less than that is no outcome to look for
+OUTPUT_FLOOR = 3.0  # encoder steps, likewise
 
 
-@dataclass(frozen=True)
-class Experiment:
-    """One run of the menu: what to do, and the groups of effect kinds that look different in it; kinds of one group stay alike."""
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A plan flown under each leading hypothesis, and the separation of each pair (places in `leading`)."""
 
-    name: str
-    instruction: str
-    reason: str
-    groups: tuple[frozenset[str], ...]
+    plan: Plan
+    flown: tuple[Rehearsal, ...]
+    z: Mapping[tuple[int, int], float]
 
-
-def _group(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
-
-MENU: Sequence[Experiment] = (
-    Experiment(
-        "rotor speeds logged",
-        "repeat the run with both rotor speeds in the log",
-        "what acts before the rotor shows in its speed, what acts behind it does not",
-        (
-            _group(
-                "input.lag input.delay input.slew_limit input.deadzone input.saturation input.supply_sag input.gain"
-            ),
-            _group("rotor.downwash rotor.ground_effect rotor.axial_inflow rotor.reverse_asymmetry"),
-            _group("sensor.delay sensor.lag loop.delay"),
-            _group("rotor.dry_friction rotor.warmup"),
-        ),
-    ),
-    Experiment(
-        "wide azimuth sweep",
-        "sweep the azimuth slowly over its whole range, elevation held",
-        "a spring grows with the angle, tilt and wind repeat with it, hysteresis depends on where it came from",
-        (_group("cable_spring"), _group("tilt wind"), _group("cable_hysteresis"), _group("friction_asymmetry")),
-    ),
-    Experiment(
-        "rig turned by 90 degrees",
-        "mount the rig turned by 90 degrees and repeat the run: gravity no longer acts on the elevation",
-        "what gravity does vanishes, stiffness and encoder offset stay",
-        (
-            _group("centre_of_gravity balance_weight weight_shift"),
-            _group("cable_spring"),
-            _group("offset ground_effect"),
-        ),
-    ),
-    Experiment(
-        "coast-down",
-        "switch the motors off at speed and let each axis come to rest, from both directions",
-        "friction that depends on load vanishes with the rotors at rest; drag and dry friction slow down differently",
-        (
-            _group("stribeck coulomb presliding"),
-            _group("load_friction axial_inflow"),
-            _group("quadratic_drag"),
-            _group("friction_asymmetry"),
-        ),
-    ),
-    Experiment(
-        "dither",
-        "add a pseudo-random dither of a tenth of the range, 0.3 Hz to 6 Hz, to both inputs",
-        "a lag bends the phase, a delay turns it, a slew limit depends on the size of the step",
-        (
-            _group("lag"),
-            _group("delay dropped_frames"),
-            _group("slew_limit"),
-            _group("flexible_mode rotor_acceleration"),
-        ),
-    ),
-    Experiment(
-        "slow ramp",
-        "ramp each reference slowly up and down without dither",
-        "steps of inputs and sensors and play show at reversals and between counts",
-        (_group("quantization"), _group("backlash"), _group("deadzone"), _group("stribeck presliding coulomb")),
-    ),
-)
+    @property
+    def within_limits(self) -> bool:
+        """Whether every flight kept its limits."""
+        return all(entry.within_limits for entry in self.flown)
 
 
-def next_experiment(weighed: Weighed) -> Mapping[str, Any] | None:
-    """The run that separates most of what is undecided, with the outcome to expect; None where nothing is."""
-    pairs = [
-        (one, other, weighed.probabilities[one] * weighed.probabilities[other])
-        for one, other in combinations(range(len(weighed.tried)), 2)
-    ]
-    if sum(stake for *_, stake in pairs) < LEAST:
+def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
+    """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
+    leading = list(zip(weighed.tried, weighed.probabilities, strict=True))[:LEADING]
+    pairs = {
+        (a, b): leading[a][1] * leading[b][1]
+        for a, b in combinations(range(len(leading)), 2)
+        if set(leading[a][0].effects) != set(leading[b][0].effects)
+    }
+    if sum(pairs.values()) < LEAST:
         return None
-    best, worth, split = None, 0.0, list[str]()
-    for experiment in MENU:
-        found = [(a, b, stake) for a, b, stake in pairs if _separates(experiment, weighed, a, b)]
-        gain = sum(stake for *_, stake in found)
-        if gain > worth:
-            best, worth = experiment, gain
-            split = [f"{_text(weighed, a)} from {_text(weighed, b)}" for a, b, _ in found[:3]]
-    if best is None:
+    tried = [tried for tried, _ in leading]
+    period_s = min(LONGEST_PERIOD_S, 2.0 * min(flight.log.sample_period_s for flight in case.flights))
+    found = [trial for plan in plans(case, period_s) if (trial := _trial(case, plan, tried, pairs)) is not None]
+    if not found:
         return None
+    best = max(found, key=lambda trial: _worth(trial, pairs))
+    return _told(case, best, tried, pairs)
+
+
+def _trial(case: Case, plan: Plan, tried: Sequence[Tried], pairs: Mapping[tuple[int, int], float]) -> Trial | None:
+    """Fly a plan under every hypothesis and compare each pair on what the likelier of the two would record."""
+    law = _law(case, plan)
+    there = setting(case, plan)
+    flown = [None if law is None else rehearse(there, plan, law, entry.fit.supposed) for entry in tried]
+    if any(entry is None for entry in flown):
+        return None
+    good = tuple(entry for entry in flown if entry is not None)
+    z = {}
+    for a in sorted({a for a, _ in pairs}):
+        data = recorded(there, good[a])
+        unrest = tried[a].fit.supposed.unrest
+        own = missed(data, tried[a].fit, plan, unrest)
+        if own is None:
+            return None
+        for b in (b for one, b in pairs if one == a):
+            other = missed(data, tried[b].fit, plan, unrest)
+            z[a, b] = 2.0 * SURE if other is None else float(np.sqrt(max(other - own, 0.0)))
+    return Trial(plan, good, z)
+
+
+def _law(case: Case, plan: Plan) -> StandIn | None:
+    room = rooms(case)
+    at = {entry.axis: entry.middle for entry in room}
+    size = np.array([0.3 * entry.reach for entry in room])
+    return stand_in(case.kit.bound, at, size, float(plan.t_s[1]), plan.locked)
+
+
+def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float, float]:
+    """What a trial decides, in units of the probability at stake, less its effort; then the separation itself."""
+    stake = sum(pairs.values())
+    decided = sum(p * _decided(trial.z[pair]) for pair, p in pairs.items()) / stake
+    cost = EFFORT * trial.plan.effort + (0.0 if trial.within_limits else LIMITS)
+    return decided - cost, min(trial.z.values())
+
+
+def _decided(z: float) -> float:
+    return min(z / SURE, 1.0) ** 2 + BEYOND * float(np.log10(max(z / SURE, 1.0)))
+
+
+def _told(case: Case, best: Trial, tried: Sequence[Tried], pairs: Mapping[tuple[int, int], float]) -> Mapping[str, Any]:
+    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], SURE) ** 2)
+    names = [_name(entry) for entry in tried]
+    apart = best.z[first]
+    split = {True: list[str](), False: list[str]()}
+    for a, b in pairs:
+        split[best.z[a, b] >= ENOUGH].append(f"{names[a]} from {names[b]}")
     return {
-        "experiment": best.name,
-        "instruction": best.instruction,
-        "separates": split,
-        "expected_outcome": best.reason,
+        "experiment": best.plan.name,
+        "instruction": best.plan.instruction,
+        "separates": split[True],
+        "does_not_separate": split[False],
+        "expected_outcome": _outcome(case, best, first, names),
+        "separation": round(apart, 1),
+        "within_limits": best.within_limits,
+        "duration_s": round(float(best.plan.t_s[-1] + best.plan.t_s[1]), 2),
     }
 
 
-def _text(weighed: Weighed, index: int) -> str:
-    return " + ".join(weighed.tried[index].effects)
+def _name(tried: Tried) -> str:
+    return " + ".join(tried.effects)
 
 
-def _separates(experiment: Experiment, weighed: Weighed, one: int, other: int) -> bool:
-    first, second = set(weighed.tried[one].effects), set(weighed.tried[other].effects)
-    groups = [{_place(experiment, name) for name in names} - {None} for names in (first - second, second - first)]
-    return bool(groups[0]) and bool(groups[1]) and groups[0] != groups[1]
+def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[str]) -> str:
+    """The expected outcome in one sentence with numbers."""
+    a, b = pair
+    apart = trial.z[pair]
+    if apart < ENOUGH:
+        return (
+            f"no run of the menu tells {names[a]} from {names[b]}: this one, the best, leaves them "
+            f"{apart:.1f} standard deviations of the noise apart"
+        )
+    found = outcomes([trial.flown[a].log, trial.flown[b].log], _floors(case))
+    kept = "" if trial.within_limits else "; stops or inputs reach their limits"
+    apart_text = f"{apart:.0f} standard deviations of the noise apart after re-tuning{kept}"
+    if found is None:
+        return f"{names[a]} and {names[b]} leave small differences everywhere that add up: {apart_text}"
+    name, after_s, values = found
+    one, other = (_shown(name, value) for value in values)
+    return (
+        f"{after_s:.1f} s into the run the {_part(case, name)} is at {one} under {names[a]}, "
+        f"at {other} under {names[b]}: {apart_text}"
+    )
 
 
-def _place(experiment: Experiment, effect: str) -> int | None:
-    """The group that an effect belongs to."""
-    place, kind = effect.split(".")
-    side = place.rsplit("_", 1)[-1]
-    for index, group in enumerate(experiment.groups):
-        if kind in group or f"{side}.{kind}" in group:
-            return index
-    return None
+def _part(case: Case, column: str) -> str:
+    """The axis or input that a column tells of, in words."""
+    places = case.kit.bound.model.places
+    parts = {axis.angle: name for name, axis in places.axes.items()}
+    parts |= {str(entry.variable): name for name, entry in places.inputs.items()}
+    return parts.get(column, column).replace("_", " ")
+
+
+def _floors(case: Case) -> dict[str, float]:
+    """What a reader can see of each column: some encoder steps, a share of an input's range."""
+    model, bound = case.kit.bound.model, case.kit.bound
+    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
+    found = {name: OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
+    for variable in model.inputs:
+        low, high = (float(limit.subs(values)) for limit in model.input_limits[variable])
+        found[str(variable)] = INPUT_FLOOR * (high - low)
+    return found
+
+
+def _shown(name: str, value: float) -> str:
+    if name.endswith("_rad"):
+        return f"{np.degrees(value):.1f} deg"
+    if name.endswith("_rad_s"):
+        return f"{np.degrees(value):.1f} deg/s"
+    unit = name.rsplit("_", 1)[-1]
+    return f"{value:.3g} {unit}" if unit in ("V", "m") else f"{value:.3g}"

@@ -1,0 +1,158 @@
+"""A plan flown in the simulation under one hypothesis, and how far another would miss what is then recorded.
+
+Data are made by hypothesis B without noise but in the sensors' steps; the filter of hypothesis A runs over them. In units of what noise and
+unrest leave, its innovations are w_A, and what a re-tune to first order cannot take away is
+
+    z^2 = m(A) - m(B),   m(A) = min over v of |w_A + J_A v|^2 + v' I_A v
+
+with J_A its slopes by the plant's coefficients and those of its effects that the equations carry, and I_A what the logs so far and the
+plant file say of them. z standard deviations apart, the log likelihoods of A and B will differ by about z^2 / 2.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case, make_case
+from diagnosis.fit import Fit, flat_slopes, stacked
+from diagnosis.flown import Flown
+from diagnosis.hypothesis import Supposed, passes
+from diagnosis.menu import Plan, gravity_parameters
+from diagnosis.stand_in import StandIn
+from records.log import RunLog
+from sim.start import start_state
+
+Array = NDArray[np.float64]
+GONE = 1e-9  # of gravity's moment where the rig is turned
+SHIFTED_WEIGHT = ".weight_shift"
+MOST_CLIPPED = 0.05  # share of the samples that may ask for more than an input can give
+
+
+@dataclass(frozen=True, eq=False)
+class Rehearsal:
+    """A plan flown under one hypothesis: the log that it would leave, and whether stops and inputs stayed within their limits."""
+
+    log: RunLog
+    within_limits: bool
+
+
+def setting(case: Case, plan: Plan) -> Case:
+    """The case as the plan mounts the rig: without gravity's moment where it is turned."""
+    if not plan.weightless:
+        return case
+    model, bound = case.kit.bound.model, case.kit.bound
+    p, sd = bound.p.copy(), bound.sd.copy()
+    for name in gravity_parameters(model):
+        place = [str(symbol) for symbol in model.parameter_symbols].index(name)
+        p[place], sd[place] = GONE * p[place], GONE * sd[place]
+    return replace(case, kit=replace(case.kit, bound=replace(bound, p=p, sd=sd)))
+
+
+def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehearsal | None:
+    """Fly the plan under a hypothesis; None where the plant leaves all bounds or the law's arm hits a stop and stays there."""
+    kit = case.kit
+    model, own = kit.bound.model, len(kit.states)
+    start_s = max(float(flight.log.t_s[-1]) for flight in case.flights)
+    x0 = np.asarray(start_state(kit.bound, law.rest.x0), dtype=float)
+    plant = Flown(case, _without_weights(plan, supposed), x0, start_s, locked=plan.locked)
+    arms = [axis for axis in model.axes if axis.position is not None]
+    columns = [k for k, axis in enumerate(arms) if axis.name not in plan.locked]
+    u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
+    y, x = np.empty((len(plan.t_s), len(model.outputs))), np.empty((len(plan.t_s), own))
+    idle = np.clip(np.zeros(len(model.inputs)), law.low, law.high)
+    clipped = 0
+    for k in range(len(plan.t_s)):
+        y[k], x[k] = plant.measured(), plant.x[:own]
+        if plan.off[k]:
+            wanted, z = idle + plan.dither[k], np.zeros(len(z))
+        else:
+            wanted, z = law.command(x[k], z, plan.reference[k, columns])
+            wanted = wanted + plan.dither[k]
+        u[k] = np.clip(wanted, law.low, law.high)
+        clipped += bool(np.any((u[k] <= law.low) | (u[k] >= law.high)) and not plan.off.any())
+        plant.advance(u[k], start_s + float(plan.t_s[k]) + law.period_s)
+        if plant.lost:
+            return None
+    extra = {}
+    if plan.speeds:
+        extra = {name: x[:, k] for k, name in enumerate(kit.states) if name.startswith("omega")}
+    log = RunLog(
+        case.flights[0].log.columns,
+        law.period_s,
+        "closed",
+        start_s + plan.t_s,
+        u,
+        y,
+        extra=extra,
+        locked=plan.locked,
+    )
+    return Rehearsal(log, clipped <= MOST_CLIPPED * len(u) and _off_the_stops(case, plan, x))
+
+
+def _without_weights(plan: Plan, supposed: Supposed) -> Supposed:
+    """A moved weight turns no axis that gravity does not."""
+    if not plan.weightless:
+        return supposed
+    return supposed.with_effects({n: v for n, v in supposed.effects.items() if not n.endswith(SHIFTED_WEIGHT)})
+
+
+def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
+    """Whether no free axis touched a stop while its law was on."""
+    bound = case.kit.bound
+    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
+    flying = ~plan.off
+    for axis in bound.model.axes:
+        if axis.position is None or axis.name in plan.locked or not flying.any() or plan.off.any():
+            continue
+        way = x[flying, case.kit.states.index(str(axis.position))]
+        low, high = (None if s is None else float(s.subs(values)) for s in (axis.lower, axis.upper))
+        if (low is not None and way.min() <= low + 1e-6) or (high is not None and way.max() >= high - 1e-6):
+            return False
+    return True
+
+
+def recorded(case: Case, rehearsal: Rehearsal) -> Case:
+    """A case of the rehearsed log alone, with what the given one states."""
+    made = make_case(case.kit, [rehearsal.log])
+    return replace(made, stated=case.stated, stated_sd=case.stated_sd)
+
+
+def missed(data: Case, one: Fit, plan: Plan, unrest: Array) -> float | None:
+    """m(A): the squares of what a fitted hypothesis misses of the data, re-tuned; None where its filter cannot follow at all.
+
+    Both hypotheses of a pair are given the same `unrest`: one that takes more of it would seem to miss less.
+    """
+    supposed = replace(_without_weights(plan, one.supposed), unrest=unrest)
+    variant = data.kit.variant(supposed.effects)
+    count = len(supposed.theta)
+    numbers = [
+        (row, entry)
+        for row, entry in enumerate(one.free, count)
+        if entry.effect in variant.names and entry.effect in supposed.effects
+    ]
+    places = [*data.free.tolist(), *(variant.place(e.effect, e.parameter.symbol) for _, e in numbers)]
+    units = np.concatenate([data.sd, [entry.scale for _, entry in numbers]])
+    rows = [*range(count), *(row for row, _ in numbers)]
+    runs = passes(data, supposed, places, slopes=True)
+    if runs is None:
+        return None
+    w = stacked(runs)
+    J = np.concatenate([flat_slopes(run) for run in runs]) * units
+    pull = J.T @ w
+    information = J.T @ J + one.information[np.ix_(rows, rows)]
+    return float(w @ w - pull @ np.linalg.lstsq(information, pull, rcond=None)[0])
+
+
+def outcomes(logs: Sequence[RunLog], floor: Mapping[str, float]) -> tuple[str, float, tuple[float, float]] | None:
+    """Where two rehearsed logs differ most in units of each column's floor: its name, when (s from the start), both values."""
+    first, second = logs
+    best, found = 1.0, None
+    for name, least in floor.items():
+        gap = np.abs(first.column(name) - second.column(name)) / least
+        row = int(np.argmax(gap))
+        if gap[row] > best:
+            values = float(first.column(name)[row]), float(second.column(name)[row])
+            best, found = float(gap[row]), (name, float(first.t_s[row] - first.t_s[0]), values)
+    return found
