@@ -8,6 +8,7 @@ from diagnosis.firmware_replay_table import replay_log, table_of
 from diagnosis.integrity import demand, examine
 from diagnosis.result import Result
 from diagnosis.shrinkage import Predicted
+from diagnosis.stretches import stretches
 from records.diagnosis import Firmware, save_diagnosis
 from records.errors import BadInput
 from records.files import write_atomic
@@ -48,13 +49,15 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     integrity = examine(read[:split], bound, holdout=read[split:], names=names)
     demand(integrity)
     firmware, told = _firmware(read, (*logs, *holdout))
+    used = [~entry.excluded for entry in integrity.logs]
+    parts = stretches(read[:split], used[:split], names[:split])
     return Material(
-        logs=read[:split],
+        logs=parts.logs,
         holdout=read[split:],
         holdout_names=names[split:],
-        used=[~entry.excluded for entry in integrity.logs],
+        used=[*parts.used, *used[split:]],
         firmware=firmware,
-        notes=(*integrity.notes, *told),
+        notes=(*integrity.notes, *told, *parts.notes),
         tables=[table_of(log, path) for log, path in zip(read[split:], holdout, strict=True)],
     )
 

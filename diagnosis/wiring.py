@@ -1,0 +1,142 @@
+"""Columns that are not what they are called: one with its sign turned, or two in each other's place. Then the plant is not at fault."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from diagnosis.case import Case, Flight, start_of
+from diagnosis.fit import Fit
+from diagnosis.tape import Tape
+from records.errors import BadInput
+
+LOOKED_AT_S = 20.0  # of each log
+STRAINED = 6.0  # standard deviations that some parameter must have left its statement by
+RESTLESS = -1.3  # or the log10 of an axis' unrest, for columns to be doubted
+LEAST_GAIN = 200.0  # nats by which another reading of the columns must be likelier
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """Another reading of the columns: which of the recorded inputs and outputs each one is, and with which sign."""
+
+    what: str
+    remedy: str
+    inputs: Sequence[int]
+    outputs: Sequence[int]
+    input_signs: Sequence[float]
+    output_signs: Sequence[float]
+
+
+def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit]) -> None:
+    """Raise BadInput where turning one column's sign, or swapping two columns, lets the plant as stated follow the logs.
+
+    `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
+    """
+    found = likelier_wiring(case, fitted) if _is_strained(nominal) else None
+    if found is not None:
+        wiring, gain = found
+        raise BadInput(
+            what="columns",
+            where="the logs to explain",
+            got=f"{wiring.what}: read so, the plant follows them {gain:.0f} nats better",
+            expected="columns that are what they are called",
+            remedy=wiring.remedy,
+        )
+
+
+def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
+    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs without strain."""
+    short = case.with_flights([_begin(flight) for flight in case.flights])
+    usual = _fitted(short, fitted)
+    others = [(wiring, _fitted(_rewired(short, wiring), fitted)) for wiring in wirings(case)]
+    found = [(wiring, fit) for wiring, fit in others if fit is not None]
+    if usual is None or not found:
+        return None
+    best, fit = max(found, key=lambda entry: entry[1].log_posterior)
+    gain = fit.log_posterior - usual.log_posterior
+    return (best, gain) if gain > LEAST_GAIN and not _is_strained(fit) else None
+
+
+def _is_strained(fit: Fit) -> bool:
+    supposed = fit.supposed
+    return bool(np.max(np.abs(supposed.theta), initial=0.0) > STRAINED or np.max(supposed.unrest) > RESTLESS)
+
+
+def _fitted(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
+    try:
+        return fitted(case)
+    except BadInput:
+        return None
+
+
+def wirings(case: Case) -> Iterator[Wiring]:
+    """Every single slip of a sign and every pair of columns of one unit in each other's place."""
+    model = case.kit.bound.model
+    inputs, outputs = [str(u) for u in model.inputs], list(model.outputs)
+    straight = Wiring("", "", range(len(inputs)), range(len(outputs)), [1.0] * len(inputs), [1.0] * len(outputs))
+    for place, name in enumerate(inputs):
+        yield replace(_turned(straight, name), input_signs=_one_turned(len(inputs), place))
+    for place, name in enumerate(outputs):
+        yield replace(_turned(straight, name), output_signs=_one_turned(len(outputs), place))
+    for one, other in _alike(inputs):
+        yield replace(_swapped(straight, inputs[one], inputs[other]), inputs=_exchanged(len(inputs), one, other))
+    for one, other in _alike(outputs):
+        yield replace(_swapped(straight, outputs[one], outputs[other]), outputs=_exchanged(len(outputs), one, other))
+
+
+def _turned(straight: Wiring, name: str) -> Wiring:
+    return replace(straight, what=f"{name} has the wrong sign", remedy=f"turn the sign of {name}")
+
+
+def _swapped(straight: Wiring, one: str, other: str) -> Wiring:
+    return replace(straight, what=f"{one} and {other} stand in each other's place", remedy=f"swap {one} and {other}")
+
+
+def _one_turned(count: int, place: int) -> list[float]:
+    return [-1.0 if other == place else 1.0 for other in range(count)]
+
+
+def _exchanged(count: int, one: int, other: int) -> list[int]:
+    order = list(range(count))
+    order[one], order[other] = other, one
+    return order
+
+
+def _alike(names: Sequence[str]) -> list[tuple[int, int]]:
+    """Pairs of columns of one unit."""
+    units = [name.rsplit("_", 1)[-1] for name in names]
+    return [(one, other) for one, other in combinations(range(len(names)), 2) if units[one] == units[other]]
+
+
+def _begin(flight: Flight) -> Flight:
+    """The first LOOKED_AT_S of a flight."""
+    tape = flight.tape
+    kept = tape.t_s - tape.t_s[0] <= LOOKED_AT_S
+    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", "y", "r", "row", "place", "usual")}
+    return replace(flight, tape=Tape(rows=int(kept.sum()), **arrays))
+
+
+def _rewired(case: Case, wiring: Wiring) -> Case:
+    """The case with its columns read the other way."""
+    return case.with_flights([_read_otherwise(case, flight, wiring) for flight in case.flights])
+
+
+def _read_otherwise(case: Case, flight: Flight, wiring: Wiring) -> Flight:
+    tape, count = flight.tape, len(wiring.outputs)
+    places = [*wiring.outputs, *range(count, tape.y.shape[1])]
+    y = tape.y[:, places] * np.array([*wiring.output_signs, *_rate_signs(case, wiring)])
+    u = tape.u[:, list(wiring.inputs)] * np.array(wiring.input_signs)
+    tape = replace(tape, u=u, y=y, r=tape.r[:, places], usual=tape.usual[:, places])
+    x0, p0 = start_of(case.kit, tape, flight.locked)
+    return replace(flight, tape=tape, x0=x0, p0=p0)
+
+
+def _rate_signs(case: Case, wiring: Wiring) -> list[float]:
+    """Signs of the states that a log may carry: a rate turns with its angle."""
+    model, kit = case.kit.bound.model, case.kit
+    outputs = {str(expression): place for place, expression in enumerate(model.outputs.values())}
+    angles = {str(axis.velocity): outputs.get(str(axis.position)) for axis in model.axes}
+    places = [angles.get(name) for name in kit.outputs[len(model.outputs) :]]
+    return [1.0 if place is None else wiring.output_signs[place] for place in places]

@@ -1,0 +1,81 @@
+"""Columns with a wrong sign or in each other's place are named; a plant that lacks something is not taken for one that is wired wrongly."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.case import Case, make_case
+from diagnosis.engine import nominal_fit
+from diagnosis.fit import Fit
+from diagnosis.kit import Kit, make_kit
+from diagnosis.wiring import demand_wiring, likelier_wiring
+from records.errors import BadInput
+from records.log import RunLog
+from sim.bind import BoundPlant
+from tests.diagnosis.conftest import Fly
+
+SECONDS = 10.0
+EFFECTS = [
+    {"azimuth.cable_spring": {"k": 0.01, "angle_0": 0.2}},
+    {"azimuth.coulomb": {"b": 0.004}},
+    {"tail_rotor.reverse_asymmetry": {"r": 0.4}},
+]
+
+
+@pytest.fixture(scope="module")
+def kit(plant: BoundPlant) -> Kit:
+    return make_kit(plant)
+
+
+def turned(log: RunLog, block: str, place: int) -> RunLog:
+    columns = getattr(log, block).copy()
+    columns[:, place] *= -1.0
+    return replace(log, **{block: columns})  # type: ignore[arg-type]
+
+
+def swapped(log: RunLog, block: str) -> RunLog:
+    return replace(log, **{block: getattr(log, block)[:, ::-1].copy()})  # type: ignore[arg-type]
+
+
+def demanded(case: Case) -> None:
+    demand_wiring(case, nominal_fit(case), nominal_fit)
+
+
+def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(kit: Kit, fly: Fly) -> None:
+    def never(_: Case) -> Fit:
+        raise AssertionError("asked")
+
+    case = make_case(kit, [fly(31, seconds=SECONDS)])
+    demand_wiring(case, nominal_fit(case), never)
+
+
+@pytest.mark.parametrize(
+    ("slip", "named"),
+    [
+        (("u", 1), "u_T_V has the wrong sign"),
+        (("y", 0), "psi_rad has the wrong sign"),
+        (("y", 1), "phi_rad has the wrong sign"),
+        (("u", None), "u_M_V and u_T_V stand in each other's place"),
+        (("y", None), "psi_rad and phi_rad stand in each other's place"),
+    ],
+)
+def test_a_slip_of_the_columns_is_refused_by_name(kit: Kit, fly: Fly, slip: tuple[str, int | None], named: str) -> None:
+    block, place = slip
+    log = fly(31, seconds=SECONDS)
+    spoiled = swapped(log, block) if place is None else turned(log, block, place)
+    with pytest.raises(BadInput, match=named):
+        demanded(make_case(kit, [spoiled]))
+
+
+@pytest.mark.parametrize("effects", EFFECTS, ids=[next(iter(effects)) for effects in EFFECTS])
+def test_a_plant_that_lacks_something_is_not_taken_for_one_wired_wrongly(
+    kit: Kit, fly: Fly, effects: dict[str, dict[str, float]]
+) -> None:
+    assert likelier_wiring(make_case(kit, [fly(32, effects, SECONDS)]), nominal_fit) is None
+
+
+def test_numbers_without_meaning_are_not_taken_for_a_slip(kit: Kit, fly: Fly) -> None:
+    log, rng = fly(33, seconds=SECONDS), np.random.default_rng(3)
+    walk = np.cumsum(rng.normal(0.0, 0.004, log.y.shape), axis=0)
+    assert likelier_wiring(make_case(kit, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit) is None
