@@ -1,0 +1,106 @@
+"""A study as plain facts for envelope.json: every figure of the tables, and the models themselves."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from identification.envelope.criteria import Match, passed, score_percent
+from identification.envelope.flight import INPUTS, OUTPUTS, STATES
+from identification.envelope.study import FINAL, Check, ConditionResult, Interpolated, Study
+
+SCHEMA = "envelope/1"
+
+
+def facts(found: Study) -> dict[str, Any]:
+    """Names of the signals, then condition by condition."""
+    return {
+        "schema": SCHEMA,
+        "states": list(STATES),
+        "inputs": list(INPUTS),
+        "outputs": list(OUTPUTS),
+        "flights": found.flights,
+        "summary": summary(found),
+        "conditions": [_condition(entry) for entry in found.conditions],
+        "left_out": [_left_out(entry) for entry in found.left_out],
+    }
+
+
+def summary(found: Study) -> dict[str, Any]:
+    """How many flights keep the three-second rule after the tuning that the global model uses."""
+    groups = {
+        "identification": [entry.checks[0] for entry in found.conditions],
+        "validation": [check for entry in found.conditions for check in entry.checks[1:]],
+        "interpolation": [entry.between for entry in found.left_out],
+    }
+    return {
+        name: {
+            "flights": sum(len(check.data.x) for check in checks),
+            "held_three_seconds": sum(check.held[FINAL] for check in checks),
+            "outside_percent": _mean([match.outside_percent for check in checks for match in check.states[FINAL]]),
+        }
+        for name, checks in groups.items()
+    }
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _condition(entry: ConditionResult) -> dict[str, Any]:
+    return {
+        "condition": entry.condition.name,
+        "sample_period_s": entry.model.state.sample_period_s,
+        "chosen_row": entry.row,
+        "rows": len(entry.potentials),
+        "spectral_radius": {
+            "open_loop": entry.open_loop.spectral_radius,
+            "closed_loop": entry.model.state.spectral_radius,
+        },
+        "A": entry.model.state.A.tolist(),
+        "B": entry.model.state.B.tolist(),
+        "C": entry.model.output.C.tolist(),
+        "D": entry.model.output.D.tolist(),
+        "fuzzy_rules": len(entry.fuzzy.system.centre),
+        "checks": [_check(check) for check in entry.checks],
+    }
+
+
+def _left_out(entry: Interpolated) -> dict[str, Any]:
+    return {
+        "condition": entry.condition.name,
+        "between": _check(entry.between),
+        "nearest": _check(entry.nearest),
+    }
+
+
+def _check(check: Check) -> dict[str, Any]:
+    return {
+        "name": check.name,
+        "mission": check.mission,
+        "flights": len(check.data.x),
+        "held_three_seconds": dict(check.held),
+        "open_loop": _matches(check.open_loop),
+        "states": {how: _matches(found) for how, found in check.states.items()},
+        "outputs": _ways(check.outputs),
+        "global": _ways(check.overall),
+    }
+
+
+def _ways(by_way: Mapping[str, Sequence[Match]]) -> dict[str, Any]:
+    return {
+        way: {"score_percent": score_percent(found), "passed": passed(found), "signals": _matches(found)}
+        for way, found in by_way.items()
+    }
+
+
+def _matches(found: Sequence[Match]) -> dict[str, Any]:
+    return {
+        match.signal: {
+            "outside_percent": match.outside_percent,
+            "held_s": match.held_s,
+            "fit_percent": match.fit_percent,
+            "correlation": None if np.isnan(match.correlation) else match.correlation,
+        }
+        for match in found
+    }

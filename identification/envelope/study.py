@@ -1,0 +1,175 @@
+"""The whole chain of seed 003: for each flight condition open loop, closed loop, starts, output equation; then interpolation."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.envelope.closed_loop import Training, optimise
+from identification.envelope.conditions import Condition
+from identification.envelope.criteria import Match, flights_passed, matches
+from identification.envelope.flight import OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
+from identification.envelope.free_run import Model, model_of, one_step
+from identification.envelope.fuzzy import Trained
+from identification.envelope.initial_state import as_measured, automatic, by_hand
+from identification.envelope.interpolation import GlobalModel, between, nearest
+from identification.envelope.outputs import METHODS, Equation, Linear, equations
+from identification.envelope.recursive import best, history, pairs
+from identification.margins import MARGINS
+
+Array = NDArray[np.float64]
+TUNINGS = ("measured", "by hand", "automatic", "with trim")
+FINAL = "with trim"  # whose states the output equation of the global model takes
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """A model tried on flights of one mission: its states by tuning and its accelerations by method, and how both match.
+
+    `open_loop` is one step ahead, `open_loop_whole` the same with the trim put back, which flatters Theil's fit; `outputs` come from
+    measured states (chapter 3), `overall` from the run's own (chapter 4). `held` counts the flights whose states all stay within their
+    margins for three seconds, by tuning.
+    """
+
+    name: str
+    mission: str
+    data: Deviations
+    x: Mapping[str, Array]
+    y: Mapping[str, Array]
+    y_overall: Mapping[str, Array]
+    open_loop: tuple[Match, ...]
+    open_loop_whole: tuple[Match, ...]
+    held: Mapping[str, int]
+    states: Mapping[str, tuple[Match, ...]]
+    outputs: Mapping[str, tuple[Match, ...]]
+    overall: Mapping[str, tuple[Match, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class ConditionResult:
+    """One identified condition: `row` of the recursion that was chosen, by potential; checks begin with the identification itself."""
+
+    condition: Condition
+    row: int
+    potentials: Array
+    open_loop: Model
+    training: Training
+    fuzzy: Trained
+    model: GlobalModel
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Interpolated:
+    """A condition left out: flights predicted by the model between its neighbours, and by the nearest neighbour's."""
+
+    condition: Condition
+    between: Check
+    nearest: Check
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """All conditions, those left out, and the number of flights."""
+
+    conditions: tuple[ConditionResult, ...]
+    left_out: tuple[Interpolated, ...]
+    flights: int
+
+    def at(self, name: str) -> ConditionResult:
+        """The condition of a name, or the first where there is none of it."""
+        return next((entry for entry in self.conditions if entry.condition.name == name), self.conditions[0])
+
+
+def study(flights: Sequence[Flight], forgetting: float = 1.0, tell: Callable[[str], None] = lambda _: None) -> Study:
+    """Identify every condition that has flights for it, then interpolate where others are given; `tell` hears the names."""
+    found = []
+    for condition in _conditions(flights, "identification"):
+        tell(condition.name)
+        found.append(identify(condition, [flight for flight in flights if flight.condition == condition], forgetting))
+    models = {entry.condition: entry.model for entry in found}
+    left_out = []
+    for condition in _conditions(flights, "interpolation"):
+        tell(f"{condition.name}, left out")
+        mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
+        left_out.append(_interpolated(condition, models, mine))
+    return Study(tuple(found), tuple(left_out), len(flights))
+
+
+def _conditions(flights: Iterable[Flight], use: str) -> list[Condition]:
+    return sorted({flight.condition for flight in flights if flight.use == use})
+
+
+def identify(condition: Condition, flights: Sequence[Flight], forgetting: float = 1.0) -> ConditionResult:
+    """Chapters 2 to 4 for one condition; raises BadInput for flights that cannot be joined or a factor outside (0, 1]."""
+    mine = [flight for flight in flights if flight.use == "identification"]
+    data, mission = joined(mine), mine[0].mission
+    margins_x, margins_y = margins_of(mission)
+    rows = pairs(data)
+    estimates = history(rows, forgetting)
+    row, potentials = best(estimates, rows, margins_x)
+    open_loop = model_of(estimates[row], data.sample_period_s)
+    training = optimise(open_loop, data, margins_x)
+    ways, trained = equations(data, margins_y)
+    assert isinstance(ways["linear"], Linear)
+    checks = [check(f"{condition.name} identification", mission, data, open_loop, training.model, ways)]
+    for flight in flights:
+        if flight.use == "validation":
+            alone = joined([flight])
+            checks.append(check(flight.name, flight.mission, alone, open_loop, training.model, ways))
+    model = GlobalModel(training.model, ways["linear"])
+    return ConditionResult(condition, row, potentials, open_loop, training, trained, model, tuple(checks))
+
+
+def margins_of(mission: str) -> tuple[Array, Array]:
+    """Margins of the states (8,) and of the accelerations (3,) for a mission."""
+    return np.array([MARGINS[mission][name] for name in STATES]), np.array([MARGINS[mission][name] for name in OUTPUTS])
+
+
+def check(
+    name: str, mission: str, data: Deviations, open_loop: Model, model: Model, ways: Mapping[str, Equation]
+) -> Check:
+    """Try `open_loop` one step ahead and `model` in free runs, tuned flight by flight."""
+    margins_x, margins_y = margins_of(mission)
+    period_s = data.sample_period_s
+    x = {how: _runs(how, model, data, margins_x) for how in TUNINGS}
+    y = {way: equation(data, data.x) for way, equation in ways.items()}
+    y_overall = {way: equation(data, x[FINAL]) for way, equation in ways.items()}
+    ahead, trim = one_step(open_loop, data), data.trim[:, None, 4:12]
+    return Check(
+        name, mission, data, x, y, y_overall,
+        matches(STATES, data.x, ahead, margins_x, period_s),
+        matches(STATES, data.x + trim, ahead + trim, margins_x, period_s),
+        {how: flights_passed(data.x, run, margins_x, period_s) for how, run in x.items()},
+        {how: matches(STATES, data.x, run, margins_x, period_s) for how, run in x.items()},
+        {way: matches(OUTPUTS, data.y, guess, margins_y, period_s) for way, guess in y.items()},
+        {way: matches(OUTPUTS, data.y, guess, margins_y, period_s) for way, guess in y_overall.items()},
+    )  # fmt: skip
+
+
+def _runs(how: str, model: Model, data: Deviations, margins: Array) -> Array:
+    """Free runs (flights, n, 8), each flight tuned on its own."""
+    tune: Mapping[str, Callable[[Deviations], Array]] = {
+        "measured": lambda flight: as_measured(model, flight).x,
+        "by hand": lambda flight: by_hand(model, flight, margins).x,
+        "automatic": lambda flight: automatic(model, flight, margins).x,
+        "with trim": lambda flight: automatic(model, flight, margins, trim=True).x,
+    }
+    return np.stack([tune[how](flight) for flight in one_by_one(data)])
+
+
+def _interpolated(
+    condition: Condition, models: Mapping[Condition, GlobalModel], flights: Sequence[Flight]
+) -> Interpolated:
+    data, mission = joined(flights), flights[0].mission
+
+    def tried(model: GlobalModel) -> Check:
+        return check(condition.name, mission, data, model.state, model.state, {"linear": model.output})
+
+    return Interpolated(condition, tried(between(models, condition)), tried(nearest(models, condition)))
+
+
+def methods_of(checked: Check) -> tuple[str, ...]:
+    """The output equations that a check holds, in the thesis' order."""
+    return tuple(way for way in METHODS if way in checked.outputs)
