@@ -76,6 +76,31 @@ def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False,
         return _svg(figure)
 
 
+def grid(
+    lines: Sequence[Sequence[Panel]], titles: Sequence[str], xlabel: str, *, log_x: bool = False, height_in: float = 1.7
+) -> str:
+    """Lines of panels one above the other over one abscissa, each column with its title, one legend below, as SVG text."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(9.0, height_in * len(lines) + 0.8), layout="constrained")
+        cells = figure.subplots(len(lines), len(titles), sharex=True, squeeze=False)
+        for line, panels in zip(cells, lines, strict=True):
+            for axes, panel in zip(line, panels, strict=True):
+                _draw(axes, panel, legend=False)
+                if log_x:
+                    axes.set_xscale("log")
+        for axes, title in zip(cells[0], titles, strict=True):
+            axes.set_title(title, fontsize=9.0)
+        for axes in cells[-1]:
+            axes.set_xlabel(xlabel)
+        handles = {label: handle for line in cells for axes in line for handle, label in _named(axes)}
+        figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4, fontsize=8.0)
+        return _svg(figure)
+
+
+def _named(axes: Axes) -> list[tuple[Any, str]]:
+    return list(zip(*axes.get_legend_handles_labels(), strict=True))
+
+
 @dataclass(frozen=True)
 class Bars:
     """Bars between the `edges` of an abscissa, or one per name where `edges` are names."""
@@ -115,14 +140,14 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
         axes.set_xscale("log")
 
 
-def _draw(axes: Axes, panel: Panel) -> None:
+def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
     for curve in panel.curves:
         style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": 4.0}
         axes.plot(curve.x, curve.y, label=curve.label or None, color=curve.colour, **style)
     for value, label in panel.limits:
         axes.axhline(value, color=GREY, linestyle=":", linewidth=1.0, label=label or None)
     axes.set_ylabel(panel.ylabel)
-    if axes.get_legend_handles_labels()[1]:
+    if legend and axes.get_legend_handles_labels()[1]:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
 
 

@@ -29,7 +29,7 @@ def repetition(plant: Plant, sweep: Sweep, amplitudes: tuple[float, float], repe
     """Fly and match; the search never begins at the truth, but where `seed` draws it from the file's sd."""
     logs = {k: v for k, v in sweep_flights(plant, sweep, amplitudes, repeats, seed).items() if k != "doublets"}
     model = lateral_model(plant)
-    found = match(model, lateral_records(logs, plant), (sweep.low_rad_s, sweep.high_rad_s), seed=seed)
+    found = match(model, lateral_records(logs, plant), (sweep.low_rad_s, sweep.high_rad_s), seed=seed, from_start=False)
     inside = np.abs(found.theta - model.start) <= FACTOR * found.sd
     return Repetition(
         seed,

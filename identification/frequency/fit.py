@@ -33,7 +33,7 @@ class FrequencyFit:
 
     `responses` are those measured, corrected for finite windows, `points` those of them that were matched, `T` (f, outputs, inputs) the
     model's, J the cost (7) and r its terms' roots; `left` (n, outputs) is what the model leaves of each record. `searches` are the
-    secant searches, best first.
+    secant searches, best first; parameters `at_bound` ended at the edge of their range.
     """
 
     model: LinearModel
@@ -48,6 +48,7 @@ class FrequencyFit:
     records: tuple[Record, ...]
     left: tuple[Array, ...]
     searches: tuple[Found, ...]
+    at_bound: tuple[str, ...]
 
     @property
     def sd(self) -> Array:
@@ -59,11 +60,13 @@ def match(
     model: LinearModel,
     records: Sequence[Record],
     band_rad_s: tuple[float, float] | None = None,
-    seed: int | None = None,
+    *,
+    seed: int = 1,
+    from_start: bool = True,
 ) -> FrequencyFit:
     """Match `model` with all records over a band, by default what their length and sampling allow.
 
-    The search begins at the model's own start and, by a normal distribution of its spread, at four more; with a `seed` at those alone.
+    The search begins at four points drawn by `seed` from a normal distribution of the model's spread and, `from_start`, at its own start.
     Raises BadInput for records too short for the band, a band that is none, inputs that cannot be told apart, or coherence that is too
     low everywhere.
     """
@@ -80,16 +83,16 @@ def match(
         )  # fmt: skip
     size = np.maximum(np.abs(model.start), np.maximum(model.spread, 1e-12))
     period_s = swept[0].period_s
-    searches = restarted(_mismatch(model, points, omega, period_s), _starts(model, seed), size)
+    searches = restarted(_mismatch(model, points, omega, period_s), _starts(model, seed, from_start), size)
     if not searches:
         raise BadInput("start", "frequency search", "no response there", "a model that has one", "mend the plant file")
     return _corrected(model, swept, measured, points, searches, size)
 
 
-def _starts(model: LinearModel, seed: int | None) -> list[Array]:
-    rng = np.random.default_rng([0 if seed is None else seed, 7])
+def _starts(model: LinearModel, seed: int, from_start: bool) -> list[Array]:
+    rng = np.random.default_rng([seed, 7])
     drawn = [model.start + model.spread * rng.standard_normal(model.start.size) for _ in range(RESTARTS)]
-    return drawn if seed is not None else [model.start, *drawn]
+    return [model.start, *drawn] if from_start else drawn
 
 
 def _mismatch(model: LinearModel, points: Target, omega: Array, period_s: float) -> Residual:
@@ -145,24 +148,29 @@ def _with_intervals(
     assert of is not None
     left = tuple(record.y - linear_run(of, record).y for record in records)
     F = _mismatch(model, points, now.omega_rad_s, records[0].period_s)
-    J = _slopes(F, best.theta, size)
+    J, held = _slopes(F, best.theta, size)
+    at_bound = tuple(model.names[place] for place in held)
     r = F(best.theta)
     assert r is not None
     spread = covariance(now, records, left, points, slopes(J, size))
     T = held_response(of, now.omega_rad_s, records[0].period_s)
-    return FrequencyFit(model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches)
+    return FrequencyFit(model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches, at_bound)
 
 
-def _slopes(F: Residual, theta: Array, size: Array) -> Array:
-    columns = []
+def _slopes(F: Residual, theta: Array, size: Array) -> tuple[Array, tuple[int, ...]]:
+    """Slopes of the residual (2 m, parameters), one-sided at a bound, and the places of parameters that ended at one."""
+    here = F(theta)
+    assert here is not None
+    columns, held = [], []
     for place in range(theta.size):
-        step = np.zeros(theta.size)
-        step[place] = SLOPE_STEP * size[place]
-        upper, lower = F(theta + step), F(theta - step)
-        assert upper is not None
-        assert lower is not None
-        columns.append((upper - lower) / (2.0 * step[place]))
-    return np.column_stack(columns)
+        by = np.zeros(theta.size)
+        by[place] = SLOPE_STEP * size[place]
+        found = [(way, r) for way in (1.0, -1.0) if (r := F(theta + way * by)) is not None]
+        if len(found) < 2:
+            held.append(place)
+        (b, upper), (a, lower) = [*found, (0.0, here)][:2]
+        columns.append((upper - lower) / ((b - a) * by[place]) if b != a else np.zeros(here.size))
+    return np.column_stack(columns), tuple(held)
 
 
 def band_of(records: Sequence[Record], wanted: tuple[float, float] | None) -> tuple[float, float]:

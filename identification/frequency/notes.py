@@ -39,7 +39,11 @@ def notes_on(
     ]
     alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
     lonely = [f"only one of {len(fit.searches)} searches came to this J; try other starts with --search SEED"]
-    return (*untold, *silent, *(poor if mean > POOR_J else []), *(lonely if alone else []))
+    edge = [
+        f"{name}: ended at its bound; the data pull it further: widen --bounds, or doubt the model"
+        for name in fit.at_bound
+    ]
+    return (*untold, *edge, *silent, *(poor if mean > POOR_J else []), *(lonely if alone else []))
 
 
 def _reason(fit: FrequencyFit, name: str) -> str:

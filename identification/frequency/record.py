@@ -1,7 +1,7 @@
 """A run log as evenly spaced readings, in the form from which spectra are made."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ MOVED = 1e-9  # a signal whose range is below that is constant
 class Record:
     """Inputs u (n, inputs), held from one row to the next, outputs y (n, outputs), and what was swept, r (n, inputs).
 
-    In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach.
+    In an open loop r is u. In a closed one noise comes back through u, and r are the references, which it does not reach. `loop` is
+    "open" or "closed".
     """
 
     name: str
@@ -26,6 +27,7 @@ class Record:
     u: Array
     y: Array
     r: Array
+    loop: str = "open"
 
     @property
     def duration_s(self) -> float:
@@ -46,7 +48,7 @@ def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
     r = log.u
     if log.loop == "closed" and all(reference in log.extra for reference in references):
         r = np.column_stack([np.nan_to_num(log.extra[reference]) for reference in references])
-    return Record(name, log.sample_period_s, log.u[held], y, r[held])
+    return Record(name, log.sample_period_s, log.u[held], y, r[held], log.loop)
 
 
 def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:
@@ -62,4 +64,4 @@ def with_instruments(records: Sequence[Record]) -> tuple[Record, ...]:
     spread = np.max([np.ptp(record.r, axis=0) for record in records], axis=0)
     if np.all(spread > MOVED):
         return tuple(records)
-    return tuple(Record(entry.name, entry.period_s, entry.u, entry.y, entry.u) for entry in records)
+    return tuple(replace(entry, r=entry.u) for entry in records)

@@ -20,6 +20,7 @@ from records.plant import Plant
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 METHOD = "frequency"
+WINDOW_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -44,15 +45,20 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class TimeCheck:
-    """A record that was not matched, and the model under its inputs: times, y and the model's y (n, outputs), rms and fit by output."""
+    """A record that was not matched, and the model under its inputs: y and the model's y (n, outputs), rms and fit by output.
+
+    The model starts anew every `window_s`, inf: never. `stated_fit` is that of the plant file as it was.
+    """
 
     name: str
+    window_s: float
     t_s: Array
     u: Array
     y: Array
     y_model: Array
     rms: tuple[float, ...]
     fit: tuple[float, ...]
+    stated_fit: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,16 +91,25 @@ def frequency_identification(
 
 
 def time_check(fit: FrequencyFit, record: Record) -> TimeCheck:
-    """The identified model under the inputs of a record; its start and trim are fitted, its parameters are not."""
-    of = fit.model.matrices(fit.theta)
-    assert of is not None
-    y_model = linear_run(of, record).y
-    left = record.y - y_model
-    spread = np.maximum(np.linalg.norm(record.y - np.mean(record.y, axis=0), axis=0), 1e-300)
-    share = 1.0 - np.linalg.norm(left, axis=0) / spread
+    """The identified model under the inputs of a record; start and trim are fitted, parameters are not.
+
+    A closed loop's inputs answer disturbances that the record does not name, so there the model starts anew every second.
+    """
+    identified, stated = fit.model.matrices(fit.theta), fit.model.matrices(fit.model.start)
+    assert identified is not None
+    assert stated is not None
+    stretch_s = WINDOW_S if record.loop == "closed" else np.inf
+    y_model = linear_run(identified, record, stretch_s).y
+    share, stated_share = _share(record.y, y_model), _share(record.y, linear_run(stated, record, stretch_s).y)
     t_s = np.asarray(record.period_s * np.arange(record.u.shape[0]), dtype=float)
-    rms = np.sqrt(np.mean(left**2, axis=0))
-    return TimeCheck(record.name, t_s, record.u, record.y, y_model, tuple(rms.tolist()), tuple(share.tolist()))
+    rms = tuple(np.sqrt(np.mean((record.y - y_model) ** 2, axis=0)).tolist())
+    return TimeCheck(record.name, stretch_s, t_s, record.u, record.y, y_model, rms, share, stated_share)
+
+
+def _share(y: Array, y_model: Array) -> tuple[float, ...]:
+    """1 - |y - y_model| / |y - mean| of each output."""
+    spread = np.maximum(np.linalg.norm(y - np.mean(y, axis=0), axis=0), 1e-300)
+    return tuple((1.0 - np.linalg.norm(y - y_model, axis=0) / spread).tolist())
 
 
 def _pair(fit: FrequencyFit, T_stated: Complex, o: int, i: int) -> Pair:
@@ -135,7 +150,7 @@ def frequency_facts(found: FrequencyIdentification) -> dict[str, Any]:
             "pairs": [_plain(asdict(pair)) for pair in found.pairs],
             "matrices": {name: getattr(of, name).tolist() for name in "ABCD"},
             "checks": [
-                {"run": check.name, "outputs": list(fit.model.outputs), "rms": check.rms, "fit": check.fit}
+                {"run": check.name, "outputs": list(fit.model.outputs), "rms": check.rms, "fit": check.fit, "stated_fit": check.stated_fit}
                 for check in found.checks
             ],
         },

@@ -23,6 +23,7 @@ VERBS: Mapping[str, str] = {
     "import": "import_record",
     "export": "export",
     "experiments": "experiments",
+    "sweep": "sweep",
     "identify": "identify",
     "diagnose": "diagnose",
     "blind": "blind",

@@ -1,0 +1,163 @@
+"""The whole way on records whose plant is known: the helicopter of eq (8), a first-order lag many times over, the CE150 in its loop."""
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from identification.frequency.coverage import coverage, repetition
+from identification.frequency.fit import match
+from identification.frequency.helicopter import sweep_flights
+from identification.frequency.lateral import StateSpace
+from identification.frequency.lateral_record import lateral_model, lateral_records
+from identification.frequency.models import held_response, operating_point_model
+from identification.frequency.plant_sweep import closed_loop_sweeps
+from identification.frequency.record import Record, record_of
+from identification.frequency.result import frequency_facts, frequency_identification, time_check
+from identification.frequency.sweep import design_sweep, sweep_input
+from records.errors import BadInput
+from records.plant import load_plant
+from tests.plants import PLANTS, bound
+
+PSI_RAD = -0.15
+
+
+@pytest.fixture(scope="module")
+def raptor():
+    return load_plant(PLANTS / "raptor50.toml")
+
+
+def flights(plant, amplitudes, duration_s=120.0, seed=1):
+    logs = dict(sweep_flights(plant, design_sweep(0.25, 12.0, 0.02, duration_s), amplitudes, 1, seed))
+    return logs, logs.pop("doublets")
+
+
+def test_a_and_b_of_eq_8_come_back_within_the_intervals(raptor):
+    """Three sets of flights of two sweeps each: of 45 intervals of 95 %, 39 at least hold the truth (fewer: one in a thousand)."""
+    sweep = design_sweep(0.25, 12.0, 0.02, 120.0)
+    found = [repetition(raptor, sweep, (2.0, 4.0), 1, seed) for seed in (1, 2, 3)]
+    assert sum(sum(entry.inside.values()) for entry in found) >= 39
+    assert set(coverage(found)) == set(lateral_model(raptor).names)
+    for entry in found:
+        for name in ("L_p", "N_r", "L_lat", "N_ped", "Y_v", "L_v", "N_v"):
+            true = raptor.parameters[name].values[0]
+            assert entry.value[name] == pytest.approx(true, rel=0.06)
+
+
+def test_the_identified_model_predicts_a_flight_that_was_not_matched(raptor):
+    """What is left of the doublets is the sensors' noise, of the accelerometer with what its lever adds, within a fifth."""
+    logs, doublets = flights(raptor, (2.0, 4.0))
+    fit = match(lateral_model(raptor), lateral_records(logs, raptor), (0.25, 12.0))
+    check = time_check(fit, lateral_records({"doublets": doublets}, raptor)[0])
+    noise = [raptor.sensor_noise[name] for name in ("p_rad_s", "r_rad_s", "a_y_m_s2")]
+    np.testing.assert_allclose(check.rms[:2], noise[:2], rtol=0.2)
+    assert noise[2] < check.rms[2] < 1.4 * noise[2]
+
+
+def test_a_weak_sweep_names_the_parameters_it_cannot_tell_and_where_coherence_lacks(raptor):
+    logs, _ = flights(raptor, (2.0, 0.05))
+    fit = match(lateral_model(raptor), lateral_records(logs, raptor), (0.25, 12.0))
+    notes = frequency_identification(raptor, fit).notes
+    assert any(note.startswith("L_ped: not told") and "coherence is below 0.6 from" in note for note in notes)
+    assert any("delta_ped to p_rad_s: not matched" in note for note in notes)
+    assert not any(note.startswith("L_lat") for note in notes)
+
+
+def test_a_record_too_short_for_the_band_is_refused_by_its_name(raptor):
+    logs, _ = flights(raptor, (2.0, 4.0))
+    with pytest.raises(BadInput, match=r"sweep_.*_1.*at least 251\.3 s, 4 periods of the lowest frequency, 0\.1 rad/s"):
+        match(lateral_model(raptor), lateral_records(logs, raptor), (0.1, 12.0))
+
+
+def test_records_without_coherence_are_refused(raptor):
+    logs, _ = flights(raptor, (0.002, 0.002))
+    with pytest.raises(BadInput, match=r"coherence: got at most 0\.\d\d"):
+        match(lateral_model(raptor), lateral_records(logs, raptor), (0.25, 12.0))
+
+
+class Lag:
+    """x' = (-x + gain u) / T, y = x: gain 2, T 0.5 s."""
+
+    names = ("gain", "T")
+    start = np.array([2.0, 0.5])
+    spread = np.array([0.5, 0.1])
+    inputs = ("u",)
+    outputs = ("y",)
+
+    def matrices(self, theta):
+        gain, T = theta
+        one = np.ones((1, 1))
+        return None if T <= 0.0 else StateSpace(-one / T, gain / T * one, one, 0.0 * one)
+
+
+def test_the_intervals_are_what_estimates_scatter_by():
+    """60 records of one lag with coloured noise: scatter and stated sd agree within 30 %, the mean with the truth within 3 of its sd."""
+    sweep, model, rng = design_sweep(0.8, 8.0, 0.05), Lag(), np.random.default_rng(1)
+    t_s = 0.05 * np.arange(round(sweep.duration_s / 0.05))
+    u = sweep_input(sweep, t_s, 1.0)[:, None]
+    clean = np.zeros(u.shape)
+    keep = np.exp(-0.05 / 0.5)
+    for k in range(u.shape[0] - 1):
+        clean[k + 1] = keep * clean[k] + 2.0 * (1.0 - keep) * u[k]
+    values, sds = [], []
+    for _ in range(60):
+        noise, white = np.zeros(u.shape), 0.1 * rng.standard_normal(u.shape)
+        for k in range(u.shape[0] - 1):
+            noise[k + 1] = 0.9 * noise[k] + white[k]
+        fit = match(model, [Record("lag", 0.05, u, clean + noise, u)], (0.8, 8.0))
+        values.append(fit.theta)
+        sds.append(fit.sd)
+    scatter, stated = np.std(values, axis=0), np.mean(sds, axis=0)
+    np.testing.assert_allclose(stated, scatter, rtol=0.3)
+    assert np.all(np.abs(np.mean(values, axis=0) - model.start) < 3.0 * scatter / np.sqrt(60))
+
+
+@pytest.fixture(scope="module")
+def loop():
+    """The CE150 without dry friction, and the controller designed for it."""
+    plant = bound("ce150", b_cE=0.0, b_cA=0.0)
+    return plant, design(plant, read_settings(plant))[0]
+
+
+@pytest.mark.parametrize(
+    ("on", "amplitudes", "off_dB", "off_deg"),
+    [("inputs", (0.5, 0.5), 0.4, 4.0), ("references", (0.06, 0.15), 0.4, 4.0)],
+)
+def test_the_ce150_in_its_loop_has_the_responses_of_its_linearisation(loop, on, amplitudes, off_dB, off_deg):
+    """Where both axes' own responses are coherent they are those of A and B at the operating point, as rms over the matched range."""
+    plant, table = loop
+    sweep = design_sweep(0.3, 10.0, table.sample_period_s)
+    logs = closed_loop_sweeps(plant, table, sweep, PSI_RAD, amplitudes, on)
+    outputs = tuple(plant.model.outputs)
+    model = operating_point_model(plant, ("J_E", "b_vE", "J_A", "b_vA"), {"psi_rad": PSI_RAD, "phi_rad": 0.0})
+    fit = match(model, [record_of(log, name, outputs) for name, log in logs.items()], (0.3, 10.0))
+    facts = frequency_facts(frequency_identification(plant.plant, fit))
+    own = [pair for pair in facts["frequency"]["pairs"] if pair["input"][2] + pair["output"][:3] in ("Mpsi", "Tphi")]
+    assert len(own) == 2
+    for pair in own:
+        assert pair["coherence"] > 0.85
+        assert pair["stated_dB"] < off_dB
+        assert pair["stated_deg"] < off_deg
+    np.testing.assert_allclose(fit.theta, model.start, rtol=0.12)
+
+
+def test_a_plant_that_cannot_rest_where_its_logs_are_is_refused(loop):
+    plant, _ = loop
+    with pytest.raises(BadInput, match="elevation angle"):
+        operating_point_model(plant, ("J_E",), {"psi_rad": -2.0, "phi_rad": 0.0})
+
+
+def test_a_sweep_beyond_the_controller_s_range_is_refused(loop):
+    plant, table = loop
+    with pytest.raises(BadInput, match="amplitude"):
+        closed_loop_sweeps(plant, table, design_sweep(0.3, 10.0, 0.01), PSI_RAD, (1.5, 0.3), "references")
+
+
+def test_held_inputs_act_one_row_later():
+    """x' = (u - x) / T sampled every h: T(z) = (1 - exp(-h / T)) / (z - exp(-h / T)), written out."""
+    omega, h, T = np.array([0.5, 3.0, 20.0]), 0.05, 0.3
+    keep = np.exp(-h / T)
+    by_hand = (1.0 - keep) / (np.exp(1j * omega * h) - keep)
+    np.testing.assert_allclose(
+        held_response(Lag().matrices(np.array([1.0, T])), omega, h)[:, 0, 0], by_hand, rtol=1e-10
+    )

@@ -1,0 +1,120 @@
+"""What `twinlaw identify --method frequency` does between its files: records of flights or logs, match, page."""
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from identification.frequency.fit import match
+from identification.frequency.lateral import MODEL as LATERAL
+from identification.frequency.lateral import UNITS, check_plant, log_columns
+from identification.frequency.lateral_record import lateral_model, lateral_records
+from identification.frequency.models import LinearModel, operating_point_model
+from identification.frequency.record import Record, record_of
+from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
+from identification.logs import trimmed
+from records.errors import BadInput
+from records.files import write_atomic
+from records.log import LogColumns, RunLog, load_log
+from records.plant import Plant, load_plant, plant_text
+from sim.bind import BoundPlant, bind
+from sim.columns import log_columns as plant_columns
+from twinlaw import console
+from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows
+from twinlaw.identify_summary import HEADING, estimate_rows
+from twinlaw.identifying import free_names, read_limits
+from twinlaw.page import page_text
+
+OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
+
+
+def identify_by_frequency(chosen: argparse.Namespace) -> int:
+    """Read logs, match, write, tell; raises BadInput."""
+    for option in OTHER_METHODS:
+        if getattr(chosen, option):
+            raise BadInput(
+                f"--{option}",
+                "command line",
+                "given with --method frequency",
+                "an option of this method",
+                "leave it out",
+            )
+    plant = load_plant(chosen.plant)
+    with console.stage("frequency responses, secant search, intervals"):
+        found = _lateral(chosen, plant) if plant.model == LATERAL else _operating_point(chosen, bind(plant))
+    write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
+    write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
+    write_atomic(chosen.out / "report.html", page_text(frequency_page(found)))
+    _tell(chosen, found)
+    return 0
+
+
+def _lateral(chosen: argparse.Namespace, plant: Plant) -> FrequencyIdentification:
+    check_plant(plant)
+    model = lateral_model(plant, _lateral_names(chosen.free, plant))
+    logs, held = _read(chosen, log_columns())
+    return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant))
+
+
+def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
+    if wanted is None:
+        return None
+    names = tuple(part.strip() for part in wanted.split(",") if part.strip())
+    known = [name for name in UNITS if plant.parameters[name].sds[0] > 0.0]
+    for name in names:
+        if name not in known:
+            raise BadInput(
+                f"parameter {name!r}", "--free", "an unknown or exact one", f"of {', '.join(known)}", "correct it"
+            )
+    return names
+
+
+def _operating_point(chosen: argparse.Namespace, bound: BoundPlant) -> FrequencyIdentification:
+    logs, held = _read(chosen, plant_columns(bound.model))
+    outputs = tuple(bound.model.outputs)
+    records, others = ([record_of(log, name, outputs) for name, log in some.items()] for some in (logs, held))
+    means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
+    model = operating_point_model(bound, free_names(bound, chosen.free), means, read_limits(chosen.bounds))
+    return _matched(chosen, bound.plant, model, records, others)
+
+
+def _matched(
+    chosen: argparse.Namespace, plant: Plant, model: LinearModel, records: Sequence[Record], held: Sequence[Record]
+) -> FrequencyIdentification:
+    band = None if chosen.band_rad_s is None else (chosen.band_rad_s[0], chosen.band_rad_s[1])
+    return frequency_identification(plant, match(model, records, band, seed=chosen.seed), held)
+
+
+def _read(chosen: argparse.Namespace, columns: LogColumns) -> tuple[Mapping[str, RunLog], Mapping[str, RunLog]]:
+    """Logs to match and logs to check on, by name."""
+    logs = {path.stem: _log(path, columns) for path in chosen.files}
+    if chosen.trim is not None:
+        logs = {name: trimmed(log, *chosen.trim) for name, log in logs.items()}
+    periods = {log.sample_period_s for log in logs.values()}
+    if len(periods) > 1:
+        got = " and ".join(f"{period:g} s" for period in sorted(periods))
+        raise BadInput("sample_period_s", "run logs", got, "one for all", "match logs of one rate at a time")
+    return logs, {path.stem: _log(path, columns) for path in chosen.holdout}
+
+
+def _log(path: Path, columns: LogColumns) -> RunLog:
+    if path.is_dir() or path.suffix != ".csv":
+        raise BadInput(
+            "FILES", str(path), "not a run log", "run logs, NAME.csv", "experiments have no frequency method"
+        )
+    return load_log(path, columns)
+
+
+def _tell(chosen: argparse.Namespace, found: FrequencyIdentification) -> None:
+    if chosen.json:
+        print(json.dumps(frequency_facts(found)))
+        return
+    print(console.table(estimate_rows(found.result.estimates), HEADING))
+    print("\n" + console.table(pair_rows(found.pairs), PAIR_HEADING))
+    if found.checks:
+        print("\n" + console.table(check_rows(found.checks, found.fit.model.outputs), CHECK_HEADING))
+    for note in found.notes:
+        print(f"- {note}")
+    print(f"\n{chosen.out / 'plant.toml'}")

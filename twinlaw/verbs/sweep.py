@@ -1,0 +1,151 @@
+"""Fly frequency sweeps on a simulated plant: the records from which `identify --method frequency` makes frequency responses.
+
+A plant of this project flies under the controller designed for it, with the sweep on its inputs or on its references, one record for
+each axis. The helicopter of seed 002 (plants/raptor50.toml) flies open loop with the sensors of its file: --repeats sweeps of each stick
+and a record of doublets to check on. Band and duration keep the rules of frequency identification. With --repetitions the helicopter is
+flown and identified so many times, and DIR/coverage.json tells how often the truth lay within the 95 % intervals.
+"""
+
+import argparse
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from identification.frequency.coverage import Repetition, coverage, repetition
+from identification.frequency.helicopter import SAMPLE_PERIOD_S, sweep_flights
+from identification.frequency.lateral import MODEL as LATERAL
+from identification.frequency.lateral import check_plant
+from identification.frequency.plant_sweep import closed_loop_sweeps
+from identification.frequency.sweep import design_sweep
+from records.errors import BadInput
+from records.files import write_atomic
+from records.log import RunLog, save_log
+from records.plant import Plant, load_plant
+from twinlaw import console, options
+from twinlaw.stages import design_controller
+
+BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
+AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0.3)}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --band-rad-s, --duration-s, --amplitudes, --on, --psi-rad, --repeats, --seed, --repetitions, --out, --json."""
+    options.plant(parser)
+    parser.add_argument(
+        "--band-rad-s",
+        nargs=2,
+        type=float,
+        metavar=("LOW", "HIGH"),
+        help="default: 0.3 to 10; of the helicopter 0.25 to 12",
+    )
+    parser.add_argument("--duration-s", type=float, metavar="T", help="of the sweep; default: 5.5 periods of LOW")
+    parser.add_argument(
+        "--amplitudes", nargs=2, type=float, metavar=("FIRST", "SECOND"),
+        help="of the two inputs; default: 0.5 V each, references 0.12 and 0.3 rad, the helicopter's sticks 2 and 4",
+    )  # fmt: skip
+    parser.add_argument(
+        "--on",
+        choices=("inputs", "references"),
+        default="references",
+        help="where a controller's loop is swept; default: %(default)s",
+    )
+    parser.add_argument(
+        "--psi-rad",
+        type=float,
+        default=0.0,
+        metavar="ANGLE",
+        help="elevation at which the plant rests; default: %(default)s",
+    )
+    parser.add_argument(
+        "--repeats",
+        type=options.count,
+        default=3,
+        help="sweeps of each of the helicopter's sticks; default: %(default)s",
+    )
+    parser.add_argument("--seed", type=options.count, default=1, help="of pilot and sensors; default: %(default)s")
+    parser.add_argument(
+        "--repetitions", type=options.count, metavar="N", help="identify N flights, seeds from --seed on"
+    )
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Fly and write, or repeat and count."""
+    plant = load_plant(chosen.plant)
+    if plant.model == LATERAL:
+        check_plant(plant)
+        return _fly_helicopter(chosen, plant) if chosen.repetitions is None else _repeat(chosen, plant)
+    if chosen.repetitions is not None:
+        raise BadInput(
+            "--repetitions", str(chosen.plant), repr(plant.model), f"the model {LATERAL!r}", "leave the option out"
+        )
+    designed = design_controller(chosen.plant)
+    low, high = chosen.band_rad_s or BANDS_RAD_S["ce150"]
+    sweep = design_sweep(low, high, designed.table.sample_period_s, chosen.duration_s)
+    with console.stage("flying the sweeps"):
+        logs = closed_loop_sweeps(
+            designed.bound, designed.table, sweep, chosen.psi_rad, _amplitudes(chosen, chosen.on), chosen.on
+        )
+    return _write(chosen, logs)
+
+
+def _amplitudes(chosen: argparse.Namespace, of: str) -> tuple[float, float]:
+    first, second = chosen.amplitudes or AMPLITUDES[of]
+    if not (np.isfinite(first) and np.isfinite(second) and first > 0.0 and second > 0.0):
+        raise BadInput("--amplitudes", "command line", f"{first:g} {second:g}", "two numbers above 0", "give both")
+    return first, second
+
+
+def _fly_helicopter(chosen: argparse.Namespace, plant: Plant) -> int:
+    low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
+    sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
+    return _write(chosen, sweep_flights(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, chosen.seed))
+
+
+def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
+    files: list[Path] = []
+    for name, log in logs.items():
+        files.append(chosen.out / f"{name}.csv")
+        save_log(files[-1], log)
+    print(json.dumps([str(path) for path in files]) if chosen.json else "\n".join(map(str, files)))
+    return 0
+
+
+def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
+    low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
+    sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
+    found: list[Repetition] = []
+    for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
+        with console.stage(f"flights {seed}: sweeps, responses, match"):
+            found.append(repetition(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, seed))
+        shares = coverage(found)
+        facts = {
+            "coverage": dict(shares),
+            "least": min(shares.values()),
+            "mean": sum(shares.values()) / len(shares),
+            "repetitions": [asdict(entry) for entry in found],
+        }
+        # After each flight, so that an interrupted count leaves what it has.
+        write_atomic(chosen.out / "coverage.json", json.dumps(facts, indent=1) + "\n")
+    if chosen.json:
+        print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean")}))
+        return 0
+    print(
+        console.table(_coverage_rows(plant, found), ("parameter", "true", "mean", "scatter", "mean sd", "within 95 %"))
+    )
+    print(f"\n{len(found)} sets of flights; least {facts['least']:.0%}, mean {facts['mean']:.1%}")
+    return 0
+
+
+def _coverage_rows(plant: Plant, found: list[Repetition]) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for name, share in coverage(found).items():
+        values = np.array([entry.value[name] for entry in found])
+        sd = float(np.mean([entry.sd[name] for entry in found]))
+        true = plant.parameters[name].values[0]
+        rows.append((name, f"{true:.5g}", f"{values.mean():.5g}", f"{values.std():.2g}", f"{sd:.2g}", f"{share:.0%}"))
+    return rows
