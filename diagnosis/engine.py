@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case, make_case
 from diagnosis.detect import MEAN_GAIN, Detection, detect, gains
+from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
@@ -45,7 +46,7 @@ HELPS = 0.995  # of the hold-out's error that must be left at most for an effect
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """Logs to fit and logs to check on, with their names and the rows that may be used of each."""
+    """Logs to fit and logs to check on, with the names of both and the rows that may be used of each."""
 
     logs: Sequence[RunLog]
     holdout: Sequence[RunLog]
@@ -56,6 +57,7 @@ class Material:
     tables: Sequence[
         ControllerTable | None
     ] = ()  # the controller that flew each hold-out log, None where it is not at hand
+    names: Sequence[str] = ()  # of the logs to fit
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -80,6 +82,8 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
     weighed = _checked(checked, material, weighed, stated, left)
+    doubts = doubt(case, found, weighed, material.names)
+    weighed, material = doubts.applied(weighed), replace(material, notes=(*material.notes, *doubts.sentences))
     chosen, predicted = _added(checked, material, weighed, stated, beyond)
     return Result(
         diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks, beyond),
@@ -146,7 +150,9 @@ def _added(
     predicted = _predicted(checked, material, retuned, first)
     if checked is None or first is retuned:
         return first, predicted
-    if error(checked, predicted, "after") < HELPS * error(checked, predicted, "before"):
+    if error(checked, predicted, "after") < HELPS * min(
+        error(checked, predicted, bar) for bar in ("nominal", "before")
+    ):
         return first, predicted
     return retuned, _predicted(checked, material, retuned, retuned)
 
@@ -228,7 +234,7 @@ def _no_gap(
     ranked = suspects(detection)
     places = (PlaceShare(ranked[0].place, 1.0),) if ranked else ()
     diagnosis = Diagnosis(
-        verdict="cannot tell" if cannot_tell(looks) else "no gap",
+        verdict="cannot tell" if cannot_tell(case, looks) else "no gap",
         false_alarm_probability=detection.p,
         places=places,
         firmware=material.firmware,

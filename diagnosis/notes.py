@@ -15,6 +15,8 @@ FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence
 SEEN = 4.0  # score that an effect needs to be seen
 IMITATED = 0.995
 BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
+UNSEEN = "too little excitation to see"
+IMITATION = "a re-tune of the plant's own parameters imitates these, so these data cannot tell them"
 
 
 def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed | None) -> tuple[str, ...]:
@@ -22,9 +24,9 @@ def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed 
     return (*_moved(case, chosen), *_twins(case, weighed), *_imitated(looks, chosen), *_unseen(case, looks, chosen))
 
 
-def cannot_tell(looks: Sequence[Look]) -> bool:
+def cannot_tell(case: Case, looks: Sequence[Look]) -> bool:
     """Whether most of the library would go unseen in these data even at its reference sizes."""
-    return bool(looks) and float(np.mean([entry.power < SEEN for entry in looks])) > BLIND
+    return _share_hidden(case, looks) > BLIND
 
 
 def moved_parameters(case: Case, theta: np.ndarray, far: float = FAR) -> list[int]:
@@ -74,16 +76,61 @@ def _twins(case: Case, weighed: Weighed | None) -> Iterator[str]:
 def _imitated(looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
     hidden = sorted(entry.effect for entry in looks if entry.absorbed > IMITATED and entry.effect not in chosen.effects)
     if hidden:
-        yield f"a re-tune of the plant's own parameters imitates these, so these data cannot tell them: {', '.join(hidden)}"
+        kinds = [f"{place} {', '.join(name.split('.')[1] for name in names)}" for place, names in _by_place(hidden)]
+        yield f"{IMITATION}: {'; '.join(kinds)}"
 
 
 def _unseen(case: Case, looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
-    """How large effects could be without being seen."""
-    found = []
-    for entry in sorted(looks, key=lambda entry: entry.effect):
-        size = case.kit.effects[entry.effect].size
-        away = size_scale(size) * SEEN / max(entry.power, 1e-9)
-        if entry.power < SEEN and entry.absorbed <= IMITATED and away < size.upper - size.lower:
-            found.append(f"{entry.effect} up to {size.symbol} = {(size.zero or 0.0) + away:.3g} {size.unit}")
-    if found:
-        yield f"too little excitation to see these below the sizes given: {'; '.join(found)}"
+    """How large effects could be without being seen: a sentence for each place, the largest in units of its reference size first."""
+    hidden = _hidden(case, looks)
+    imitated = {entry.effect for entry in looks if entry.absorbed > IMITATED}
+    if _share_hidden(case, looks) > BLIND:
+        whole = len(_judged(case, looks))
+        yield f"{len(hidden)} of {whole} effects of the library would go unseen in these logs at the size that they may well have"
+    said = {
+        name: ratio
+        for name, ratio in hidden.items()
+        if name not in imitated and name not in chosen.fit.supposed.effects
+    }
+    for place, names in _by_place(sorted(said, key=lambda name: (-said[name], name))):
+        sizes = {name.split(".")[1]: _up_to(case, name, said[name]) for name in names}
+        never = ", ".join(kind for kind, size in sizes.items() if size is None)
+        parts = [f"{never} of any size"] if never else []
+        parts += [f"{kind} below {size}" for kind, size in sizes.items() if size is not None]
+        yield f"{UNSEEN} at the {place}: {'; '.join(parts)}"
+
+
+def _up_to(case: Case, name: str, ratio: float) -> str | None:
+    """The size below which an effect hides, `ratio` times its reference; None where that is beyond all that it can have."""
+    size = case.kit.effects[name].size
+    away = ratio * size_scale(size)
+    if away >= size.upper - size.lower:
+        return None
+    unit = "" if size.unit == "-" else f" {size.unit}"
+    return f"{size.symbol} = {(size.zero or 0.0) + away:.3g}{unit}"
+
+
+def _judged(case: Case, looks: Sequence[Look]) -> list[str]:
+    """Effects of which these looks could say something: all but steps of a signal, which are read off the readings themselves."""
+    return [
+        name for name in case.kit.candidates if not name.endswith(".quantization") or name in {e.effect for e in looks}
+    ]
+
+
+def _hidden(case: Case, looks: Sequence[Look]) -> dict[str, float]:
+    """By effect that would go unseen at its reference size: how many times that it could be; inf where it left no trace at all."""
+    power = {entry.effect: entry.power for entry in looks}
+    found = {name: SEEN / max(power[name], 1e-9) if name in power else np.inf for name in _judged(case, looks)}
+    return {name: ratio for name, ratio in found.items() if ratio > 1.0}
+
+
+def _share_hidden(case: Case, looks: Sequence[Look]) -> float:
+    return len(_hidden(case, looks)) / max(len(_judged(case, looks)), 1)
+
+
+def _by_place(names: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """Names by their place, in the order in which each place first comes."""
+    places: dict[str, list[str]] = {}
+    for name in names:
+        places.setdefault(name.split(".")[0], []).append(name)
+    return list(places.items())

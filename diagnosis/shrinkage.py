@@ -55,7 +55,7 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     outputs = list(case.kit.bound.model.outputs)
     squares = {bar: _squares(predicted, bar) for bar in BARS}
     floor = np.sqrt([case.flights[0].tape.variance(case.kit.outputs.index(name)) for name in outputs])
-    bars = {bar: _named(outputs, np.sqrt(np.nanmean(squares[bar], axis=0))) for bar in BARS}
+    bars = {bar: _named(outputs, np.sqrt(_means(squares[bar]))) for bar in BARS}
     whole = np.arange(len(squares["after"]))
     fraction = _fraction(squares, floor, whole)
     rng = np.random.default_rng(SEED)
@@ -78,7 +78,7 @@ def error(case: Case, predicted: Sequence[Predicted], bar: str) -> float:
     """Mean square error of a bar, each output in units of its floor."""
     outputs = list(case.kit.bound.model.outputs)
     floor = np.array([case.flights[0].tape.variance(case.kit.outputs.index(name)) for name in outputs])
-    return float(np.nansum(np.nanmean(_squares(predicted, bar), axis=0) / floor))
+    return float(np.nansum(_means(_squares(predicted, bar)) / floor))
 
 
 def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
@@ -90,16 +90,23 @@ def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
         for first, last in windows(entry.t_s):
             if held.any() and np.isfinite(square[first:last, held]).any(axis=0).all():
                 found.append(np.full(len(held), np.nan))
-                found[-1][held] = np.nanmean(square[first:last, held], axis=0)
+                found[-1][held] = _means(square[first:last, held])
     return np.array(found) if found else np.full((1, predicted[0].y.shape[1]), np.nan)
 
 
 def _fraction(squares: Mapping[str, Array], floor: Array, rows: NDArray[np.int64]) -> float | None:
-    before, after = (np.nanmean(squares[bar][rows[rows < len(squares[bar])]], axis=0) for bar in ("before", "after"))
+    before, after = (_means(squares[bar][rows[rows < len(squares[bar])]]) for bar in ("before", "after"))
     removable = float(np.nansum(before / floor**2 - 1.0))
     if not np.isfinite(removable) or removable <= 0.0:
         return None
     return float(np.nansum((before - after) / floor**2) / removable)
+
+
+def _means(columns: Array) -> Array:
+    """Means of the columns (rows, k) without their NaN; NaN for a column of nothing else."""
+    count = np.isfinite(columns).sum(axis=0)
+    total = np.where(np.isfinite(columns), columns, 0.0).sum(axis=0)
+    return np.asarray(np.divide(total, count, out=np.full(len(total), np.nan), where=count > 0))
 
 
 def _named(outputs: Sequence[str], values: Array) -> dict[str, float]:

@@ -202,8 +202,8 @@ def _worst_span(log: Predicted) -> NDArray[np.bool_]:
     """Rows of the window of `_ZOOM_S` in which the stated plant errs most, outputs weighed by their spread."""
     error = np.zeros(len(log.t_s))
     for output, measured in log.measured.items():
-        spread = float(np.nanstd(measured)) or 1.0
-        error += np.nan_to_num((log.nominal[output] - measured) / spread) ** 2
+        spread = float(np.std(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
+        error += np.nan_to_num((log.nominal[output] - measured) / (spread or 1.0)) ** 2
     ends = np.searchsorted(log.t_s, log.t_s + _ZOOM_S)
     total = np.concatenate([[0.0], np.cumsum(error)])
     start = int(np.argmax(total[ends] - total[:-1]))

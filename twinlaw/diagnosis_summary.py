@@ -28,7 +28,7 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
         yield console.table(
             [*rows, ("unknown", f"{diagnosis.unknown.probability:.3f}", diagnosis.unknown.class_ or "")]
         )
-    if diagnosis.places:
+    if diagnosis.places and diagnosis.verdict == "gap":
         yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
     yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")
     if diagnosis.shrinkage is not None and diagnosis.shrinkage.fraction is not None:

@@ -1,0 +1,73 @@
+"""Logs that show too little: the verdict says so, and the notes say what could not have been seen, where, and how large it could be."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.engine import Material, diagnose
+from diagnosis.notes import IMITATION, UNSEEN
+from records.diagnosis import Diagnosis
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.equilibrium import equilibrium
+from sim.loop import closed_loop_log
+from sim.manoeuvres import Manoeuvre
+from sim.simulate import simulate
+from tests.law_tables import ce150_table
+
+T_S = 0.01 * np.arange(1500)
+
+
+def flown(plant: BoundPlant, reference: np.ndarray, locked: tuple[str, ...] = ()) -> RunLog:
+    """The stated plant along a reference."""
+    x0 = equilibrium(plant, 0.0).x0
+    run = simulate(plant, T_S, x0, ce150_table(), reference=reference, keep="uy", locked=locked)
+    assert run.u is not None
+    assert run.y is not None
+    log = closed_loop_log(plant, Manoeuvre("m", T_S, reference, x0), run.u, run.y, None)
+    return replace(log, extra={}, locked=locked)
+
+
+def diagnosed(plant: BoundPlant, log: RunLog) -> Diagnosis:
+    """The diagnosis, with every warning an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        return diagnose(plant, Material([log], [], [], [None])).diagnosis
+
+
+@pytest.fixture(scope="module")
+def hover(plant: BoundPlant) -> Diagnosis:
+    """Fifteen seconds in which each axis moves by two or three counts."""
+    return diagnosed(plant, flown(plant, np.column_stack([0.003 * np.sin(T_S), 0.004 * np.sin(0.7 * T_S)])))
+
+
+def test_a_rig_that_hardly_moves_cannot_tell(hover: Diagnosis) -> None:
+    assert hover.verdict == "cannot tell"
+    assert hover.found == ()
+    assert any("effects of the library would go unseen" in note for note in hover.notes)
+
+
+def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> None:
+    # Truth: a drag with the square of a speed of 0.2 deg/s, and a stop never reached, leave no trace at any size; a delay leaves a bound.
+    told = {note.split(" at the ")[1].split(":")[0]: note for note in hover.notes if note.startswith(UNSEEN)}
+    assert {"azimuth", "elevation", "tail_input"} <= set(told)
+    never = told["azimuth"].split(" of any size")[0]
+    assert "quadratic_drag" in never
+    assert "end_stop" in never
+    assert "delay below tau = " in told["main_input"]
+    assert len(told) == len([note for note in hover.notes if note.startswith(UNSEEN)])
+    assert len([note for note in hover.notes if note.startswith(IMITATION)]) == 1
+
+
+def test_a_locked_axis_shows_nothing_of_itself(plant: BoundPlant) -> None:
+    # Truth: the elevation is held, so no effect on it can have moved anything; the azimuth's delay would have been seen.
+    reference = np.column_stack([np.zeros(len(T_S)), 0.6 * np.sin(0.7 * T_S)])
+    diagnosis = diagnosed(plant, flown(plant, reference, ("elevation",)))
+    assert diagnosis.verdict in ("no gap", "cannot tell")
+    assert diagnosis.found == ()
+    (elevation,) = [note for note in diagnosis.notes if note.startswith(f"{UNSEEN} at the elevation")]
+    for kind in ("quadratic_drag", "cable_spring", "centre_of_gravity"):
+        assert kind in elevation.split(" of any size")[0]
+    assert not any(note.startswith(f"{UNSEEN} at the tail_input") and "delay" in note for note in diagnosis.notes)
