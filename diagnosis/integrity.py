@@ -51,6 +51,7 @@ class Integrity:
         return tuple(f"{finding.log}: {finding.sentence}" for finding in self.findings)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers beyond all bounds are what is looked for
 def examine(
     logs: Sequence[RunLog],
     bound: BoundPlant,

@@ -16,9 +16,10 @@ STRETCHES = 8
 
 @dataclass(frozen=True, eq=False)
 class Stretches:
-    """Parts of logs with which of their rows (n,) may be used, and a sentence for each log that was cut."""
+    """Parts of logs with their names and which of their rows (n,) may be used, and a sentence for each log that was cut."""
 
     logs: tuple[RunLog, ...]
+    names: tuple[str, ...]
     used: tuple[Rows, ...]
     notes: tuple[str, ...]
 
@@ -31,17 +32,18 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     """
     total = sum(log.y.size for log in logs)
     if total <= MOST_READINGS:
-        return Stretches(tuple(logs), tuple(used), ())
-    parts: list[tuple[RunLog, Rows]] = []
+        return Stretches(tuple(logs), tuple(names), tuple(used), ())
+    parts: list[tuple[RunLog, str, Rows]] = []
     notes = []
     for log, mask, name in zip(logs, used, names, strict=True):
         rows = max(2, int(len(log.t_s) * MOST_READINGS / total))
         chosen = _chosen(log, rows)
-        parts += [(_part(log, part), mask[part]) for part in chosen]
+        parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", mask[part]) for part in chosen]
         kept = sum(part.stop - part.start for part in chosen)
         spans = ", ".join(f"{log.t_s[part.start]:.6g}..{log.t_s[part.stop - 1]:.6g} s" for part in chosen)
         notes.append(f"{name}: {kept} of its {len(log.t_s)} rows were looked at, as {len(chosen)} stretches: {spans}")
-    return Stretches(tuple(log for log, _ in parts), tuple(mask for _, mask in parts), tuple(notes))
+    cut, called, masks = zip(*parts, strict=True)
+    return Stretches(cut, called, masks, tuple(notes))
 
 
 def _chosen(log: RunLog, rows: int) -> list[slice]:

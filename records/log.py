@@ -105,8 +105,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_toml(sidecar_path, "sidecar of the run log")
     controller = _check_sidecar(sidecar, str(sidecar_path), columns)
-    names, rows = read_rows(path)
-    _check_columns(names, str(path), columns)
+    names, rows = read_rows(path, lambda header: _check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}
     _check_numbers(data, str(path), columns)
     return RunLog(

@@ -1,7 +1,7 @@
 """Rows of numbers as CSV: fast where the file is clean, precise about the line where it is not."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,14 +22,21 @@ def rows_text(names: Sequence[str], columns: Sequence[Array], seq: NDArray[np.in
     return "\n".join(lines) + "\n"
 
 
-def read_rows(path: Path) -> tuple[tuple[str, ...], Array]:
-    """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line."""
+def read_rows(
+    path: Path, check_header: Callable[[tuple[str, ...]], None] | None = None
+) -> tuple[tuple[str, ...], Array]:
+    """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line.
+
+    `check_header` sees the header before any row is read: what is no log at all is named as that, not by its first row.
+    """
     text = read_text(path, "run log")
     header, _, body = text.partition("\n")
     names = tuple(name.strip() for name in header.split(","))
     if not header.strip() or not body.strip():
         got = "an empty file" if not header.strip() else "a header only"
         raise BadInput("run log", str(path), got, "a header and rows of numbers", "record at least one sample")
+    if check_header is not None:
+        check_header(names)
     try:
         rows = np.loadtxt(io.StringIO(body), delimiter=",", ndmin=2, comments=None)
     except ValueError:

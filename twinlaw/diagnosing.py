@@ -53,6 +53,7 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     parts = stretches(read[:split], used[:split], names[:split])
     return Material(
         logs=parts.logs,
+        names=parts.names,
         holdout=read[split:],
         holdout_names=names[split:],
         used=[*parts.used, *used[split:]],

@@ -1,0 +1,58 @@
+"""Logs that contradict each other: one and the same plant, whatever it lacks, cannot have made them all."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.filter import Pass
+from diagnosis.fit import WIDE, Fit
+from diagnosis.hypothesis import passes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """Log number `index` wants other numbers than the rest: it gains `gain` nats with `moved` of its own, furthest first, in units of
+    their spread."""
+
+    index: int
+    gain: float
+    moved: tuple[tuple[str, float], ...]
+
+
+def contradiction(case: Case, fit: Fit) -> Contradiction | None:
+    """The log that gains most by numbers of its own beside a joint fit, to first order; None for a single log.
+
+    With g the slope of one log's misfit and I its information at the joint fit, numbers d of its own gain g' S^-1 g / 2 where
+    S = I + L - I (I_all + L)^-1 I and L is what was known before.
+    """
+    if len(case.flights) < 2:
+        return None
+    variant = case.kit.variant(fit.supposed.effects)
+    inside = [entry for entry in fit.free if entry.effect in variant.names]
+    places = [variant.place(entry.effect, entry.parameter.symbol) for entry in inside]
+    runs = passes(case, fit.supposed, [*case.free.tolist(), *places])
+    if runs is None:
+        return None
+    scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
+    before = np.concatenate([np.ones(len(case.free)), np.full(len(inside), WIDE**-2)])
+    names = [str(case.kit.bound.model.parameter_symbols[place]) for place in case.free]
+    names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]
+    found = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]
+    return max(found, key=lambda entry: entry.gain)
+
+
+def _own_numbers(runs: Sequence[Pass], index: int, scale: Array, before: Array, names: Sequence[str]) -> Contradiction:
+    grams = [run.gram * np.outer(scale, scale) for run in runs]
+    own, everything = grams[index], np.sum(grams, axis=0) + np.diag(before)
+    pull = runs[index].pull * scale
+    curvature = own + np.diag(before) - own @ np.linalg.solve(everything, own)
+    step = -np.linalg.solve(curvature, pull)
+    order = np.argsort(-np.abs(step))[:3]
+    return Contradiction(
+        index, float(-0.5 * pull @ step), tuple((names[place], float(step[place])) for place in order.tolist())
+    )

@@ -1,0 +1,73 @@
+"""Reasons to name nothing: logs that contradict each other, a plant that knows nothing of its logs, parameters that must be others'."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.case import Case
+from diagnosis.contradiction import Contradiction, contradiction
+from diagnosis.misfit import ignorance
+from diagnosis.search import Search
+from diagnosis.weigh import Weighed
+
+WORTH_TELLING = 60.0  # nats that one log gains by numbers of its own
+TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
+KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
+OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
+UNNAMED = 0.95  # probability of an unknown effect that is then stated at least
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Sentences that go with the diagnosis, and whether they forbid to name a cause."""
+
+    sentences: tuple[str, ...]
+    forbids: bool
+
+    def applied(self, weighed: Weighed) -> Weighed:
+        """The probabilities with what is doubted given to the unknown."""
+        if not self.forbids or weighed.unknown >= UNNAMED:
+            return weighed
+        factor = (1.0 - UNNAMED) / max(1.0 - weighed.unknown, 1e-12)
+        return replace(
+            weighed,
+            probabilities=tuple(factor * value for value in weighed.probabilities),
+            retune=factor * weighed.retune,
+            unknown=UNNAMED,
+        )
+
+
+def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str]) -> Doubt:
+    """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs."""
+    best = found.tried[0]
+    gain = best.evidence - found.nominal.evidence
+    sentences, forbids = [], False
+    apart = contradiction(case, best.fit)
+    if apart is not None and apart.gain > WORTH_TELLING:
+        sentences.append(_contradiction(apart, names))
+        forbids = apart.gain > TOO_MUCH * gain
+    errors = ignorance(case, best.fit.supposed)
+    if errors and min(errors.values()) > KNOWS_NOTHING:
+        told = ", ".join(f"{name} {value:.2g}" for name, value in errors.items())
+        sentences.append(
+            "this plant does not fit these logs at all: whatever is added to it, its predictions over 1 s are no better than holding "
+            f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
+        )
+        forbids = True
+    furthest = float(np.max(np.abs(best.fit.supposed.theta), initial=0.0))
+    if furthest > OTHERS and weighed.unknown > 0.5:
+        sentences.append(
+            f"these may be logs of another plant: beside every effect a parameter stays {furthest:.0f} standard deviations from what "
+            "the plant file states"
+        )
+    return Doubt(tuple(sentences), forbids)
+
+
+def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:
+    name = names[apart.index] if apart.index < len(names) else f"log {apart.index + 1}"
+    moved = ", ".join(f"{what} {by:+.1f}" for what, by in apart.moved)
+    return (
+        f"these logs contradict each other: {name} would be {apart.gain:.0f} nats likelier with numbers of its own ({moved}, in units "
+        "of their spread), so one plant in one state did not make them all; diagnose them apart"
+    )

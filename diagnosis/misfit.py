@@ -1,0 +1,39 @@
+"""Does the plant, with all that was found, know these logs at all? Its predictions against those of somebody who knows nothing."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case, Flight
+from diagnosis.hypothesis import Supposed
+from diagnosis.predict import predictions, windows
+
+Array = NDArray[np.float64]
+MOVES = 5.0  # times its sensor's floor that an output must move within a window to count
+
+
+def ignorance(case: Case, supposed: Supposed) -> dict[str, float]:
+    """RMS error of 1 s predictions by output, over the RMS change of the readings since each window's start: 1 is to know nothing.
+
+    Outputs that hardly move are left out: nothing could be known better than that they stand.
+    """
+    outputs = list(case.kit.bound.model.outputs)
+    pairs = [_squares(flight, predictions(case, flight, supposed)) for flight in case.flights]
+    own, still = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+    found = {}
+    for place, name in enumerate(outputs):
+        floor = case.flights[0].tape.r[0, case.kit.outputs.index(name)]
+        known = np.isfinite(own[:, place])
+        if known.any() and (change := float(np.mean(still[known, place]))) > MOVES**2 * floor:
+            found[name] = float(np.sqrt(np.mean(own[known, place]) / change))
+    return found
+
+
+def _squares(flight: Flight, predicted: Array) -> tuple[Array, Array]:
+    """Squared errors (rows, outputs) of the predictions, and of holding each window's first reading, over the same rows."""
+    y = flight.log.y
+    held = np.full_like(y, np.nan)
+    for first, last in windows(flight.log.t_s):
+        held[first:last] = y[first]
+    own, still = (predicted - y) ** 2, (held - y) ** 2
+    both = np.isfinite(own) & np.isfinite(still)
+    return np.where(both, own, np.nan), np.where(both, still, np.nan)
