@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 MOST_READINGS = 40_000  # rows times outputs, of all logs together
 STRETCHES = 8
+LEAST_S = 10.0  # of a stretch, as long as its log may have that much
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,16 +28,17 @@ class Stretches:
 def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]) -> Stretches:
     """The logs as they are where they hold at most MOST_READINGS, else equal parts of them that keep their own times.
 
-    Half of a log's parts are spread evenly over it, its beginning and its end among them; the others are those of the rest in which
-    outputs and inputs travel furthest.
+    Half of a log's parts are spread evenly over it from its beginning to its end; the others are those of the rest in which outputs
+    and inputs travel furthest.
     """
-    total = sum(log.y.size for log in logs)
-    if total <= MOST_READINGS:
+    if sum(log.y.size for log in logs) <= MOST_READINGS:
         return Stretches(tuple(logs), tuple(names), tuple(used), ())
     parts: list[tuple[RunLog, str, Rows]] = []
     notes = []
-    for log, mask, name in zip(logs, used, names, strict=True):
-        rows = max(2, int(len(log.t_s) * MOST_READINGS / total))
+    for log, mask, name, rows in zip(logs, used, names, _shares(logs), strict=True):
+        if rows == len(log.t_s):
+            parts.append((log, name, mask))
+            continue
         chosen = _chosen(log, rows)
         parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", mask[part]) for part in chosen]
         kept = sum(part.stop - part.start for part in chosen)
@@ -46,16 +48,28 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     return Stretches(cut, called, masks, tuple(notes))
 
 
+def _shares(logs: Sequence[RunLog]) -> list[int]:
+    """Rows that each log may show: short logs all of theirs, the long ones equal parts of what is left."""
+    shares = [0] * len(logs)
+    left = MOST_READINGS // logs[0].y.shape[1]
+    order = sorted(range(len(logs)), key=lambda index: len(logs[index].t_s))
+    for taken, index in enumerate(order):
+        shares[index] = min(len(logs[index].t_s), left // (len(logs) - taken))
+        left -= shares[index]
+    return shares
+
+
 def _chosen(log: RunLog, rows: int) -> list[slice]:
     """Parts of together at most `rows` rows, in order of time."""
     n = len(log.t_s)
-    size = max(rows // STRETCHES, 1)
+    parts = int(np.clip(rows * log.sample_period_s / LEAST_S, 1, STRETCHES))
+    size = max(rows // parts, 1)
     count = n // size
     starts = np.linspace(0, n - size, count).astype(int)
-    even = np.unique(np.linspace(0, count - 1, STRETCHES // 2).astype(int))
+    even = np.unique(np.linspace(0, count - 1, (parts + 1) // 2).astype(int))
     travelled = _travelled(log)
     lively = np.argsort([travelled[start] - travelled[start + size - 1] for start in starts], kind="stable")
-    others = [int(place) for place in lively if place not in even][: STRETCHES - len(even)]
+    others = [int(place) for place in lively if place not in even][: parts - len(even)]
     return [slice(int(starts[place]), int(starts[place]) + size) for place in sorted([*even.tolist(), *others])]
 
 

@@ -1,0 +1,59 @@
+"""Long logs by stretches: short ones are left alone, long ones shown by parts that hold their beginning, their end and where most moves."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from diagnosis.stretches import MOST_READINGS, stretches
+from records.log import RunLog
+from sim.columns import log_columns
+from tests.plants import bound
+
+
+def log_of(n: int) -> RunLog:
+    """A log that hardly moves but for its part from 0.60 to 0.62 of its time."""
+    t_s = 5.0 + 0.01 * np.arange(n)
+    lively = 0.001 + ((np.arange(n) >= 0.60 * n) & (np.arange(n) < 0.62 * n))
+    y = np.column_stack([lively * np.sin(3.0 * t_s), lively * np.cos(2.0 * t_s)])
+    return RunLog(log_columns(bound("ce150").model), 0.01, "open", t_s, 0.1 * y, y, seq=np.arange(n))
+
+
+def all_rows(log: RunLog) -> np.ndarray:
+    return np.ones(len(log.t_s), bool)
+
+
+def test_logs_that_a_search_can_hold_stay_whole() -> None:
+    logs = [log_of(6000), log_of(6000)]
+    found = stretches(logs, [all_rows(log) for log in logs], ["one", "two"])
+    assert all(part is log for part, log in zip(found.logs, logs, strict=True))
+    assert (found.names, found.notes) == (("one", "two"), ())
+
+
+def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_moves() -> None:
+    long, short = log_of(1_000_000), log_of(6000)
+    used = [np.arange(1_000_000) % 3 > 0, all_rows(short)]
+    found = stretches([long, short], used, ["long", "short"])
+    assert found.logs[-1] is short
+    readings = sum(log.y.size for log in found.logs)
+    assert 0.8 * MOST_READINGS < readings <= MOST_READINGS
+    parts = [log for log, name in zip(found.logs, found.names, strict=True) if name.startswith("long")]
+    assert parts[0].t_s[0] == long.t_s[0]
+    assert parts[-1].t_s[-1] == long.t_s[-1]
+    assert sum(0.58e4 < log.t_s[0] < 0.63e4 for log in parts) >= 3
+    for log, mask in zip(found.logs[: len(parts)], found.used, strict=False):
+        rows = np.searchsorted(long.t_s, log.t_s)
+        np.testing.assert_array_equal(long.y[rows], log.y)
+        np.testing.assert_array_equal(used[0][rows], mask)
+        assert log.seq is not None
+        np.testing.assert_array_equal(log.seq, rows)
+    assert all(earlier.t_s[-1] < later.t_s[0] for earlier, later in pairwise(parts))
+    assert [note.split(":")[0] for note in found.notes] == ["long"]
+    assert "1000000 rows" in found.notes[0]
+
+
+def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:
+    logs = [log_of(6000) for _ in range(20)]
+    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
+    assert sum(log.y.size for log in found.logs) <= MOST_READINGS
+    assert len(found.logs) == 20
+    assert {len(log.t_s) for log in found.logs} == {1000}
