@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from records.errors import BadInput
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
 from sim.reference import reference
@@ -46,12 +47,21 @@ def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
 
 
 def subsystem(bound: BoundPlant, linear: LinearPlant, axis: str) -> LinearPlant:
-    """The third-order part of `linear` from the axis' input to its angle, eq (20) or (21), cross-coupling left out."""
+    """The third-order part of `linear` from the axis' input to its angle, eq (20) or (21), cross-coupling left out.
+
+    Raises BadInput where the input does not drive the rotor's speed at once, as behind a second lag.
+    """
     wanted = SUBSYSTEMS[axis]
     names = [symbol.name for symbol in bound.model.states]
     rows = [names.index(name) for name in wanted.states]
     column = [symbol.name for symbol in bound.model.inputs].index(wanted.input)
     output = list(bound.model.outputs).index(wanted.output)
+    if not np.any(linear.B[rows, column]):
+        raise BadInput(
+            f"{axis} axis", f"plant {bound.plant.name!r}", f"{wanted.input} behind a second lag of the rotor",
+            "a rotor with one lag: the law is designed on three states",
+            "design it on another plant, and fly this one with --table",
+        )  # fmt: skip
     return LinearPlant(
         A=linear.A[np.ix_(rows, rows)], B=linear.B[np.ix_(rows, [column])], C=linear.C[np.ix_([output], rows)]
     )

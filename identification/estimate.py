@@ -10,7 +10,7 @@ from scipy.stats import t as student
 from identification.belief import Belief, prior, widened
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
-from identification.search import search
+from identification.search import Search, Searched, search, started
 from identification.solve import Point, Problem, Watch, solve
 from identification.uncertainty import Direction, inflations, pieces, unseen
 
@@ -55,6 +55,7 @@ class Estimate:
     at_bound: tuple[str, ...]
     residuals: tuple[ResidualTest, ...]
     runs: tuple[Run, ...]
+    searched: tuple[Searched, ...] = ()
 
 
 def interval_factor(dof: float) -> float:
@@ -68,17 +69,19 @@ def estimate(
     ranges: Mapping[str, Range],
     before: Belief,
     watch: Watch | None = None,
-    search_seed: int | None = None,
+    wanted: Search | None = None,
 ) -> Estimate:
     """Fit the parameters `own` to the runs, with those of `before` re-estimated from what is known of them.
 
     Earlier stages enter as a normal distribution, so the joint covariance carries their uncertainty on; after the last stage it is that
     of one fit to all runs, to first order. Channels are weighted by their own residuals, Q_V = diag(1 / rms^2), and a run whose
-    residuals are correlated counts for fewer samples. `search_seed` asks for a search over the whole range of `own` first.
+    residuals are correlated counts for fewer samples. `wanted` asks for a search over the whole range of `own` first.
     """
     problem = problem_of(tuple(runs), tuple(own), ranges, before)
-    if search_seed is not None:
-        problem = search(problem, [problem.names.index(name) for name in own], search_seed)
+    places = [problem.names.index(name) for name in own]
+    searched = () if wanted is None else search(problem, places, wanted)
+    if searched:
+        problem = started(problem, places, searched[0])
     point = solve(problem, watch)
     for weigh in (_by_channel, _by_correlation):
         problem = _weighed(problem, point, weigh)
@@ -86,7 +89,6 @@ def estimate(
     H = point.H
     covariance = _inverse(H + problem.prior.information)
     after = Belief(problem.names, point.theta, covariance)
-    places = [problem.names.index(name) for name in own]
     known = H + problem.prior.information - np.diag(_weak(problem, before))
     return Estimate(
         belief=after,
@@ -105,6 +107,7 @@ def estimate(
             test for run, blocks in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, blocks)
         ),
         runs=point.runs,
+        searched=searched,
     )
 
 

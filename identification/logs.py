@@ -12,7 +12,7 @@ from identification.log_run import log_run
 from identification.ranges import ranges_of
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, coefficient_names, offset_names
-from identification.search import search
+from identification.search import Search, search, started
 from identification.sizes import with_sizes
 from identification.solve import Prior, Problem, Watch, solve
 from identification.subsystem import subsystem
@@ -37,14 +37,14 @@ def identify_logs(
     window_s: float | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
     before: Belief = NOTHING,
-    search_seed: int | None = None,
+    wanted: Search | None = None,
     offsets: bool = False,
     watch: Watch | None = None,
 ) -> Estimate:
     """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
 
     By default several lengths are tried and the one that leaves the smallest uncertainty is kept: short ones where disturbances grow
-    into the prediction or the plant is unstable, long ones where the model holds. `search_seed` asks for a search over the whole range
+    into the prediction or the plant is unstable, long ones where the model holds. `wanted` asks for a search over the whole range
     first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated. Raises BadInput for an unknown
     coefficient or a start outside its limits.
     """
@@ -59,7 +59,7 @@ def identify_logs(
         ranges |= _offset_ranges(bound, logs)
         names = (*names, *offset_names(bound.model))
     ranges = with_sizes(coarse, ranges, [name for name in absent if name not in (limits or {})])
-    start = _coarse(coarse, names, ranges, before, search_seed, watch)
+    start = _coarse(coarse, names, ranges, before, wanted, watch)
     period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
     found: list[Estimate] = []
     for length in [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]:
@@ -162,13 +162,14 @@ def _coarse(
     names: Sequence[str],
     ranges: Mapping[str, Range],
     before: Belief,
-    search_seed: int | None,
+    wanted: Search | None,
     watch: Watch | None,
 ) -> dict[str, float]:
     """A start for the fine fit."""
     problem = problem_of(runs, tuple(names), ranges, before)
-    if search_seed is not None:
-        problem = search(problem, [problem.names.index(name) for name in names], search_seed)
+    if wanted is not None:
+        places = [problem.names.index(name) for name in names]
+        problem = started(problem, places, search(problem, places, wanted)[0])
     point = solve(problem, watch, COARSE_SETTLED)
     found = dict(zip(problem.names, point.theta.tolist(), strict=True))
     return {name: found[name] for name in names}

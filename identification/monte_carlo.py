@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.estimate import interval_factor
-from identification.experiments.table import KINDS, perform
+from identification.experiments.table import kinds_of, perform
 from identification.run import coefficient_names
 from identification.staged import Stage, identify_staged
 from sim.bind import BoundPlant, bind
@@ -18,7 +18,7 @@ MOST_SPREAD = 0.2  # no parameter is drawn further off than its nominal value ti
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """One rig: its true parameters and what its nine experiments gave, each a mapping by name; `inside` its 95 % interval."""
+    """One rig: its true parameters and what its experiments gave, each a mapping by name; `inside` its 95 % interval."""
 
     seed: int
     truth: Mapping[str, float]
@@ -45,9 +45,9 @@ def other_rig(bound: BoundPlant, seed: int) -> BoundPlant:
 
 
 def repetition(bound: BoundPlant, seed: int) -> Repetition:
-    """Perform the nine experiments on `other_rig` and identify it from the plant file's values."""
+    """Perform the plant's experiments on `other_rig` and identify it from the plant file's values."""
     truth = other_rig(bound, seed)
-    stages = identify_staged(bound, [perform(kind, truth, seed) for kind in KINDS])
+    stages = identify_staged(bound, [perform(kind, truth, seed) for kind in kinds_of(bound.model.name)])
     belief, factors = stages[-1].belief, interval_factors(stages)
     known = dict(zip(coefficient_names(truth.model), truth.p.tolist(), strict=True))
     value = dict(zip(belief.names, belief.mean.tolist(), strict=True))

@@ -9,6 +9,7 @@ import numpy as np
 from identification.belief import Belief
 from identification.estimate import Estimate, interval_factor
 from identification.residuals import ResidualTest
+from identification.search import Searched
 from identification.uncertainty import Direction
 from records.correlation import Correlation
 from records.plant import Parameter, Plant, coefficient_names
@@ -148,6 +149,17 @@ def _parameter(name: str, entry: Parameter, told: Mapping[str, Estimated]) -> Pa
     return Parameter(values if many else values[0], sds if many else sds[0], entry.unit, source)
 
 
+def with_values(plant: Plant, values: Mapping[str, float], source: str) -> Plant:
+    """The plant with other values of some coefficients and `source` as where they come from; sd as they were."""
+    found = dict(plant.parameters)
+    for name, entry in plant.parameters.items():
+        keys = [f"{name}_{k}" for k in range(len(entry.values))] if isinstance(entry.value, tuple) else [name]
+        if any(key in values for key in keys):
+            new = tuple(values.get(key, old) for key, old in zip(keys, entry.values, strict=True))
+            found[name] = replace(entry, value=new if isinstance(entry.value, tuple) else new[0], source=source)
+    return replace(plant, parameters=found)
+
+
 def facts(result: Identification) -> dict[str, Any]:
     """The result as plain values for identification.json."""
     return {
@@ -175,4 +187,21 @@ def _stage_facts(title: str, stage: Estimate) -> dict[str, Any]:
         ],
         "at_bound": list(stage.at_bound),
         "contradictions": [asdict(entry) for entry in stage.contradictions],
+        "searches": [_search_facts(entry) for entry in stage.searched],
+    }
+
+
+def _search_facts(found: Searched) -> dict[str, Any]:
+    """What one method found over the whole range; `error` is sum |e| with angles in degrees."""
+    return {
+        "method": found.method,
+        "values": dict(zip(found.names, found.values.tolist(), strict=True)),
+        "ranges": {
+            name: [float(lower), float(upper)]
+            for name, lower, upper in zip(found.names, found.lower, found.upper, strict=True)
+        },
+        "bits": dict(zip(found.names, found.bits, strict=False)),
+        "error": found.error,
+        "best_by_generation": list(found.best),
+        "cpu_s": found.cpu_s,
     }

@@ -1,47 +1,134 @@
-"""A start for the fit from anywhere within the bounds: differential evolution on criterion (10) of a part of the data.
+"""A start for the fit from anywhere within the bounds, by a method of the table; others may be run beside it for comparison."""
 
-The paper uses genetic algorithms and surrogate optimisation of a commercial toolbox for this; SciPy's differential evolution does the
-same work here, on the compiled model.
-"""
-
-from dataclasses import replace
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import differential_evolution
 
-from identification.prediction import predicted
-from identification.solve import Problem
+from identification.evolution import evolution
+from identification.genetic import Code, evolve
+from identification.population import absolute_error
+from identification.solve import Problem, solve
 
 Array = NDArray[np.float64]
-GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each parameter
-HUGE = 1e300
+DRAWN = 50  # points, as many as a population of seed 001
+BITS = 20  # of a parameter whose length nobody states: one step is a millionth of its range
 
 
-def search(problem: Problem, places: list[int], seed: int) -> Problem:
-    """The problem with a start for the parameters at `places`, the others held; window starts stay at their guesses.
+@dataclass(frozen=True)
+class Search:
+    """What is asked for: a method of `METHODS`, its seed, the code lengths of parameters by name (for `genetic`), methods to run beside.
 
-    Wide positive bounds are searched on a logarithmic scale. The same seed gives the same start.
+    `watch` is told the parameters whenever better ones are found, so that an interrupted search leaves them.
+    """
+
+    method: str
+    seed: int = 1
+    bits: Mapping[str, int] = field(default_factory=dict)
+    beside: tuple[str, ...] = ()
+    watch: Callable[[Mapping[str, float]], None] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """What a method found for the parameters `names` between lower and upper: values, all (parameters,), their J = sum |e|, CPU seconds.
+
+    `best` and `mean` are what the method itself counts, generation by generation; `bits` are empty where nothing is coded.
+    """
+
+    method: str
+    names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    values: Array
+    error: float
+    cpu_s: float
+    best: tuple[float, ...]
+    mean: tuple[float, ...]
+    bits: tuple[int, ...] = ()
+
+
+def search(problem: Problem, places: list[int], wanted: Search) -> tuple[Searched, ...]:
+    """The wanted method's result for the parameters at `places`, the others held, and those of the methods beside it.
+
+    The same seed gives the same values.
+    """
+    return tuple(_one(problem, places, wanted, method) for method in (wanted.method, *wanted.beside))
+
+
+def started(problem: Problem, places: list[int], found: Searched) -> Problem:
+    """The problem that starts from what was found."""
+    return replace(problem, start=_with(problem, places, found.values))
+
+
+def _one(problem: Problem, places: list[int], wanted: Search, method: str) -> Searched:
+    begin = time.process_time()
+    theta, best, mean, bits = METHODS[method](problem, places, wanted)
+    took_s = time.process_time() - begin
+    return Searched(
+        method=method,
+        names=tuple(problem.names[place] for place in places),
+        lower=problem.lower[places],
+        upper=problem.upper[places],
+        values=theta[places],
+        error=float(absolute_error(problem, theta[None])[0]),
+        cpu_s=took_s,
+        best=best,
+        mean=mean,
+        bits=bits,
+    )
+
+
+# All of theta, what is best and what is the mean by generation, bits.
+Trail = tuple[Array, tuple[float, ...], tuple[float, ...], tuple[int, ...]]
+
+
+def _evolution(problem: Problem, places: list[int], wanted: Search) -> Trail:
+    values, best = evolution(problem, places, wanted.seed)
+    return _with(problem, places, values), best, (), ()
+
+
+def _genetic(problem: Problem, places: list[int], wanted: Search) -> Trail:
+    """The algorithm of seed 001, whole populations in one call of the kernel."""
+    names = [problem.names[place] for place in places]
+    code = Code(problem.lower[places], problem.upper[places], tuple(wanted.bits.get(name, BITS) for name in names))
+
+    def cost(members: Array) -> Array:
+        return absolute_error(problem, np.stack([_with(problem, places, values) for values in members]))
+
+    def better(values: Array) -> None:
+        if wanted.watch is not None:
+            wanted.watch(dict(zip(names, values.tolist(), strict=True)))
+
+    found = evolve(code, cost, wanted.seed, watch=better)
+    return _with(problem, places, found.values), found.best, found.mean, code.bits
+
+
+def _gradient(problem: Problem, places: list[int], wanted: Search) -> Trail:
+    """The compiled least squares from the best of some points drawn within the range: no more is known to it than to the others.
+
+    From the middle alone it may find no way: an arm that does not lift off has no slopes.
     """
     lower, upper = problem.lower[places], problem.upper[places]
-    logarithmic = lower > 0.0
+    drawn = np.random.default_rng(wanted.seed).uniform(lower, upper, (DRAWN, len(places)))
+    points = np.stack([_with(problem, places, values) for values in drawn])
+    start = points[int(np.argmin(absolute_error(problem, points)))]
+    costs: list[float] = []
+    blind = replace(problem, start=start, prior=replace(problem.prior, mean=start))
+    point = solve(blind, lambda _, cost: costs.append(cost))
+    return point.theta, tuple(costs), (), ()
 
-    def unscaled(position: Array) -> Array:
-        theta = problem.start.copy()
-        theta[places] = np.where(logarithmic, np.exp(position), position)
-        return theta
 
-    def cost(position: Array) -> float:
-        theta = unscaled(position)
-        with np.errstate(over="ignore", invalid="ignore"):
-            total = sum(
-                float(np.sum(((run.y - predicted(run, problem.names, theta)) / run.sd) ** 2)) for run in problem.runs
-            )
-        return total if np.isfinite(total) else HUGE
+def _with(problem: Problem, places: list[int], values: Array) -> Array:
+    theta = problem.start.copy()
+    theta[places] = values
+    return theta
 
-    bounds = [(np.log(a), np.log(b)) if log else (a, b) for a, b, log in zip(lower, upper, logarithmic, strict=True)]
-    started = np.where(logarithmic, np.log(np.maximum(problem.start[places], 1e-300)), problem.start[places])
-    found = differential_evolution(
-        cost, bounds, maxiter=GENERATIONS, popsize=POPULATION, seed=seed, x0=started, tol=1e-3, polish=False
-    )
-    return replace(problem, start=unscaled(found.x))
+
+METHODS: Mapping[str, Callable[[Problem, list[int], Search], Trail]] = {
+    "evolution": _evolution,
+    "genetic": _genetic,
+    "gradient": _gradient,
+}

@@ -1,16 +1,18 @@
 """The stages of the paper: each subsystem from the experiment made for it, what is known handed on with its covariance."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.belief import NOTHING, Belief
 from identification.estimate import Estimate, Range, estimate
-from identification.experiments.table import KINDS, Kind
+from identification.experiments.kind import Kind
+from identification.experiments.table import kinds_of
 from identification.ranges import ranges_of
 from identification.run import Run, coefficient_names, known_names
+from identification.search import Search
 from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
@@ -52,18 +54,20 @@ def title(experiment: Experiment) -> str:
 
 
 def _kind(experiment: Experiment) -> Kind:
-    if experiment.kind not in KINDS:
-        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(KINDS)}", "correct its file")
-    return KINDS[experiment.kind]
+    kinds = kinds_of(experiment.plant)
+    if experiment.kind not in kinds:
+        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(kinds)}", "correct its file")
+    return kinds[experiment.kind]
 
 
 def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
     """Refuse a record of another plant, or of a rig that stood otherwise than the experiment's equations say; raises BadInput."""
-    kind, where = _kind(experiment), f"experiment {experiment.kind}"
+    where = f"experiment {experiment.kind}"
     if experiment.plant != bound.model.name:
         raise BadInput(
             "plant", where, repr(experiment.plant), repr(bound.model.name), "give the record and the plant of one rig"
         )
+    kind = _kind(experiment)
     informs = ", ".join(kind.own)
     if experiment.mount != kind.mount:
         raise BadInput("mount", where, repr(experiment.mount), repr(kind.mount),
@@ -78,22 +82,25 @@ def identify_stage(
     experiment: Experiment,
     belief: Belief,
     limits: Mapping[str, tuple[float, float]] | None = None,
-    search_seed: int | None = None,
+    wanted: Search | None = None,
+    free: Collection[str] | None = None,
 ) -> Stage:
     """One experiment added to what is known.
 
     A parameter that it needs but none before has informed is estimated with it from the plant's value, so a set of experiments with
-    gaps works and says what it cannot tell. `search_seed` asks for a search over the whole range of its parameters first. Raises
-    BadInput for a wrong plant, mount or lock, also where only the motion shows it.
+    gaps works and says what it cannot tell. `wanted` asks for a search over the whole range of its parameters first. A parameter that
+    the plant states as exact is held, unless it is among those named `free`; then only these are estimated. Raises BadInput for a
+    wrong plant, mount or lock, also where only the motion shows it.
     """
     check_setup(experiment, bound)
     kind = _kind(experiment)
     run = kind.run(experiment, bound)
-    own = needed(run, kind, belief)
-    ranges = ranges_of(bound, [*belief.names, *own], limits) | _aid_ranges(kind, experiment)
+    own = tuple(name for name in needed(run, kind, belief) if _is_free(name, bound, free))
+    ranges = ranges_of(bound, [*belief.names, *own], _limits(kind, limits, wanted)) | _aid_ranges(kind, experiment)
+    coded = None if wanted is None else replace(wanted, bits={name: bits for name, (_, _, bits) in kind.code.items()})
     before = _with_aids(belief, kind, experiment)
     unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
-    result = estimate([run], (*own, *unknown), ranges, before, search_seed=search_seed)
+    result = estimate([run], (*own, *unknown), ranges, before, wanted=coded)
     check_mount(run, kind, result, ranges, before)
     names = tuple(name for name in result.belief.names if name not in kind.aids)
     return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
@@ -131,10 +138,26 @@ def _on_other_mount(run: Run) -> Run | None:
 
 def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
     """The experiment's own parameters, and those of the paper that its model has but no stage before has informed."""
-    every = tuple(dict.fromkeys(name for entry in KINDS.values() for name in entry.own))
+    every = tuple(dict.fromkeys(name for entry in kinds_of(run.bound.plant.model).values() for name in entry.own))
     has = {every[place] for place, _ in known_names(run, every)}
     excited = {name for name in every if name in has and _excited(run, name)}
     return tuple(name for name in every if name in kind.own or (name in excited and name not in belief.names))
+
+
+def _is_free(name: str, bound: BoundPlant, free: Collection[str] | None) -> bool:
+    """Whether a parameter is to be estimated: as the user says, else unless the plant states it as exact."""
+    if free is not None:
+        return name in free
+    place = coefficient_names(bound.model).index(name)
+    return bool(bound.sd[place] > 0.0 or bound.p[place] == 0.0)
+
+
+def _limits(
+    kind: Kind, limits: Mapping[str, tuple[float, float]] | None, wanted: Search | None
+) -> Mapping[str, tuple[float, float]]:
+    """The user's limits; a search has those of the experiment's code where the user says nothing."""
+    own = {} if wanted is None else {name: (lower, upper) for name, (lower, upper, _) in kind.code.items()}
+    return {**own, **(limits or {})}
 
 
 def _excited(run: Run, name: str) -> bool:

@@ -1,5 +1,7 @@
 """The report of `twinlaw identify`: estimates and what cannot be told, the fits, Figs. 7, 8, 10 and 13 of the paper redrawn."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from identification.estimate import Estimate
@@ -18,23 +20,21 @@ SHOWN_S = 15.0
 
 
 def identify_page(
-    bound: BoundPlant, result: Identification, experiments: tuple[Experiment, ...], comparison: Comparison | None
+    bound: BoundPlant, result: Identification, experiments: tuple[Experiment, ...], further: Sequence[Section] = ()
 ) -> Page:
-    """The whole page."""
+    """The whole page; `further` sections come last."""
     told = sum(entry.identified for entry in result.estimates)
     sections = [_estimates(result), _correlation(result), _fits(result)]
     by_kind = {experiment.kind: experiment for experiment in experiments}
     sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
     if "gravity" in by_kind:
         sections.append(_gravity(by_kind["gravity"], result))
-    if comparison is not None:
-        sections.append(_flights(comparison))
     return Page(
         title=f"{result.plant.name}: identified",
         verdict=f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks.",
         passed=told == len(result.estimates),
         facts=(("Equations", result.plant.model),),
-        sections=tuple(sections),
+        sections=(*sections, *further),
     )
 
 
@@ -118,7 +118,7 @@ def _gravity(experiment: Experiment, result: Identification) -> Section:
     return Section("Gravity torque (Fig. 10)", (sentence,), (), (row((panel,), ("weight [g]",)),))
 
 
-def _flights(comparison: Comparison) -> Section:
+def flight_section(comparison: Comparison) -> Section:
     """Both flights over one another."""
     real, here = comparison.real, comparison.identified
     names = (("psi_rad", "elevation [deg]"), ("phi_rad", "azimuth [deg]"), ("u_M_V", "u_M [V]"), ("u_T_V", "u_T [V]"))

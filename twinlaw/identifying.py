@@ -8,7 +8,8 @@ from pathlib import Path
 from identification.belief import NOTHING, Belief, stated
 from identification.estimate import Estimate
 from identification.logs import identify_logs, prediction_tests
-from identification.result import Identification, facts, identification
+from identification.result import Identification, facts, identification, with_values
+from identification.search import Search
 from identification.staged import identify_stage, in_order, title
 from records import checks
 from records.errors import BadInput
@@ -23,6 +24,7 @@ from sim.columns import log_columns
 from twinlaw import console
 
 Limits = Mapping[str, tuple[float, float]]
+INTERRUPTED = "the best so far of a search that was interrupted"
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,18 +38,20 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Wishes:
-    """What the user asks of the estimation: coefficients (for logs), limits, seed of a search, length of the logs' windows.
+    """What the user asks of the estimation: coefficients (for logs), limits, a search, length of the logs' windows.
 
-    `keep_knowledge` takes the plant file's values, sd and correlation for data of their own; without it they are only a start.
-    `offsets` are estimated for the inputs of logs.
+    `only` are the coefficients that the user named, the only ones to estimate from experiments too. `keep_knowledge` takes the plant
+    file's values, sd and correlation for data of their own; without it they are only a start. `offsets` are estimated for the inputs
+    of logs.
     """
 
     names: tuple[str, ...]
     limits: Limits
-    search_seed: int | None
+    search: Search | None
     window_s: float | None
     keep_knowledge: bool = False
     offsets: bool = False
+    only: tuple[str, ...] | None = None
 
 
 def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlant) -> Inputs:
@@ -126,17 +130,7 @@ def identify(
     bound: BoundPlant, inputs: Inputs, wishes: Wishes, save: Callable[[Identification], None]
 ) -> Identification:
     """Stage by stage; `save` is told the result after each, so that an interrupted run leaves what it has."""
-    stages: list[tuple[str, Estimate]] = []
-    aids: list[tuple[Belief, float]] = []
-    belief = stated(bound) if wishes.keep_knowledge else NOTHING
-    for experiment in inputs.experiments:
-        with console.stage(title(experiment)):
-            stage = identify_stage(bound, experiment, belief, wishes.limits, wishes.search_seed)
-        belief = stage.belief
-        stages.append((title(experiment), stage.result))
-        if stage.aids.names:
-            aids.append((stage.aids, stage.result.dof))
-        save(identification(bound.plant, stages, belief, aids))
+    stages, aids, belief = _from_experiments(bound, inputs.experiments, wishes, save)
     shifts: dict[str, float] = {}
     if inputs.logs:
         found = _from_logs(bound, inputs.logs, wishes, belief)
@@ -156,6 +150,31 @@ def identify(
     return result
 
 
+def _from_experiments(
+    bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, save: Callable[[Identification], None]
+) -> tuple[list[tuple[str, Estimate]], list[tuple[Belief, float]], Belief]:
+    """Estimates of all stages, what the experiments needed besides with its degrees of freedom, and the last belief."""
+    stages: list[tuple[str, Estimate]] = []
+    aids: list[tuple[Belief, float]] = []
+    belief = stated(bound) if wishes.keep_knowledge else NOTHING
+    for experiment in experiments:
+        so_far: dict[str, float] = {}
+        wanted = None if wishes.search is None else replace(wishes.search, watch=so_far.update)
+        try:
+            with console.stage(title(experiment)):
+                stage = identify_stage(bound, experiment, belief, wishes.limits, wanted, wishes.only)
+        except KeyboardInterrupt:
+            if so_far:
+                save(identification(with_values(bound.plant, so_far, INTERRUPTED), stages, belief, aids))
+            raise
+        belief = stage.belief
+        stages.append((title(experiment), stage.result))
+        if stage.aids.names:
+            aids.append((stage.aids, stage.result.dof))
+        save(identification(bound.plant, stages, belief, aids))
+    return stages, aids, belief
+
+
 def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, belief: Belief) -> Estimate:
     """All logs at once, with what is known already."""
     names = tuple(name for name in wishes.names if name not in belief.names) or belief.names
@@ -167,7 +186,7 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, be
             window_s=wishes.window_s,
             limits=wishes.limits,
             before=belief,
-            search_seed=wishes.search_seed,
+            wanted=wishes.search,
             offsets=wishes.offsets,
         )
 

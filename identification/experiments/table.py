@@ -1,33 +1,15 @@
-"""The one list of the experiments, in the order of the paper and of the stages of the estimation."""
+"""The one list of the experiments of each plant, in the order of its paper and of the stages of the estimation."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
-from numpy.random import Generator
 
-from identification.experiments import azimuth, elevation, gravity, rotors, swings
-from identification.run import Run
+from identification.experiments import azimuth, elevation, gravity, rotors, swings, velagic
+from identification.experiments.kind import Kind
+from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
-
-
-@dataclass(frozen=True)
-class Kind:
-    """An experiment: how the rig must stand for it, which parameters it is for, how it is performed, how its record becomes a run.
-
-    `aids` are parameters that the plant does not have, each with the facts of the record that give its value and sd (none: unknown).
-    """
-
-    number: int
-    title: str
-    mount: str
-    locked: tuple[str, ...]
-    own: tuple[str, ...]
-    perform: Callable[[BoundPlant, Generator], Experiment]
-    run: Callable[[Experiment, BoundPlant], Run]
-    aids: Mapping[str, tuple[str, str] | None]
 
 
 def _coefficients(name: str, count: int) -> tuple[str, ...]:
@@ -60,9 +42,19 @@ KINDS: Mapping[str, Kind] = {
 }
 # fmt: on
 ALL_PARAMETERS = tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.own))
+BY_PLANT: Mapping[str, Mapping[str, Kind]] = {"ce150": KINDS, "ce150_velagic": velagic.KINDS}
+
+
+def kinds_of(plant: str) -> Mapping[str, Kind]:
+    """The experiments made for a plant's model; raises BadInput where there are none."""
+    if plant not in BY_PLANT:
+        raise BadInput(
+            "plant", "experiments", repr(plant), f"one of {', '.join(BY_PLANT)}", "identify other plants from run logs"
+        )
+    return BY_PLANT[plant]
 
 
 def perform(kind: str, truth: BoundPlant, seed: int) -> Experiment:
     """The experiment on a rig with the true parameters `truth`; its chance depends on the seed and the experiment's number alone."""
-    entry = KINDS[kind]
+    entry = kinds_of(truth.model.name)[kind]
     return entry.perform(truth, np.random.default_rng([seed, entry.number]))

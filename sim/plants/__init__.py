@@ -9,6 +9,7 @@ from sim.plants import (
     antx_2dof_drone,
     ce150,
     ce150_seed_literal,
+    ce150_velagic,
     emps,
     pamh_aeropendulum,
     quanser_aero,
@@ -17,6 +18,7 @@ from sim.plants import (
 MODELS: Mapping[str, Callable[[], Model]] = {
     "ce150": ce150.model,
     "ce150_seed_literal": ce150_seed_literal.model,
+    "ce150_velagic": ce150_velagic.model,
     "quanser_aero": quanser_aero.model,
     "aeroshield": aeroshield.model,
     "aeroshield_two_clocks": aeroshield_two_clocks.model,

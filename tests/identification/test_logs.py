@@ -10,6 +10,7 @@ from design.settings import read_settings
 from design.table import design
 from identification.belief import stated
 from identification.logs import identify_logs, run_of
+from identification.search import Search
 from recordings.files import datasets_folder
 from recordings.library import import_record
 from records.correlation import Correlation
@@ -83,7 +84,8 @@ def test_a_search_finds_the_way_from_the_edge_of_the_range(bound, flown):
     """Inertia and damping four times off, the same seed twice: the truth, and the same numbers."""
     start = off(bound, {"J_A": 4.0, "b_vA": 0.25})
     one, other = (
-        identify_logs(start, {"flight": flown}, ("J_A", "b_vA"), window_s=1.0, search_seed=1) for _ in range(2)
+        identify_logs(start, {"flight": flown}, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution"))
+        for _ in range(2)
     )
     np.testing.assert_array_equal(one.belief.mean, other.belief.mean)
     assert one.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)

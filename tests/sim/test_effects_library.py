@@ -37,6 +37,7 @@ OTHERS = {
 }
 PLACES = {
     "ce150": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
+    "ce150_velagic": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
     "quanser_aero": "main_input tail_input main_rotor tail_rotor pitch yaw theta_sensor psi_sensor loop",
     "aeroshield": "input rotor arm theta_sensor loop",
     "aeroshield_two_clocks": "input rotor arm theta_sensor loop",

@@ -18,6 +18,11 @@ CONTRACT = {  # columns after t_s as the contract has them, then any of the opti
         "theta_dot_rad_s,psi_dot_rad_s,omega_M_rad_s,omega_T_rad_s,theta_ref_rad,psi_ref_rad",
         "pitch yaw",
     ),
+    "ce150_velagic": (
+        "u_M_V,u_T_V,psi_rad,phi_rad",
+        "omega_M_rad_s,omega_T_rad_s,psi_dot_rad_s,phi_dot_rad_s,psi_ref_rad,phi_ref_rad",
+        "elevation azimuth",
+    ),
     "aeroshield": ("u_V,theta_rad", "theta_ref_rad", "arm"),
     "aeroshield_two_clocks": ("u_V,theta_rad", "theta_ref_rad,t_host_s", "arm"),
     "antx_2dof_drone": ("M,theta_rad,q_rad_s", "theta_ref_rad,q_ref_rad_s", "pitch"),
@@ -27,6 +32,8 @@ CONTRACT = {  # columns after t_s as the contract has them, then any of the opti
 PUBLISHED = {  # what the authors state, SI
     "quanser_aero": "dt=0.158 me=0.2 dx=0.016 mpa=0.146 lt=0.165 mrod=0.458 ry=0.02 my=0.526 g=9.81 K_omega=17.38 u_max=24 "
     "Kmt=1.26e-6 Ktp=1.26e-6 Ktt=1.08e-6 Kmp=1.08e-6 d1=0.0031 d2=0.0075",
+    "ce150_velagic": "T_1=0.1 T_2=0.25 a_1=0.1165 b_1=0.062 B_psi=0.08 tau_G=0.071 I_inv=184 a_2=0.268 b_2=0.0408 B_phi=0.04 "
+    "Ic_inv=494.3 a_3=0.1959 b_3=0.0202 k_G=0.3185",
     "aeroshield": "m=0.005 l=0.1 c=0.001 K=0.01 g=9.81",
     "antx_2dof_drone": "omega_n=2.9499 xi=0.1817 mu=404.87608841 tau=0.0196",
     "emps": "M=95.11 F_v=203.5 gtau=35.15 u_max=10 F_c=0 offset=0",  # dry friction is published too, and left to be found

@@ -5,6 +5,9 @@ taken in the order of the paper, each for its own subsystem, and what one tells 
 and are cut into windows with free starts, so that closed loops and unstable plants are welcome. Writes DIR/plant.toml, which every verb
 takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what is done.
 With --truth the controller designed from the result flies that plant, and the report lays both flights over one another.
+
+--method frequency matches the frequency responses of swept logs (`twinlaw sweep`) instead: the plant linearised where the logs rest, or
+the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --band-rad-s, --trim, --holdout and --seed.
 """
 
 import argparse
@@ -14,11 +17,12 @@ from pathlib import Path
 
 from identification.logs import trimmed
 from identification.result import facts
-from identification.validation import compare_flights
+from identification.search import METHODS, Search
 from records.errors import BadInput
 from records.files import write_atomic
-from sim.bind import bind
 from twinlaw import console, options
+from twinlaw.frequency_identifying import identify_by_frequency
+from twinlaw.identify_proof import proven
 from twinlaw.identify_report import identify_page
 from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, test_rows
 from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits, save_result
@@ -27,18 +31,36 @@ from twinlaw.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --out, --free, --bounds, --search, --window, --trim, --truth, --offsets, --prior, --holdout, --json, FILES."""
+    """--plant, --out, --method, --band-rad-s, --free, --bounds, --search, --seed, --window, --trim, --truth, --offsets,
+    --prior, --holdout, --json, FILES.
+    """
     options.plant(parser)
     options.out(parser)
     parser.add_argument(
-        "--free", metavar="NAMES", help="from logs estimate these, with commas; default: all whose sd is above 0"
+        "--method",
+        choices=("time", "frequency"),
+        default="time",
+        help="match readings over time, or frequency responses of sweeps; default: %(default)s",
+    )
+    parser.add_argument(
+        "--band-rad-s",
+        nargs=2,
+        type=float,
+        metavar=("LOW", "HIGH"),
+        help="match responses over this band; default: all that the records carry",
+    )
+    parser.add_argument(
+        "--free",
+        metavar="NAMES",
+        help="estimate these, with commas; default: all that the plant file does not state as exact",
     )
     parser.add_argument(
         "--bounds", type=Path, metavar="BOUNDS.toml", help="NAME = [lowest, highest]; default: a fifth to five times"
     )
     parser.add_argument(
-        "--search", type=int, metavar="SEED", help="search the whole range first, for a start that may be far off"
+        "--search", choices=tuple(METHODS), help="search the whole range first, for a start that may be far off"
     )
+    parser.add_argument("--seed", type=options.count, default=1, help="of the search; default: %(default)s")
     parser.add_argument(
         "--window",
         type=float,
@@ -71,21 +93,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Read everything, estimate, write, tell."""
+    if chosen.method == "frequency":
+        return identify_by_frequency(chosen)
+    if chosen.band_rad_s is not None:
+        raise BadInput("--band-rad-s", "command line", "given without its method", "--method frequency", "add that")
     if chosen.window is not None and not chosen.window > 0.0:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
     names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds)
-    wishes = Wishes(names, limits, chosen.search, chosen.window, chosen.prior, chosen.offsets)
+    beside = tuple(method for method in ("gradient",) if method != chosen.search)
+    search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
+    only = None if chosen.free is None else names
+    wishes = Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
     inputs = read_inputs(chosen.files, chosen.holdout, bound)
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
     result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
-    comparison = None
-    if truth is not None:
-        with console.stage("flying the real plant and the identified one"):
-            comparison = compare_flights(bind(result.plant), truth)
-    write_atomic(chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, comparison)))
+    sections, pictures = proven(result, truth)
+    for name, picture in pictures.items():
+        write_atomic(chosen.out / f"fig-{name}.svg", picture)
+    write_atomic(chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections)))
     if chosen.json:
         print(json.dumps(facts(result)))
         return 0

@@ -1,0 +1,47 @@
+"""Differential evolution on criterion (10), by SciPy: what stands in for the commercial toolbox of seed 000."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import differential_evolution
+
+from identification.prediction import predicted
+from identification.solve import Problem
+
+Array = NDArray[np.float64]
+GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each parameter
+HUGE = 1e300
+
+
+def evolution(problem: Problem, places: list[int], seed: int) -> tuple[Array, tuple[float, ...]]:
+    """The best values at `places` and the least criterion of each generation; wide positive bounds are searched by logarithms."""
+    lower, upper = problem.lower[places], problem.upper[places]
+    logarithmic = lower > 0.0
+
+    def unscaled(position: Array) -> Array:
+        theta = problem.start.copy()
+        theta[places] = np.where(logarithmic, np.exp(position), position)
+        return theta
+
+    def cost(position: Array) -> float:
+        theta = unscaled(position)
+        with np.errstate(over="ignore", invalid="ignore"):
+            total = sum(
+                float(np.sum(((run.y - predicted(run, problem.names, theta)) / run.sd) ** 2)) for run in problem.runs
+            )
+        return total if np.isfinite(total) else HUGE
+
+    bounds = [(np.log(a), np.log(b)) if log else (a, b) for a, b, log in zip(lower, upper, logarithmic, strict=True)]
+    started = np.where(logarithmic, np.log(np.maximum(problem.start[places], 1e-300)), problem.start[places])
+    best: list[float] = []
+    found = differential_evolution(
+        cost,
+        bounds,
+        maxiter=GENERATIONS,
+        popsize=POPULATION,
+        seed=seed,
+        x0=started,
+        tol=1e-3,
+        polish=False,
+        callback=lambda intermediate_result: best.append(float(intermediate_result.fun)),
+    )
+    return unscaled(found.x)[places], tuple(best)

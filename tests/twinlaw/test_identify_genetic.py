@@ -1,0 +1,86 @@
+"""`twinlaw experiments` and `identify --search genetic` on the plant of seed 001: files, pictures, what an interrupt leaves."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from identification import genetic
+from records.plant import load_plant
+from twinlaw.command import main
+
+PLANT = ["--plant", "plants/ce150_velagic.toml"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The four experiments on a rig with the paper's own set."""
+    path = tmp_path_factory.mktemp("velagic")
+    assert main(["experiments", *PLANT, "--as-stated", "--out", str(path)]) == 0
+    return path
+
+
+def test_a_rig_as_stated_has_the_plant_file_s_numbers(folder):
+    assert load_plant(folder / "truth.toml").parameters == load_plant(Path(PLANT[1])).parameters
+    assert sorted(path.name for path in folder.glob("0*.toml")) == [
+        "01-main_motor.toml", "02-tail_motor.toml", "03-cross_coupling.toml", "04-gyroscopic.toml"
+    ]  # fmt: skip
+
+
+def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folder, tmp_path, capsys):
+    options = ["--search", "genetic", "--truth", str(folder / "truth.toml"), "--json"]
+    assert main(["identify", *PLANT, *options, "--out", str(tmp_path), str(folder)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    for stage in told["stages"]:
+        ours, beside = stage["searches"]
+        assert (ours["method"], beside["method"]) == ("genetic", "gradient")
+        assert len(ours["best_by_generation"]) == 150
+        assert set(ours["bits"]) == set(ours["values"]) == set(beside["values"])
+        assert ours["cpu_s"] > 0.0
+    page = (tmp_path / "report.html").read_text()
+    for words in (
+        "Search over the whole range",
+        "Evolution (Fig. 6",
+        "Figs. 12 to 14",
+        "genetic",
+        "gradient",
+        "main_motor",
+    ):
+        assert words in page
+    for number in ("6", "12", "13", "14"):
+        assert (tmp_path / f"fig-{number}.svg").read_text().startswith("<svg")
+    found = {entry["name"]: entry["value"] for entry in told["estimates"]}
+    assert found["a_1"] == pytest.approx(0.1165, rel=2e-3)
+
+
+def test_an_interrupted_search_leaves_the_best_so_far(monkeypatch, folder, tmp_path):
+    """Ctrl-C in the tenth generation of the first stage: plant.toml has what was best until then, and says so."""
+    turns, original = [], genetic._next
+
+    def stops_in_the_tenth(*given):
+        turns.append(given)
+        if len(turns) == 10:
+            raise KeyboardInterrupt
+        return original(*given)
+
+    monkeypatch.setattr(genetic, "_next", stops_in_the_tenth)
+    arguments = ["identify", *PLANT, "--search", "genetic", "--out", str(tmp_path), str(folder)]
+    assert main(arguments) == 130
+    left = load_plant(tmp_path / "plant.toml").parameters
+    stated = load_plant(Path(PLANT[1])).parameters
+    for name in ("a_1", "b_1", "B_psi", "I_inv"):
+        assert "interrupted" in left[name].source
+        assert left[name].value != stated[name].value
+        assert left[name].sd == stated[name].sd
+    assert left["a_2"] == stated["a_2"]
+
+
+def test_only_what_is_named_is_estimated(folder, tmp_path, capsys):
+    record = str(folder / "01-main_motor.toml")
+    assert main(["identify", *PLANT, "--free", "I_inv", "--json", "--out", str(tmp_path), record]) == 0
+    assert [entry["name"] for entry in json.loads(capsys.readouterr().out)["estimates"]] == ["I_inv"]
+
+
+def test_other_plants_have_no_experiments(tmp_path, capsys):
+    assert main(["experiments", "--plant", "plants/emps.toml", "--out", str(tmp_path / "out")]) == 2
+    assert "expected one of ce150, ce150_velagic" in capsys.readouterr().err
