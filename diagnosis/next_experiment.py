@@ -16,7 +16,7 @@ from diagnosis.stand_in import StandIn, stand_in
 from diagnosis.weigh import Weighed
 
 Array = NDArray[np.float64]
-LEAST = 0.02  # of probability that must be at stake
+LEAST = 0.02  # of probability that a hypothesis must have, and that must be at stake
 LEADING = 3
 SURE, ENOUGH = 5.0, 2.0  # standard deviations: more than these tell no more, fewer than these tell nothing
 EFFORT = 0.2  # of what a sure separation is worth, for an experiment of effort 1
@@ -24,6 +24,7 @@ BEYOND = 0.05  # likewise, for each factor of ten beyond SURE: no model is so ri
 LIMITS = 0.3  # likewise for one that leaves the limits
 LONGEST_PERIOD_S = 0.02
 INPUT_FLOOR = 0.02  # of an input's range: less than that is no outcome to look for
+NOTHING = "none of the menu"
 OUTPUT_FLOOR = 3.0  # encoder steps, likewise
 
 
@@ -43,7 +44,8 @@ class Trial:
 
 def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
-    leading = list(zip(weighed.tried, weighed.probabilities, strict=True))[:LEADING]
+    ranked = zip(weighed.tried, weighed.probabilities, strict=True)
+    leading = [(tried, probability) for tried, probability in ranked if probability > LEAST][:LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)
@@ -108,8 +110,8 @@ def _told(case: Case, best: Trial, tried: Sequence[Tried], pairs: Mapping[tuple[
     for a, b in pairs:
         split[best.z[a, b] >= ENOUGH].append(f"{names[a]} from {names[b]}")
     return {
-        "experiment": best.plan.name,
-        "instruction": best.plan.instruction,
+        "experiment": best.plan.name if split[True] else NOTHING,
+        "instruction": best.plan.instruction if split[True] else "no run of this rig's menu tells what is left apart",
         "separates": split[True],
         "does_not_separate": split[False],
         "expected_outcome": _outcome(case, best, first, names),
@@ -129,7 +131,7 @@ def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[st
     apart = trial.z[pair]
     if apart < ENOUGH:
         return (
-            f"no run of the menu tells {names[a]} from {names[b]}: this one, the best, leaves them "
+            f"no run of the menu tells {names[a]} from {names[b]}: the best of them ({trial.plan.name}) leaves them "
             f"{apart:.1f} standard deviations of the noise apart"
         )
     found = outcomes([trial.flown[a].log, trial.flown[b].log], _floors(case))

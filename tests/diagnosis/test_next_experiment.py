@@ -94,6 +94,7 @@ def test_two_names_of_one_torque_are_not_said_to_be_told_apart(case: Case, tilt:
     wind = fitted(case, {"azimuth.wind": {"c": -0.005, "Phi_w": 1.72}})
     found = next_experiment(case, weighed(tilt, wind))
     assert found is not None
+    assert found["experiment"] == "none of the menu"
     assert found["separates"] == []
     assert found["expected_outcome"].startswith("no run of the menu tells azimuth.tilt from azimuth.wind")
 

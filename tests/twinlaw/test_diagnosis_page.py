@@ -25,6 +25,7 @@ from twinlaw.diagnosis_page import Predicted, diagnosis_page, verdict_sentence
 from twinlaw.page import page_text
 
 ROOT = Path(__file__).resolve().parents[2]
+MOVED = "parameter J_A is +12.0 standard deviations from its stated value: 0.0213 instead of 0.0133"
 STORIES = {"azimuth.cable_spring": "the cable to the board pulls the arm back."}
 
 GAP = Diagnosis(
@@ -116,7 +117,12 @@ def test_the_page_needs_no_network_and_no_script() -> None:
         ({"verdict": "no gap"}, "explains these logs"),
         ({"verdict": "cannot tell"}, "too little motion"),
         ({"found": ()}, "does something in the azimuth that the plant file lacks"),
-        ({"found": (), "unknown": Unknown(0.0)}, "no effect of the library can be named"),
+        ({"found": (), "unknown": Unknown(0.0)}, "most likely cable spring of the azimuth (93.0 %); but"),
+        ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
+        (
+            {"found": (), "effects": (), "unknown": Unknown(0.01), "notes": (MOVED,)},
+            "other parameters than the plant file",
+        ),
     ],
 )
 def test_each_verdict_is_one_plain_sentence(change: dict[str, object], said: str) -> None:
@@ -132,9 +138,9 @@ def test_names_from_a_log_are_escaped() -> None:
 
 
 def test_the_curves_show_where_the_stated_plant_errs_most() -> None:
-    from twinlaw.diagnosis_page import _worst_span
+    from twinlaw.diagnosis_pictures import worst_span
 
     log = predicted()
-    shown = log.t_s[_worst_span(log)]
+    shown = log.t_s[worst_span(log)]
     assert shown[0] <= 20.01
     assert shown[-1] >= 23.98

@@ -1,0 +1,116 @@
+"""The pictures of a diagnosis: predicted against measured curves, and maps of time, region and frequency."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.diagnosis import Diagnosis
+from twinlaw.diagnosis_words import shown
+from twinlaw.page import Section
+from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Bars, Curve, Panel, bars, stack
+
+Array = NDArray[np.float64]
+_ZOOM_S = 8.0
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """One hold-out log: true times, and by output the measured column and the predictions of the three plants, NaN where there is none."""
+
+    name: str
+    t_s: Array
+    measured: Mapping[str, Array]
+    nominal: Mapping[str, Array]
+    before: Mapping[str, Array]
+    after: Mapping[str, Array]
+
+
+def curves(log: Predicted) -> Section:
+    span = worst_span(log)
+    panels = []
+    for output, measured in log.measured.items():
+        name, unit, scale = shown(output)
+        lines = (
+            ("measured", measured, GREY, "-"),
+            ("as stated", log.nominal[output], RED, ":"),
+            ("best re-tuned", log.before[output], ORANGE, "--"),
+            ("improved", log.after[output], BLUE, "-"),
+        )
+        panels.append(
+            Panel(
+                f"{name} {unit}",
+                [Curve(log.t_s[span], scale * y[span], label, colour, dash) for label, y, colour, dash in lines],
+            )
+        )
+    return Section(
+        f"Predicted and measured: {log.name}",
+        (
+            f"The {_ZOOM_S:g} s in which the stated plant errs most.",
+            "Each curve starts afresh every second from what was measured until then.",
+        ),
+        plots=(stack(panels, "time [s]"),),
+    )
+
+
+def worst_span(log: Predicted) -> NDArray[np.bool_]:
+    """Rows of the window of `_ZOOM_S` in which the stated plant errs most, outputs weighed by their spread."""
+    error = np.zeros(len(log.t_s))
+    for output, measured in log.measured.items():
+        spread = float(np.std(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
+        error += np.nan_to_num((log.nominal[output] - measured) / (spread or 1.0)) ** 2
+    ends = np.searchsorted(log.t_s, log.t_s + _ZOOM_S)
+    total = np.concatenate([[0.0], np.cumsum(error)])
+    start = int(np.argmax(total[ends] - total[:-1]))
+    rows = np.zeros(len(log.t_s), dtype=bool)
+    rows[start : ends[start]] = True
+    return rows
+
+
+def maps(diagnosis: Diagnosis) -> Section | None:
+    panels = []
+    if diagnosis.when:
+        panels.append(
+            Bars(
+                [100 * s.share for s in diagnosis.when],
+                [(s.start_s, s.end_s) for s in diagnosis.when],
+                "share [%]",
+                "time [s]",
+                (BLUE,),
+            )
+        )
+    for signal in dict.fromkeys(region.signal for region in diagnosis.regions):
+        name, unit, scale = shown(signal)
+        chosen = [region for region in diagnosis.regions if region.signal == signal]
+        panels.append(
+            Bars(
+                [100 * r.share for r in chosen],
+                [(scale * r.from_, scale * r.to) for r in chosen],
+                "share [%]",
+                f"{name} {unit}",
+                (ORANGE,),
+            )
+        )
+    if diagnosis.bands:
+        panels.append(
+            Bars(
+                [100 * b.share for b in diagnosis.bands],
+                [(max(b.from_Hz, 1e-2), b.to_Hz) for b in diagnosis.bands],
+                "share [%]",
+                "frequency [Hz]",
+                (SKY,),
+                True,
+            )
+        )
+    if not panels:
+        return None
+    rows = [panels[i : i + 3] for i in range(0, len(panels), 3)]
+    return Section(
+        "When, in which region and at which frequencies",
+        (
+            "How the gap spreads; the taller a bar, the more of it lies there.",
+            "Of angles and commands only those ranges are drawn that hold clearly more than their part.",
+        ),
+        plots=[bars(r) for r in rows],
+    )
