@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from diagnosis.case import Case
-from diagnosis.fit import away, size_scale
+from diagnosis.fit import Fit, away, size_scale
 from diagnosis.generic import Form, forms
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
@@ -35,8 +35,8 @@ class Detection:
     null_gain: Array
 
 
-def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
-    """Compare the gains of effects at their best starts, of steps in time and of all forms with replicas."""
+def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None = None) -> Detection:
+    """Compare the gains of effects at their best starts, of lost frames, of steps in time and of all forms with replicas."""
     found = forms(ground)
     columns = [_effect_columns(case, ground, looks), _form_columns(ground, found)]
     stacked = np.concatenate(columns, axis=1)
@@ -46,6 +46,7 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look]) -> Detection:
     usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
     events, null_events = _events(case, ground, drawn)
     outside = [entry.gain for entry in looks if not case.kit.carried(entry.effect)]
+    outside += [] if lossy is None else [lossy.log_posterior - ground.fit.log_posterior]
     largest = max([*events, *outside, float(np.max(gains(scores) / usual, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     first = columns[0].shape[1]

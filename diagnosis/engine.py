@@ -14,6 +14,7 @@ from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.improved import estimates, improved_plant
 from diagnosis.kit import make_kit
+from diagnosis.lost_frames import with_losses
 from diagnosis.maps import band_map, region_map, removed_energy, time_map
 from diagnosis.next_experiment import next_experiment
 from diagnosis.notes import cannot_tell, notes_of
@@ -69,13 +70,15 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     nominal = nominal_fit(case)
     case = with_usual(case, nominal.supposed)
     ground = ground_of(case, nominal)
+    case, lossy = with_losses(case, ground)
+    ground = replace(ground, case=case)
     looks = look(case, ground, kit.candidates)
-    detection = detect(case, ground, looks)
+    detection = detect(case, ground, looks, lossy)
     stated = Tried((), nominal, evidence(nominal))
     if detection.p > ALARM:
         return _no_gap(case, checked, material, detection, stated, looks)
     demand_wiring(case, nominal, nominal_fit)
-    found = search(case, nominal, kit.candidates, ground, looks)
+    found = search(case, nominal, kit.candidates, ground, looks, lossy)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = _left(detect(case, ground_of(case, best.fit), []))
     beyond = retune(case, nominal)

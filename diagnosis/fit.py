@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.filter import Pass
 from diagnosis.hypothesis import Supposed, passes
+from diagnosis.inputs import LOST_FRAMES, share_slopes
 from sim.effects.effect import EffectParameter
 
 Array = NDArray[np.float64]
@@ -200,11 +201,24 @@ def _add_differences(
     slopes = np.concatenate([flat_slopes(run) for run in runs])
     count = len(supposed.theta)
     outside = np.setdiff1d(np.arange(count, len(pull)), own)
+    for row in [row for row in outside.tolist() if free[row - count].effect == LOST_FRAMES and _knows_losses(case)]:
+        share = supposed.effects[LOST_FRAMES]["p"]
+        slopes_by_share = [share_slopes(flight.tape, share) for flight in case.flights]
+        pull[row] = -sum(slope for slope, _ in slopes_by_share)
+        information[row, row] = -sum(bend for _, bend in slopes_by_share)
+        outside = outside[outside != row]
+    if not len(outside):
+        return
     columns = np.stack([_difference(case, supposed, free[row - count], w) for row in outside.tolist()], axis=1)
     information[np.ix_(own, outside)] = slopes.T @ columns
     information[np.ix_(outside, own)] = information[np.ix_(own, outside)].T
     information[np.ix_(outside, outside)] = columns.T @ columns
     pull[outside] = columns.T @ w
+
+
+def _knows_losses(case: Case) -> bool:
+    """Whether the readings said which frames were lost."""
+    return any(bool(flight.tape.lost.any()) for flight in case.flights)
 
 
 def flat_slopes(run: Pass) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
+from scipy.special import rel_entr
 
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, with_inputs
@@ -19,6 +19,7 @@ from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
 SHORTEST_S = 1e-6
+LOST_FRAMES = "loop.dropped_frames"
 DECLARATIONS = """
 void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double *mean);
 void slew_means(int64_t steps, const double *h_s, const double *wanted, double rate, double *mean);
@@ -28,16 +29,13 @@ void slew_means(int64_t steps, const double *h_s, const double *wanted, double r
 def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
     """The tape with its inputs sent through the stages of `effects`; those that need instants of their own bring them."""
     quick = {name: values for name, values in effects.items() if _quick(name)}
-    others = {name: values for name, values in effects.items() if name not in quick}
+    others = {name: values for name, values in effects.items() if name not in (*quick, LOST_FRAMES)}
+    if LOST_FRAMES in effects:
+        tape = _arrived(tape, effects[LOST_FRAMES]["p"])
     if others:
         stages, _ = paths_with(MODELS[kit.bound.plant.model](), others)
         tape = with_inputs(tape, stages)
-    for values in (values for name, values in quick.items() if name == "loop.dropped_frames"):
-        kept = lfilter([1.0 - values["p"]], [1.0, -values["p"]], tape.u - tape.u[0], axis=0) + tape.u[0]
-        tape = replace(tape, u=kept)
     for name, values in quick.items():
-        if name == "loop.dropped_frames":
-            continue
         place, kind = name.split(".")
         places = kit.bound.model.places
         variable = (places.inputs.get(place) or places.rotors[place]).variable
@@ -52,9 +50,38 @@ def commanded(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
 
 
 def _quick(name: str) -> bool:
-    """Which frames were lost is not known: what arrives on average is their geometric mean."""
-    late = name.endswith((".lag", ".slew_limit")) and not name.endswith("_sensor.lag")
-    return late or name == "loop.dropped_frames"
+    return name.endswith((".lag", ".slew_limit")) and not name.endswith("_sensor.lag")
+
+
+def _arrived(tape: Tape, share: float) -> Tape:
+    """The tape with what arrives where a `share` of the frames is lost: the mean over what is then known of each frame.
+
+    What the readings say of single frames counts in the likelihood less the information that it takes, sum of KL(after, before).
+    """
+    lost = lost_with(tape.lost, share)
+    arrived = tape.u.copy()
+    for column in range(arrived.shape[1]):
+        value, values = float(tape.u[0, column]), []
+        for command, held in zip(tape.u[:, column].tolist(), lost.tolist(), strict=True):
+            value = command + held * (value - command)
+            values.append(value)
+        arrived[:, column] = values
+    taken = lost[tape.lost != 0.0]
+    information = float(np.sum(rel_entr(taken, share) + rel_entr(1.0 - taken, 1.0 - share)))
+    return replace(tape, u=arrived, known=tape.known - information)
+
+
+def share_slopes(tape: Tape, share: float) -> tuple[float, float]:
+    """Slope and curvature of the log likelihood by the share of lost frames, what the readings say of each frame being held."""
+    lost = lost_with(tape.lost, share)[tape.lost != 0.0]
+    spread = share * (1.0 - share)
+    return float(np.sum(lost - share)) / spread, -len(lost) / spread
+
+
+def lost_with(ratios: Array, share: float) -> Array:
+    """Probabilities (m,) that frames were lost, `share` before their readings and the log likelihood ratios after them."""
+    odds = share * np.exp(np.clip(ratios, -200.0, 200.0))
+    return np.asarray(odds / (1.0 - share + odds))
 
 
 def _behind(tape: Tape, column: int, stage: str, value: float) -> Array:

@@ -83,7 +83,9 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     y[:, :outputs] = 0.0
     r = np.full_like(y, UNSEEN)
     places = np.tile(np.arange(count)[:, None], (1, tape.y.shape[1]))
-    return Tape(tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), places, count, np.zeros_like(y))
+    return Tape(
+        tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), places, count, np.zeros_like(y), np.zeros(count)
+    )
 
 
 def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:

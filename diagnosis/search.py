@@ -6,14 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.calm import awake, calmed
 from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, passes
+from diagnosis.inputs import LOST_FRAMES
 from diagnosis.screen import Look, look
 from diagnosis.unrest import with_unrest
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 1)
+CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
 FURTHER_GAIN = 10.0  # that a further effect must promise
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
@@ -34,6 +37,15 @@ class Tried:
     effects: tuple[str, ...]
     fit: Fit
     evidence: float
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A further effect to fit from a start, whose air may have been `calm`ed."""
+
+    start: Fit
+    look: Look
+    calm: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,24 +74,40 @@ def evidence(found: Fit) -> float:
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 
 
-def search(case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks: Sequence[Look]) -> Search:
-    """Fit the nominal plant with single effects, pairs and triples of `names`; `nominal` is its fit without any, `looks` those from it."""
+def search(
+    case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks: Sequence[Look], lossy: Fit | None = None
+) -> Search:
+    """Fit the nominal plant with single effects, pairs and triples of `names`; `nominal` is its fit without any, `looks` those from it,
+    `lossy` its fit with lost frames."""
     worth = [entry.effect for entry in looks if entry.gain > LEAST_GAIN][:WORTH]
-    found: dict[frozenset[str], Tried] = {}
+    found = {} if lossy is None else {frozenset((LOST_FRAMES,)): _tried(case, lossy)}
     first = Tried((), nominal, evidence(nominal))
     with ThreadPoolExecutor(WORKERS) as pool:
-        chosen = [entry for entry in looks if entry.gain > max(LEAST_GAIN, LEAST_SHARE * looks[0].gain)][:SINGLES]
-        _fit_all(case, pool, [(nominal.supposed, entry) for entry in chosen], found, first)
+        calm = calmed(case, nominal)
+        jobs = _promising(nominal, looks, False)[:SINGLES]
+        if calm is not None:
+            calm_jobs = _promising(calm, look(case, ground_of(case, calm), names), True)
+            jobs = [*calm_jobs[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
+        _fit_all(case, pool, jobs, found, first)
         for beam in BEAM:
             size = max((len(chosen) for chosen in found), default=0)
             best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
-            grown = [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best) for job in jobs]
-            if not _fit_all(case, pool, grown, found, best[0] if best else first):
+            grown = _partners(case, best[0], names, worth) if best else []
+            if not grown:
+                break
+            grown += [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best[1:]) for job in jobs]
+            if not _fit_all(case, pool, grown, found, best[0]):
                 break
         _settle(case, pool, found)
     certain = [entry for entry in found.values() if _certain(entry.fit)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
+
+
+def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
+    """Effects worth a fit from `start`, best first."""
+    least = max(LEAST_GAIN, LEAST_SHARE * looks[0].gain) if looks else 0.0
+    return [Job(start, entry, calm) for entry in looks if entry.gain > least]
 
 
 def _settle(case: Case, pool: ThreadPoolExecutor, found: dict[frozenset[str], Tried]) -> None:
@@ -103,26 +131,27 @@ def _certain(fit: Fit) -> bool:
     return all(certainty > CERTAIN for certainty in sizes.values())
 
 
-def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[str]) -> list[tuple[Supposed, Look]]:
+def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[str]) -> list[Job]:
     """Further effects that promise most beside those tried."""
-    ground = ground_of(case, tried.fit)
-    looks = look(case, ground, names, worth)
-    return [(tried.fit.supposed, entry) for entry in looks if entry.gain > FURTHER_GAIN][:PARTNERS]
+    calm = calmed(case, tried.fit)
+    start = calm or tried.fit
+    looks = look(case, ground_of(case, start), names, worth)
+    return [Job(start, entry, calm is not None) for entry in looks if entry.gain > FURTHER_GAIN][:PARTNERS]
 
 
 def _fit_all(
     case: Case,
     pool: ThreadPoolExecutor,
-    jobs: Sequence[tuple[Supposed, Look]],
+    jobs: Sequence[Job],
     found: dict[frozenset[str], Tried],
     known: Tried,
 ) -> bool:
     """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
-    fresh: dict[frozenset[str], tuple[Supposed, Look]] = {}
-    for supposed, entry in jobs:
-        fresh.setdefault(frozenset((*case.added(supposed.effects), entry.effect)), (supposed, entry))
+    fresh: dict[frozenset[str], Job] = {}
+    for job in jobs:
+        fresh.setdefault(frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job)
     wanted = [job for names, job in fresh.items() if names not in found]
-    rough = [entry for entry in pool.map(lambda job: _rough(case, *job), wanted) if entry]
+    rough = [entry for entry in pool.map(lambda job: _rough(case, job), wanted) if entry]
     if not rough:
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
@@ -132,12 +161,15 @@ def _fit_all(
     return True
 
 
-def _rough(case: Case, supposed: Supposed, entry: Look) -> Tried | None:
-    """A first joint fit from a start, under the unrest that was there before."""
+def _rough(case: Case, job: Job) -> Tried | None:
+    """A first joint fit, under the unrest that was there before, or what then shows where that had been lowered."""
+    supposed, entry = job.start.supposed, job.look
     start = supposed.with_effects({**supposed.effects, entry.effect: entry.values})
     if entry.effect.endswith("_input.quantization"):
         start = _polished(case, start, entry.effect)
     found = fit(case, start, rounds=4)
+    if found is not None and job.calm:
+        found = awake(case, found)
     return None if found is None or not _whole_counts(case, found) else _tried(case, found)
 
 

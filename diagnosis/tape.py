@@ -20,7 +20,7 @@ class Tape:
 
     `row` (m,) is the log's row that an instant is, -1 for none, `place` (m, outputs) the row of each reading; `rows` in all. `usual`
     (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
-    meaningless.
+    meaningless. `lost` (m,) is the log of how much likelier each instant's command was lost than not, 0 where nothing is known.
     """
 
     t_s: Array
@@ -31,6 +31,7 @@ class Tape:
     place: NDArray[np.int64]
     rows: int
     usual: Array
+    lost: Array
     known: float = 0.0
 
     def variance(self, output: int) -> float:
@@ -52,7 +53,7 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
     if used is not None:
         y[~used] = np.nan
     places = np.tile(np.arange(rows)[:, None], (1, len(outputs)))
-    return Tape(log.t_s, log.u, y, r, np.arange(rows), places, rows, -0.5 * (1.0 + np.log(r)))
+    return Tape(log.t_s, log.u, y, r, np.arange(rows), places, rows, -0.5 * (1.0 + np.log(r)), np.zeros(rows))
 
 
 def _standing(y: Array) -> Array:
@@ -98,7 +99,9 @@ def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     row, place = np.full(len(t_s), -1, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
     where = np.searchsorted(t_s, tape.t_s)
     y[where], r[where], row[where], usual[where], place[where] = tape.y, tape.r, tape.row, tape.usual, tape.place
-    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place)
+    lost = np.zeros(len(t_s))
+    lost[where] = tape.lost
+    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place, lost=lost)
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
