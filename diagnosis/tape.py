@@ -11,6 +11,8 @@ from records.plant import Plant
 from sim.paths import Held, InputStage, pass_inputs
 
 Array = NDArray[np.float64]
+BEYOND_USUAL = 3.0
+CLEARLY = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +69,17 @@ def _standing(y: Array) -> Array:
 
 
 def _variance(y: Array, step: float, noise: float) -> float:
-    """Variance of a measurement: its encoder's step and noise, and no less than its second differences show, outliers apart."""
-    second = np.diff(y[np.isfinite(y)], 2)
-    seen = (1.4826 * float(np.median(np.abs(second))) if second.size else 0.0) ** 2 / 6.0
+    """Variance of a measurement: its encoder's step and noise, or what its second differences show where that is clearly more.
+
+    Rounding alone leaves second differences of 6 step^2 / 12 and motion next to nothing; what is far beyond the usual is left out.
+    """
+    second = np.abs(np.diff(y[np.isfinite(y)], 2))
     stated = step**2 / 12.0 + noise**2
-    # Of motion itself second differences hold next to nothing, of a stated resolution no more than its rounding.
-    return max(stated, seen if not step else min(seen, 100.0 * stated), 1e-18)
+    usual = max(1.4826 * float(np.median(second)), step) if second.size else 0.0
+    seen = float(np.mean(np.minimum(second, BEYOND_USUAL * usual) ** 2)) / 6.0 if second.size else 0.0
+    if not step:
+        return max(stated, usual**2 / 6.0, 1e-18)
+    return min(seen, 100.0 * stated) if seen > CLEARLY * stated else stated
 
 
 def with_inputs(tape: Tape, stages: Sequence[InputStage]) -> Tape:
