@@ -16,7 +16,9 @@ from identification.envelope.fuzzy import Fuzzy, Trained, fuzzy
 
 Array = NDArray[np.float64]
 METHODS = ("classical", "linear", "fuzzy")
-SLOPE_ROWS = 9  # of a parabola through measured velocities, whose slope is their derivative
+SLOPE_ROWS = (
+    9  # of a parabola through measured velocities, whose slope is their derivative; the ends are held beyond the record
+)
 
 Equation = Callable[[Deviations, Array], Array]
 """(flights, states x of them (flights, n, 8), measured or estimated) -> accelerations (flights, n, 3)."""
@@ -56,7 +58,7 @@ def classical(data: Deviations, x: Array) -> Array:
     sits elsewhere, they do not know.
     """
     trim = data.trim[:, None, 4:12]
-    slope = savgol_filter(x[:, :, :3], SLOPE_ROWS, 2, deriv=1, delta=data.sample_period_s, axis=1)
+    slope = savgol_filter(x[:, :, :3], SLOPE_ROWS, 2, deriv=1, delta=data.sample_period_s, axis=1, mode="nearest")
     return np.asarray(slope + _turning(x + trim) - _turning(trim))
 
 

@@ -1,6 +1,7 @@
 """The whole chain of seed 003: for each flight condition open loop, closed loop, starts, output equation; then interpolation."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +66,7 @@ class Interpolated:
     """A condition left out: flights predicted by the model between its neighbours, and by the nearest neighbour's."""
 
     condition: Condition
+    model: GlobalModel
     between: Check
     nearest: Check
 
@@ -82,18 +84,27 @@ class Study:
         return next((entry for entry in self.conditions if entry.condition.name == name), self.conditions[0])
 
 
-def study(flights: Sequence[Flight], forgetting: float = 1.0, tell: Callable[[str], None] = lambda _: None) -> Study:
-    """Identify every condition that has flights for it, then interpolate where others are given; `tell` hears the names."""
+def _silent(_: str) -> AbstractContextManager[None]:
+    return nullcontext()
+
+
+def study(
+    flights: Sequence[Flight],
+    forgetting: float = 1.0,
+    stage: Callable[[str], AbstractContextManager[None]] = _silent,
+) -> Study:
+    """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each."""
     found = []
     for condition in _conditions(flights, "identification"):
-        tell(condition.name)
-        found.append(identify(condition, [flight for flight in flights if flight.condition == condition], forgetting))
+        with stage(condition.name):
+            mine = [entry for entry in flights if entry.condition == condition]
+            found.append(identify(condition, mine, forgetting))
     models = {entry.condition: entry.model for entry in found}
     left_out = []
     for condition in _conditions(flights, "interpolation"):
-        tell(f"{condition.name}, left out")
-        mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
-        left_out.append(_interpolated(condition, models, mine))
+        with stage(f"{condition.name}, left out"):
+            mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
+            left_out.append(_interpolated(condition, models, mine))
     return Study(tuple(found), tuple(left_out), len(flights))
 
 
@@ -167,7 +178,8 @@ def _interpolated(
     def tried(model: GlobalModel) -> Check:
         return check(condition.name, mission, data, model.state, model.state, {"linear": model.output})
 
-    return Interpolated(condition, tried(between(models, condition)), tried(nearest(models, condition)))
+    model = between(models, condition)
+    return Interpolated(condition, model, tried(model), tried(nearest(models, condition)))
 
 
 def methods_of(checked: Check) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ VERBS: Mapping[str, str] = {
     "experiments": "experiments",
     "sweep": "sweep",
     "identify": "identify",
+    "envelope": "envelope",
     "diagnose": "diagnose",
     "blind": "blind",
     "bench": "bench",

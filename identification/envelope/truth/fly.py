@@ -37,7 +37,7 @@ NOISE_y = np.array([0.12, 0.12, 0.18])  # m/s^2
 
 
 @dataclass(frozen=True)
-class Test:
+class FlightTest:
     """A flight to be flown; `number` tells repetitions apart, which differ in height of the steps, gusts and noise."""
 
     condition: Condition
@@ -59,14 +59,14 @@ class Disturbance:
     noise_y: Array
 
 
-def fly(machine: Machine, tests: Sequence[Test], seed: int) -> tuple[Flight, ...]:
-    """All tests at once; the same test and seed give the same flight."""
+def fly(machine: Machine, tests: Sequence[FlightTest], seed: int, duration_s: float = DURATION_s) -> tuple[Flight, ...]:
+    """All tests at once; the same test, seed and duration give the same flight."""
     start = [trim(machine, test.condition, CLIMB_m_s[test.mission]) for test in tests]
     s, c = np.stack([entry[0] for entry in start], axis=1), np.stack([entry[1] for entry in start], axis=1)
     airs = [air_of(machine, test.condition) for test in tests]
     air = Air(*(np.concatenate([getattr(a, name) for a in airs]) for name in ("density_kg_m3", "station_m")))
-    drawn = [_drawn(test, seed) for test in tests]
-    x, u, y = _flown(machine, air, s, c, tests, drawn)
+    drawn = [_drawn(test, seed, duration_s) for test in tests]
+    x, u, y = _flown(machine, air, s, c, _inputs(tests, drawn, duration_s), tests, drawn)
     return tuple(
         Flight(test.condition, test.mission, test.manoeuvre, test.number, test.use, SAMPLE_s, u[:, :, i],
                x[:, :, i] + chance.noise_x, y[:, :, i] + chance.noise_y)
@@ -75,10 +75,16 @@ def fly(machine: Machine, tests: Sequence[Test], seed: int) -> tuple[Flight, ...
 
 
 def _flown(
-    machine: Machine, air: Air, s: Array, trimmed: Array, tests: Sequence[Test], drawn: Sequence[Disturbance]
+    machine: Machine,
+    air: Air,
+    s: Array,
+    trimmed: Array,
+    inputs: Array,
+    tests: Sequence[FlightTest],
+    drawn: Sequence[Disturbance],
 ) -> tuple[Array, Array, Array]:
     """x (samples, 8, n), u (samples, 4, n), y (samples, 3, n) without noise."""
-    inputs, gain = _inputs(tests, drawn), np.stack([_gain(test) for test in tests], axis=2)
+    gain = np.stack([_gain(test) for test in tests], axis=2)
     gusts, remnants = (np.stack([getattr(entry, name) for entry in drawn], axis=2) for name in ("gust", "remnant"))
     x_trim, c, every = s[:8].copy(), trimmed.copy(), round(SAMPLE_s / STEP_s)
     rows: list[tuple[Array, Array, Array]] = []
@@ -103,9 +109,9 @@ def runge_kutta(machine: Machine, air: Air, s: Array, c: Array, gust_m_s: Array,
     return np.asarray(s + step_s / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
 
 
-def _inputs(tests: Sequence[Test], drawn: Sequence[Disturbance]) -> Array:
+def _inputs(tests: Sequence[FlightTest], drawn: Sequence[Disturbance], duration_s: float) -> Array:
     """The steps that the pilot intends (steps of integration, 4, n)."""
-    t_s = np.arange(round(DURATION_s / STEP_s)) * np.float64(STEP_s)
+    t_s = np.arange(round(duration_s / STEP_s)) * np.float64(STEP_s)
     wanted = np.zeros((len(t_s), 4, len(tests)))
     for i, (test, chance) in enumerate(zip(tests, drawn, strict=True)):
         if test.manoeuvre in CONTROLS:
@@ -114,16 +120,16 @@ def _inputs(tests: Sequence[Test], drawn: Sequence[Disturbance]) -> Array:
     return wanted
 
 
-def _gain(test: Test) -> Array:
+def _gain(test: FlightTest) -> Array:
     gain = _PILOT.copy()
     if test.manoeuvre in CONTROLS:
         gain[CONTROLS.index(test.manoeuvre)] *= _OWN_AXIS
     return gain
 
 
-def _drawn(test: Test, seed: int) -> Disturbance:
+def _drawn(test: FlightTest, seed: int, duration_s: float) -> Disturbance:
     rng = np.random.default_rng([seed, *_numbers(test)])
-    rows = round(DURATION_s / SAMPLE_s)
+    rows = round(duration_s / SAMPLE_s)
     gust_s = GUST_LENGTH_m / test.condition.speed_m_s
     height = HEIGHT_percent.get(test.manoeuvre, 0.0) * rng.uniform(0.85, 1.15) * rng.choice([-1.0, 1.0])
     return Disturbance(
@@ -135,7 +141,7 @@ def _drawn(test: Test, seed: int) -> Disturbance:
     )
 
 
-def _numbers(test: Test) -> list[int]:
+def _numbers(test: FlightTest) -> list[int]:
     """A test as whole numbers, for its seed."""
     at = test.condition
     words = (*at.loading, *test.mission, "-", *test.manoeuvre)

@@ -1,0 +1,70 @@
+"""`twinlaw envelope` on two conditions and one between: files back and forth, what is written, what is refused."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification.envelope.conditions import Condition
+from identification.envelope.flight_file import load_flight, load_flights, save_flight
+from identification.envelope.truth.figures import drawn
+from identification.envelope.truth.fly import fly
+from identification.envelope.truth.plan import plan
+from twinlaw.command import main
+
+ENDS, BETWEEN = (Condition("HF", 3000, 50), Condition("HF", 3000, 70)), (Condition("HF", 3000, 60),)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    found = tmp_path_factory.mktemp("flights")
+    for flight in fly(drawn(5), plan(ENDS, BETWEEN), 5, 12.0):
+        save_flight(found, flight)
+    return found
+
+
+def test_a_flight_reads_back_as_it_was_written(folder: Path) -> None:
+    flights = load_flights(folder)
+    assert len(flights) == 2 * 7 + 4
+    (truth,) = fly(drawn(5), plan(ENDS, BETWEEN)[:1], 5, 12.0)
+    found = next(flight for flight in flights if flight.name == truth.name)
+    assert (found.condition, found.use, found.mission) == (truth.condition, truth.use, truth.mission)
+    for mine, true in ((found.u, truth.u), (found.x, truth.x), (found.y, truth.y)):
+        assert np.array_equal(mine, true)
+
+
+def test_the_verb_identifies_interpolates_and_draws(folder: Path, tmp_path: Path, capsys) -> None:
+    assert main(["envelope", "--out", str(tmp_path), str(folder)]) == 0
+    told = json.loads((tmp_path / "envelope.json").read_text())
+    assert [entry["condition"] for entry in told["conditions"]] == [at.name for at in ENDS]
+    assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
+    assert told["summary"]["interpolation"]["flights"] == 4
+    page = (tmp_path / "report.html").read_text()
+    for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
+        assert words in page
+    assert "HF3000ft-50kts, one step ahead" in capsys.readouterr().out
+
+
+def test_what_is_wrong_with_a_flight_is_said(folder: Path, tmp_path: Path, capsys) -> None:
+    flight = load_flight(next(folder.glob("HF3000ft-50kts-level-lateral-0.toml")))
+    sidecar = save_flight(tmp_path, flight)
+    text, table = sidecar.read_text(), sidecar.with_suffix(".csv").read_text()
+    lines = table.splitlines()
+    for wrong, rows, words in (
+        (text.replace("level", "aerobatic"), table, "aerobatic"),
+        (text.replace('use = "identification"', 'use = "validation"'), table, "none to identify from"),
+        (text, table.replace("collective_percent", "collective", 1), "without collective_percent"),
+        (text, "\n".join([*lines[:5], *lines[6:]]) + "\n", "line 6"),
+        (text, "\n".join([*lines[:5], lines[5].rsplit(",", 1)[0] + ",", *lines[6:]]) + "\n", "empty cell"),
+    ):
+        sidecar.write_text(wrong)
+        sidecar.with_suffix(".csv").write_text(rows)
+        assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
+        assert words in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_empty_folder_is_refused(tmp_path: Path, capsys) -> None:
+    assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
+    assert "flight tests" in capsys.readouterr().err

@@ -1,0 +1,172 @@
+"""The tables of seed 003 in our form, rows of text: Table 2.1 to 2.3, 3.1 to 3.10, 4.1 to 4.8, and the interpolation."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from identification.envelope.criteria import WEIGHTS, Match, outside_percent, passed, score_percent
+from identification.envelope.flight import OUTPUTS, STATES
+from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
+from identification.envelope.outputs import METHODS
+from identification.envelope.study import FINAL, TUNINGS, Check, ConditionResult, Study
+from twinlaw.page import Table
+
+# Table 2.1 of the thesis, open loop at HA6000ft-50kts [%].
+THESIS_FIT = (99.21, 99.51, 97.17, 99.42, 99.19, 99.55, 99.49, 99.38)
+THESIS_CORRELATION = (99.99, 100.0, 99.84, 99.99, 99.99, 100.0, 100.0, 99.99)
+
+INPUTS = {"2-3-1-1": STEPS_2311, "3-2-1-1": STEPS_3211, "doublet": DOUBLET, "pulse": PULSE}
+Ways = Callable[[Check], Mapping[str, Sequence[Match]]]
+
+
+def symbols(names: Sequence[str]) -> tuple[str, ...]:
+    """Names without their units: u_m_s is u, A_x_m_s2 is A_x."""
+    return tuple(name.partition("_m_s")[0].partition("_rad")[0] for name in names)
+
+
+def input_rows(unit_s: float) -> Table:
+    """What is told of the inputs in 1.2.1: breadth, energy, energy at zero frequency, how long the first step leads away from trim."""
+    rows = []
+    for name, steps in INPUTS.items():
+        low, high = band_Hz(steps, unit_s, share=0.2)
+        still = spectrum(np.zeros(1), steps, unit_s)[0] / unit_s**2
+        octaves = f"{np.log2(high / low):.1f}" if low > 0.0 else "from 0 on"
+        rows.append((name, f"{low:.3f} to {high:.3f}", octaves, f"{sum(steps)}", f"{still:.0f}", f"{steps[0]}"))
+    heading = (
+        "unit time 1 s",
+        "band above a fifth of the peak [Hz]",
+        "octaves",
+        "energy [s]",
+        "|U(0)|^2 [s^2]",
+        "first step [s]",
+    )
+    return Table(rows, heading)
+
+
+def open_loop(entry: ConditionResult) -> Table:
+    """Table 2.1: fit and correlation one step ahead, of deviations from trim, of whole signals, and as the thesis states."""
+    found, whole = entry.checks[0].open_loop, entry.checks[0].open_loop_whole
+    rows = [
+        ("fit [%]", *(f"{match.fit_percent:.2f}" for match in found)),
+        ("fit [%], trim put back", *(f"{match.fit_percent:.2f}" for match in whole)),
+        ("fit [%], thesis", *(f"{value:.2f}" for value in THESIS_FIT)),
+        ("correlation [%]", *(f"{100 * match.correlation:.2f}" for match in found)),
+        ("correlation [%], thesis", *(f"{value:.2f}" for value in THESIS_CORRELATION)),
+        ("points outside [%]", *(f"{match.outside_percent:.2f}" for match in found)),
+    ]
+    return Table(rows, ("", *symbols(STATES)))
+
+
+def tunings(checks: Sequence[Check]) -> Table:
+    """Tables 2.2 and 2.3: percentage of points outside the margins by state and way of tuning, mean over the checks."""
+    rows = []
+    for how in TUNINGS:
+        shares = np.array([[match.outside_percent for match in check.states[how]] for check in checks])
+        held, flights = sum(check.held[how] for check in checks), sum(len(check.data.x) for check in checks)
+        rows.append(
+            (how, *(f"{share:.1f}" for share in shares.mean(axis=0)), f"{shares.mean():.2f}", f"{held} of {flights}")
+        )
+    return Table(rows, ("start", *symbols(STATES), "mean", "flights held 3 s"))
+
+
+def conditions(found: Study) -> Table:
+    """2.4: what became of each condition."""
+    rows = []
+    for entry in found.conditions:
+        own, others = entry.checks[0], entry.checks[1:]
+        held = sum(check.held[FINAL] for check in others)
+        rows.append(
+            (
+                entry.condition.name,
+                f"{entry.row + 1}",
+                f"{entry.open_loop.spectral_radius:.4f}",
+                f"{entry.model.state.spectral_radius:.4f}",
+                f"{outside_percent(own.states[FINAL]):.2f}",
+                *(f"{outside_percent(check.states[FINAL]):.2f}" for check in others),
+                f"{held} of {len(others)}",
+            )
+        )
+    most = max((len(row) for row in rows), default=0)
+    padded = [(*row[:-1], *[""] * (most - len(row)), row[-1]) for row in rows]
+    validations = ["validation 1" if number == 0 else f"{number + 1}" for number in range(most - 6)]
+    return Table(
+        padded,
+        ("condition", "row chosen", "radius, open", "radius, closed", "identification", *validations, "held 3 s"),
+    )
+
+
+def outputs_by_condition(found: Study) -> Table:
+    """Tables 3.1 to 3.3: points outside by the classical and the linear equation on measured states, and the reduction."""
+    rows = []
+    for entry in found.conditions:
+        ways = entry.checks[0].outputs
+        shares = {way: [match.outside_percent for match in ways[way]] for way in ("classical", "linear")}
+        fallen = [100.0 * (1.0 - b / a) if a > 0.0 else 0.0 for a, b in zip(*shares.values(), strict=True)]
+        cells = [f"{value:.2f}" for values in shares.values() for value in values]
+        rows.append((entry.condition.name, *cells, *(f"{value:.1f}" for value in fallen)))
+    return Table(rows, ("condition [%]", *_by_group(("classical", "linear", "reduction"), symbols(OUTPUTS))))
+
+
+def _by_group(groups: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Headings of columns that repeat by group: the group's name stands at its first."""
+    return [f"{group}: {name}" if i == 0 else name for group in groups for i, name in enumerate(names)]
+
+
+def averages(found: Study, ways: Ways) -> Table:
+    """Tables 3.4 and 4.1: points outside, mean over conditions, identification and validations apart."""
+    rows = []
+    for way in METHODS:
+        cells = []
+        for checks in _groups(found):
+            shares = np.array([[match.outside_percent for match in ways(check)[way]] for check in checks])
+            cells += [f"{value:.2f}" for value in shares.mean(axis=0)] if len(checks) else [""] * len(OUTPUTS)
+        rows.append((way, *cells))
+    return Table(rows, ("equation [%]", *_by_group(("identification", "validation"), symbols(OUTPUTS))))
+
+
+def weights() -> Table:
+    """Table 3.5: criteria and their weights; ours, as the thesis' are not in the text."""
+    return Table([(name, f"{weight:g}") for name, weight in WEIGHTS.items()], ("criterion", "weight"))
+
+
+def scores(checks: Sequence[Check], ways: Ways) -> Table:
+    """Tables 3.6 to 3.9 and 4.2 to 4.5: the weighted score of each flight by output equation."""
+    rows = [(check.name, *(f"{score_percent(ways(check)[way]):.2f}" for way in METHODS)) for check in checks]
+    return Table(rows, ("score [%]", *METHODS))
+
+
+def goodness(found: Study, ways: Ways) -> Table:
+    """Tables 3.10 and 4.8: mean score over all conditions, and the share of checks whose accelerations all hold three seconds."""
+    rows = []
+    for way in METHODS:
+        cells = []
+        for checks in _groups(found):
+            if not checks:
+                cells += ["", ""]
+                continue
+            mean = np.mean([score_percent(ways(check)[way]) for check in checks])
+            cells += [f"{mean:.2f}", f"{sum(passed(ways(check)[way]) for check in checks)} of {len(checks)}"]
+        rows.append((way, *cells))
+    return Table(rows, ("equation", "score, identification", "held 3 s", "score, validation", "held 3 s"))
+
+
+def interpolation(found: Study) -> Table:
+    """4.4: flights of conditions left out, by the model between its neighbours and by the nearest one's."""
+    rows = []
+    for entry in found.left_out:
+        cells = []
+        for check in (entry.between, entry.nearest):
+            shares = [f"{outside_percent(check.states[how]):.2f}" for how in ("measured", "automatic", FINAL)]
+            cells += [*shares, f"{check.held[FINAL]} of {len(check.data.x)}"]
+        cells.append(f"{outside_percent(entry.between.overall['linear']):.2f}")
+        rows.append((entry.condition.name, *cells))
+    heading = _by_group(("between", "nearest"), ("measured", "automatic", FINAL, "held 3 s"))
+    return Table(rows, ("points outside [%]", *heading, "accelerations"))
+
+
+def _groups(found: Study) -> tuple[list[Check], list[Check]]:
+    """All checks by identification flights, and all by validation flights."""
+    return (
+        [entry.checks[0] for entry in found.conditions],
+        [check for entry in found.conditions for check in entry.checks[1:]],
+    )

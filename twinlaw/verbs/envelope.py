@@ -1,0 +1,81 @@
+"""Identify a helicopter's linear models over its flight envelope from flight tests with multistep inputs, and interpolate between them.
+
+Without FLIGHTS the tests are flown on a simulated helicopter: 22 conditions to identify, each with three flights to validate it, and nine
+between them that are only predicted. FLIGHTS is a folder of sidecars NAME.toml with their NAME.csv, as --keep-flights writes them. Writes
+DIR/envelope.json and DIR/report.html; models are judged by the FAA's margins and the three-second rule.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+from identification.envelope.flight import Flight
+from identification.envelope.flight_file import load_flights, save_flight
+from identification.envelope.record import facts, summary
+from identification.envelope.study import study
+from identification.envelope.truth.figures import drawn
+from identification.envelope.truth.fly import fly
+from identification.envelope.truth.plan import plan
+from records.errors import BadInput
+from records.files import write_atomic
+from twinlaw import console, options
+from twinlaw.envelope_report import SHOWN, envelope_page, verdict
+from twinlaw.envelope_tables import conditions, interpolation, open_loop
+from twinlaw.page import Table, page_text
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--seed, --keep-flights, --forgetting, --out, --json, FLIGHTS."""
+    parser.add_argument(
+        "--seed",
+        type=options.count,
+        default=1,
+        help="of the simulated helicopter and its flights; default: %(default)s",
+    )
+    parser.add_argument(
+        "--keep-flights", action="store_true", help="write the simulated flights to DIR/flights, some 30 MB"
+    )
+    parser.add_argument(
+        "--forgetting", type=float, default=1.0, metavar="GAMMA", help="of the recursion, above 0; default: %(default)s"
+    )
+    options.out(parser)
+    options.as_json(parser)
+    parser.add_argument("flights", nargs="?", type=Path, metavar="FLIGHTS", help="folder of flight tests")
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Fly or read, identify, write, tell."""
+    flights, origin = _flights(chosen)
+    if not any(flight.use == "identification" for flight in flights):
+        raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
+    found = study(flights, chosen.forgetting, console.stage)
+    told = facts(found)
+    write_atomic(chosen.out / "envelope.json", json.dumps(told, indent=1) + "\n")
+    with console.stage("drawing the report"):
+        write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin)))
+    if chosen.json:
+        print(json.dumps(summary(found)))
+        return 0
+    print(verdict(summary(found)))
+    print(f"\n{found.at(SHOWN).condition.name}, one step ahead\n{_shown(open_loop(found.at(SHOWN)))}")
+    print(f"\nPoints outside the margins, starts tuned\n{_shown(conditions(found))}")
+    if found.left_out:
+        print(f"\nConditions left out\n{_shown(interpolation(found))}")
+    print(f"\n{chosen.out / 'report.html'}")
+    return 0
+
+
+def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str]:
+    """Read or flown, and where they came from."""
+    if chosen.flights is not None:
+        return load_flights(chosen.flights), str(chosen.flights)
+    with console.stage(f"flying the simulated helicopter, seed {chosen.seed}"):
+        flights = fly(drawn(chosen.seed), plan(), chosen.seed)
+    if chosen.keep_flights:
+        for flight in flights:
+            save_flight(chosen.out / "flights", flight)
+    return flights, f"simulated helicopter, seed {chosen.seed}"
+
+
+def _shown(table: Table) -> str:
+    return console.table(table.rows, table.heading)
