@@ -112,7 +112,10 @@ def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
-    """The tape with one output's readings put `tau_s` earlier, to when they were true; inputs as they were."""
+    """The tape with one output's readings put `tau_s` earlier, to when they were true; inputs as they were.
+
+    Readings from before the tape say nothing: they count as likely as they usually are.
+    """
     if tau_s <= 0.0:
         return tape
     t_s = np.union1d(tape.t_s, tape.t_s - tau_s)
@@ -126,4 +129,7 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
     where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)[seen]
     y[where, output], r[where, output] = tape.y[seen, output], tape.r[seen, output]
     usual[where, output], place[where, output] = tape.usual[seen, output], tape.place[seen, output]
-    return replace(moved, y=y, r=r, usual=usual, place=place)
+    early = ~seen & np.isfinite(tape.y[:, output])
+    return replace(
+        moved, y=y, r=r, usual=usual, place=place, known=tape.known + float(np.sum(tape.usual[early, output]))
+    )
