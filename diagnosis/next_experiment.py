@@ -18,7 +18,7 @@ from diagnosis.weigh import Weighed
 Array = NDArray[np.float64]
 LEAST = 0.02  # of probability that a hypothesis must have, and that must be at stake
 LEADING = 3
-SURE, ENOUGH = 5.0, 2.0  # standard deviations: more than these tell no more, fewer than these tell nothing
+SURE, ENOUGH = 5.0, 3.0  # standard deviations: more than these tell no more, fewer than these tell nothing
 EFFORT = 0.2  # of what a sure separation is worth, for an experiment of effort 1
 BEYOND = 0.05  # likewise, for each factor of ten beyond SURE: no model is so right that the noise alone decides
 LIMITS = 0.3  # likewise for one that leaves the limits

@@ -12,6 +12,7 @@ from twinlaw.diagnosis_words import chance, listed, percent, plain_text, words
 from twinlaw.page import Page, Section, Table
 
 ALWAYS, SELDOM = 3, 0.01  # the first few causes are always shown, further ones from this probability
+LIKELY = 0.8  # below which a name is no more than the likeliest of several
 MOVED = " standard deviations from its stated value: "  # in a note about a parameter
 
 __all__ = ["Predicted", "diagnosis_page", "verdict_sentence"]
@@ -51,13 +52,14 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     names = " and ".join(words(name) for name in diagnosis.found)
     named = [h.probability for h in diagnosis.effects if set(h.effect.split(" + ")) == set(diagnosis.found)]
     sure = f" ({percent(named[0])} sure)" if named else ""
+    likely = "most likely " if named and named[0] < LIKELY else ""
     gone = diagnosis.shrinkage.fraction if diagnosis.shrinkage else None
     gain = (
         ""
         if gone is None
         else f", and with it in the model {percent(gone)} of the removable error on the hold-out logs is gone"
     )
-    return f"The rig has what the plant file lacks: {names}{sure}{gain}."
+    return f"The rig has what the plant file lacks: {likely}{names}{sure}{gain}."
 
 
 def _nothing_added(diagnosis: Diagnosis) -> str:
@@ -101,12 +103,21 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         for h in diagnosis.effects[:1]
         if h.ambiguous_with and diagnosis.found
     ]
+    unknown = diagnosis.unknown
+    if (
+        unknown.class_
+        and not diagnosis.found
+        and unknown.probability > max((h.probability for h in diagnosis.effects), default=0.0)
+    ):
+        where = f" {words(unknown.place)}" if unknown.place else ""
+        told.append(
+            f"What is missing acts on{where} and is of the form {unknown.class_}; no effect of the library fits it."
+        )
     rows = [
         _cause_row(h, set(h.effect.split(" + ")) == set(diagnosis.found))
         for place, h in enumerate(diagnosis.effects)
         if place < ALWAYS or h.probability > SELDOM
     ]
-    unknown = diagnosis.unknown
     retuned = 1.0 - unknown.probability - sum(h.probability for h in diagnosis.effects)
     if retuned > SELDOM:
         rows.append(("other parameters alone", "see the notes", percent(retuned), "", ""))

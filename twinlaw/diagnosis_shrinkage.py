@@ -7,7 +7,8 @@ from twinlaw.diagnosis_words import percent, shown
 from twinlaw.page import Section, Table
 from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, Bars, bars
 
-_PANELS = 4  # side by side
+_PANELS = 4  # columns that are drawn
+_FAR = 30.0  # between the least bar and the largest, from which both are to be seen on a logarithmic scale alone
 _COLOURS = (GREY, ORANGE, BLUE, GREEN)
 _KEYS = ("nominal", "before", "after", "floor")
 _BAR_NAMES = {"nominal": "the plant as stated", "before": "the re-tuned plant", "after": "the improved plant"}
@@ -72,7 +73,9 @@ def _four_bars(rms: Sequence[Mapping[str, float]], found: bool) -> tuple[Table, 
         name, unit, scale = shown(column)
         heights = [scale * entry[column] for entry in rms]
         labels = [label.replace(" ", "\n") for label in names]
-        panels.append(Bars(heights, labels, f"rms error of {name} {unit}".strip(), colours=_COLOURS))
+        far = min(heights) > 0.0 and max(heights) > _FAR * min(heights)
+        title = f"rms error of {name} {unit}".strip()
+        panels.append(Bars(heights, labels, title, colours=_COLOURS, log_height=far))
         rows.append((f"{name} {unit}".strip(), *(f"{height:.4g}" for height in heights)))
     lines = [panels[i : i + 2] for i in range(0, len(panels), 2)]
     plots = "\n".join(bars(line, height_in=2.8) for line in lines)

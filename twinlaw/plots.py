@@ -111,6 +111,7 @@ class Bars:
     xlabel: str = ""
     colours: Sequence[str] = (ORANGE,)
     log: bool = False
+    log_height: bool = False
 
 
 def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
@@ -138,6 +139,9 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
     axes.grid(False, axis="x")
     if panel.log:
         axes.set_xscale("log")
+    if panel.log_height:
+        axes.set_yscale("log")
+        axes.set_ylim(min(panel.heights) / 3.0, max(panel.heights) * 3.0)
 
 
 def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:

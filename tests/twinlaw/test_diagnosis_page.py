@@ -114,6 +114,10 @@ def test_the_page_needs_no_network_and_no_script() -> None:
     ("change", "said"),
     [
         ({}, "The rig has what the plant file lacks: cable spring of the azimuth (93.0 % sure)"),
+        (
+            {"effects": (replace(GAP.effects[0], probability=0.4),)},
+            "lacks: most likely cable spring of the azimuth (40.0 % sure)",
+        ),
         ({"verdict": "no gap"}, "explains these logs"),
         ({"verdict": "cannot tell"}, "too little motion"),
         ({"found": ()}, "does something in the azimuth that the plant file lacks"),
