@@ -44,6 +44,11 @@ def verdict(told: dict[str, Any]) -> str:
     return f"All states within the FAA's margins for three seconds: {', '.join(parts)}."
 
 
+def notes_of(found: Study) -> tuple[str, ...]:
+    """What the flights of each condition cannot tell."""
+    return tuple(f"{entry.condition.name}: {note}." for entry in found.conditions for note in entry.notes)
+
+
 def _inputs(entry: ConditionResult, found: Study) -> Section:
     return Section(
         "Manoeuvres (1.2)",
@@ -96,6 +101,7 @@ def _all_conditions(found: Study) -> Section:
         (
             f"Row of the recursion that was chosen, spectral radius per sample of the open and the closed loop's model; then the mean "
             f"percentage of points outside over the eight states, starts tuned {FINAL}.",
+            *notes_of(found),
         ),
         (tables.conditions(found),),
     )

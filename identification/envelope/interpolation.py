@@ -1,6 +1,6 @@
 """Models between identified conditions: each element of A, B, C, D straight over the speed (seed 003, 4.4)."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,18 +22,24 @@ class GlobalModel:
     output: Linear
 
 
-def between(models: Mapping[Condition, GlobalModel], wanted: Condition) -> GlobalModel:
-    """The model at `wanted` from its neighbours in speed of the same loading and altitude; raises BadInput outside their range."""
-    row = sorted(at for at in models if (at.loading, at.altitude_ft) == (wanted.loading, wanted.altitude_ft))
+def neighbours(known: Collection[Condition], wanted: Condition) -> tuple[Condition, Condition]:
+    """The conditions of the same loading and altitude next below and above in speed; raises BadInput outside their range."""
+    row = sorted(at for at in known if (at.loading, at.altitude_ft) == (wanted.loading, wanted.altitude_ft))
     speeds = [at.speed_kts for at in row]
     if not row or not speeds[0] <= wanted.speed_kts <= speeds[-1]:
         have = f"{speeds[0]} to {speeds[-1]} kts" if row else "no condition of this loading and altitude"
         raise BadInput("speed", wanted.name, have, "identified conditions on both sides", "identify one beyond it")
     upper = int(np.searchsorted(speeds, wanted.speed_kts))
-    if speeds[upper] == wanted.speed_kts:
-        return models[row[upper]]
-    share = (wanted.speed_kts - speeds[upper - 1]) / (speeds[upper] - speeds[upper - 1])
-    return _mixed(models[row[upper - 1]], models[row[upper]], share)
+    return (row[upper], row[upper]) if speeds[upper] == wanted.speed_kts else (row[upper - 1], row[upper])
+
+
+def between(models: Mapping[Condition, GlobalModel], wanted: Condition) -> GlobalModel:
+    """The model at `wanted` from its neighbours in speed; raises BadInput outside their range."""
+    lower, upper = neighbours(models.keys(), wanted)
+    if lower == upper:
+        return models[lower]
+    share = (wanted.speed_kts - lower.speed_kts) / (upper.speed_kts - lower.speed_kts)
+    return _mixed(models[lower], models[upper], share)
 
 
 def nearest(models: Mapping[Condition, GlobalModel], wanted: Condition) -> GlobalModel:

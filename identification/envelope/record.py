@@ -50,6 +50,7 @@ def _mean(values: Sequence[float]) -> float | None:
 def _condition(entry: ConditionResult) -> dict[str, Any]:
     return {
         "condition": entry.condition.name,
+        "notes": list(entry.notes),
         "sample_period_s": entry.model.state.sample_period_s,
         "chosen_row": entry.row,
         "rows": len(entry.potentials),

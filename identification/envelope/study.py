@@ -10,17 +10,18 @@ from numpy.typing import NDArray
 from identification.envelope.closed_loop import Training, optimise
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import Match, flights_passed, matches
-from identification.envelope.flight import OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
+from identification.envelope.flight import CONTROLS, OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
 from identification.envelope.free_run import Model, model_of, one_step
 from identification.envelope.fuzzy import Trained
 from identification.envelope.initial_state import as_measured, automatic, by_hand
-from identification.envelope.interpolation import GlobalModel, between, nearest
+from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
 from identification.envelope.outputs import METHODS, Equation, Linear, equations
 from identification.envelope.recursive import best, history, pairs
 from identification.margins import MARGINS
 
 Array = NDArray[np.float64]
 TUNINGS = ("measured", "by hand", "automatic", "with trim")
+STILL_percent = 0.1  # rms of a control's own motion, of its travel, below which it tells nothing
 FINAL = "with trim"  # whose states the output equation of the global model takes
 
 
@@ -49,9 +50,13 @@ class Check:
 
 @dataclass(frozen=True, eq=False)
 class ConditionResult:
-    """One identified condition: `row` of the recursion that was chosen, by potential; checks begin with the identification itself."""
+    """One identified condition: `row` of the recursion that was chosen, by potential; checks begin with the identification itself.
+
+    `notes` say what its flights cannot tell.
+    """
 
     condition: Condition
+    notes: tuple[str, ...]
     row: int
     potentials: Array
     open_loop: Model
@@ -93,9 +98,14 @@ def study(
     forgetting: float = 1.0,
     stage: Callable[[str], AbstractContextManager[None]] = _silent,
 ) -> Study:
-    """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each."""
-    found = []
-    for condition in _conditions(flights, "identification"):
+    """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each.
+
+    Raises BadInput for flights that cannot be joined, and for a condition left out without neighbours on both sides.
+    """
+    found, known = [], _conditions(flights, "identification")
+    for condition in _conditions(flights, "interpolation"):
+        neighbours(known, condition)
+    for condition in known:
         with stage(condition.name):
             mine = [entry for entry in flights if entry.condition == condition]
             found.append(identify(condition, mine, forgetting))
@@ -130,7 +140,26 @@ def identify(condition: Condition, flights: Sequence[Flight], forgetting: float 
             alone = joined([flight])
             checks.append(check(flight.name, flight.mission, alone, open_loop, training.model, ways))
     model = GlobalModel(training.model, ways["linear"])
-    return ConditionResult(condition, row, potentials, open_loop, training, trained, model, tuple(checks))
+    return ConditionResult(
+        condition, poor(mine, data), row, potentials, open_loop, training, trained, model, tuple(checks)
+    )
+
+
+def poor(flights: Sequence[Flight], data: Deviations) -> tuple[str, ...]:
+    """One sentence for each control whose column of B these flights tell badly: never moved on purpose, or hardly moved by itself."""
+    notes = []
+    u = data.u.reshape(-1, data.u.shape[2])
+    for i, control in enumerate(CONTROLS):
+        others = np.concatenate([np.delete(u, i, axis=1), data.x.reshape(len(u), -1)], axis=1)
+        left = u[:, i] - others @ np.linalg.lstsq(others, u[:, i], rcond=None)[0]
+        alone_percent = float(np.sqrt(np.mean(left**2)))
+        if alone_percent < STILL_percent:
+            notes.append(
+                f"{control}: moves by {alone_percent:.2f} % rms beside what goes with the rest; its effect is not told"
+            )
+        elif all(flight.manoeuvre != control for flight in flights):
+            notes.append(f"{control}: no flight moves it on purpose; its effect rests on the pilot's corrections")
+    return tuple(notes)
 
 
 def margins_of(mission: str) -> tuple[Array, Array]:

@@ -19,7 +19,7 @@ from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw import console, options
-from twinlaw.envelope_report import SHOWN, envelope_page, verdict
+from twinlaw.envelope_report import SHOWN, envelope_page, notes_of, verdict
 from twinlaw.envelope_tables import conditions, interpolation, open_loop
 from twinlaw.page import Table, page_text
 
@@ -61,6 +61,8 @@ def run(chosen: argparse.Namespace) -> int:
     print(f"\nPoints outside the margins, starts tuned\n{_shown(conditions(found))}")
     if found.left_out:
         print(f"\nConditions left out\n{_shown(interpolation(found))}")
+    for note in notes_of(found):
+        print(f"- {note}")
     print(f"\n{chosen.out / 'report.html'}")
     return 0
 

@@ -1,14 +1,17 @@
 """Truth: the simulated helicopter, which no estimator knows; what has to hold is said before the flights are looked at."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import outside_percent, passed
 from identification.envelope.flight import joined
-from identification.envelope.study import FINAL, study
+from identification.envelope.study import FINAL, Interpolated, poor, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
+from identification.envelope.truth.linear import linearised
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 
@@ -38,6 +41,29 @@ def test_free_runs_keep_the_three_second_rule_in_flights_not_used(found):
     assert np.mean([outside_percent(check.states[FINAL]) for check in checks]) < 2.0
 
 
+def modes_rad_s(A):
+    """Eigenvalues per second of a model per sample of 0.05 s, one of each pair."""
+    found = np.log(np.linalg.eigvals(A).astype(complex)) / 0.05
+    return found[found.imag > 0.1]
+
+
+def off_rad_s(A, truth):
+    """Distance of the nearest mode of A to each of `truth`."""
+    return np.array([np.abs(modes_rad_s(A) - mode).min() for mode in truth])
+
+
+def test_the_closed_loop_finds_phugoid_and_dutch_roll_and_least_squares_do_not(found):
+    """Truth: the equations' exact derivatives. Noise in the regressors damps what least squares find; free runs do not mind it."""
+    for entry in (*found.conditions, *found.left_out):
+        truth = modes_rad_s(linearised(drawn(11), entry.condition, 0.05)[0])
+        slow = truth[(np.abs(truth) < 0.6) | (truth.imag > 1.5)]  # phugoid; Dutch roll at these speeds
+        assert len(slow) == 2
+        limit = 0.05 * np.abs(slow) + 0.03
+        assert np.all(off_rad_s(entry.model.state.A, slow) < limit)
+        if not isinstance(entry, Interpolated):
+            assert np.all(off_rad_s(entry.open_loop.A, slow) > 2 * limit)
+
+
 def test_tuning_helps_in_the_thesis_order(found):
     checks = [check for entry in found.conditions for check in entry.checks]
     by_tuning = {how: np.mean([outside_percent(check.states[how]) for check in checks]) for how in checks[0].states}
@@ -58,6 +84,22 @@ def test_the_model_between_passes_where_nothing_was_identified(found):
     assert entry.between.held[FINAL] == 4
     assert outside_percent(entry.between.states[FINAL]) < 1.0
     assert passed(entry.between.overall["linear"])
+
+
+def test_what_the_flights_cannot_tell_is_said_by_control(flights, found):
+    assert all(entry.notes == () for entry in found.conditions)
+    mine = [entry for entry in flights if entry.condition == ENDS[0] and entry.use == "identification"]
+    few = [entry for entry in mine if entry.manoeuvre != "pedals"]
+    assert [note.split(":")[0] for note in poor(few, joined(few))] == ["pedals"]
+    still = [replace(entry, u=entry.u * [1.0, 1.0, 0.0, 1.0]) for entry in mine]
+    (note,) = poor(still, joined(still))
+    assert note.startswith("lateral: moves by 0.00 %")
+
+
+def test_a_condition_without_neighbours_is_refused_before_the_work(flights):
+    alone = [entry for entry in flights if entry.condition != ENDS[1]]
+    with pytest.raises(BadInput, match="speed"):
+        study(alone, stage=lambda name: pytest.fail(name))
 
 
 def test_flights_of_two_conditions_are_not_joined(flights):
