@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from diagnosis.clock import from_their_start
 from diagnosis.engine import Material, diagnose
 from diagnosis.firmware_replay_table import replay_log, table_of
 from diagnosis.integrity import demand, examine
@@ -50,15 +51,16 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     demand(integrity)
     firmware, told = _firmware(read, (*logs, *holdout))
     used = [~entry.excluded for entry in integrity.logs]
-    parts = stretches(read[:split], used[:split], names[:split])
+    timed, counted = from_their_start(read, names)
+    parts = stretches(timed[:split], used[:split], names[:split])
     return Material(
         logs=parts.logs,
         names=parts.names,
-        holdout=read[split:],
+        holdout=timed[split:],
         holdout_names=names[split:],
         used=[*parts.used, *used[split:]],
         firmware=firmware,
-        notes=(*integrity.notes, *told, *parts.notes),
+        notes=(*integrity.notes, *told, *counted, *parts.notes),
         tables=[table_of(log, path) for log, path in zip(read[split:], holdout, strict=True)],
     )
 

@@ -1,9 +1,12 @@
-"""Long logs by stretches: short ones are left alone, long ones shown by parts that hold their beginning, their end and where most moves."""
+"""Logs made ready for a search: long ones by parts that hold their beginning, their end and where most moves; calendar times."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+import pytest
 
+from diagnosis.clock import from_their_start
 from diagnosis.stretches import MOST_READINGS, stretches
 from records.log import RunLog
 from sim.columns import log_columns
@@ -57,3 +60,13 @@ def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:
     assert sum(log.y.size for log in found.logs) <= MOST_READINGS
     assert len(found.logs) == 20
     assert {len(log.t_s) for log in found.logs} == {1000}
+
+
+def test_times_of_a_calendar_count_from_the_run_s_start_and_others_stay() -> None:
+    log = log_of(100)
+    dated = replace(log, t_s=log.t_s + 1.7e9)
+    (same, moved), notes = from_their_start([log, dated], ["one", "two"])
+    assert same is log
+    assert moved.t_s == pytest.approx(log.t_s - log.t_s[0], abs=1e-6)
+    assert [note.split(":")[0] for note in notes] == ["two"]
+    assert "1700000005 s" in notes[0]
