@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case, make_case
-from diagnosis.detect import MEAN_GAIN, Detection, detect, gains
+from diagnosis.detect import Detection, detect
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
@@ -21,12 +21,13 @@ from diagnosis.notes import cannot_tell, notes_of
 from diagnosis.places import place_shares
 from diagnosis.result import Result
 from diagnosis.retune import Retune, retune
+from diagnosis.reveal import revealing_experiment
 from diagnosis.screen import Look, look
 from diagnosis.search import Search, Tried, evidence, search
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
 from diagnosis.standing import with_usual
-from diagnosis.unknown import Suspect, suspects
-from diagnosis.unrest import FIRST_STEP, with_unrest
+from diagnosis.unknown import Suspect, left_beside, suspects
+from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, with_unrest
 from diagnosis.weigh import Weighed, alike, confirmed, weigh
 from diagnosis.wiring import demand_wiring
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
@@ -37,7 +38,6 @@ from sim.bind import BoundPlant
 from sim.effects.api import without_effects
 
 ALARM = 0.01
-FIRST_UNREST = -1.5
 ROUNDS = 4
 SETTLED = 0.05
 LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
@@ -80,7 +80,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     demand_wiring(case, nominal, nominal_fit)
     found = search(case, nominal, kit.candidates, ground, looks, lossy)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
-    left = _left(detect(case, ground_of(case, best.fit), []))
+    left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
     beyond = retune(case, nominal)
     weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
@@ -122,13 +122,6 @@ def nominal_fit(case: Case) -> Fit:
             break
     assert found is not None
     return found
-
-
-def _left(detection: Detection) -> float:
-    """Nats that the best class of forms still gains."""
-    ranked = suspects(detection)
-    usual = np.maximum(1.0, detection.null_gain / MEAN_GAIN)
-    return max(ranked[0].gain if ranked else 0.0, float(np.max(gains(detection.scores) / usual, initial=0.0)))
 
 
 def _checked(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, left: float) -> Weighed:
@@ -234,14 +227,15 @@ def _no_gap(
     looks: Sequence[Look],
 ) -> Result:
     predicted = _predicted(checked, material, retuned, retuned)
-    ranked = suspects(detection)
+    ranked, blind = suspects(detection), cannot_tell(case, looks)
     places = (PlaceShare(ranked[0].place, 1.0),) if ranked else ()
     diagnosis = Diagnosis(
-        verdict="cannot tell" if cannot_tell(case, looks) else "no gap",
+        verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=detection.p,
         places=places,
         firmware=material.firmware,
         shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
+        next_experiment=revealing_experiment(case, retuned.fit.supposed) if blind else None,
         notes=(*material.notes, *notes_of(case, looks, retuned, None)),
     )
     return Result(

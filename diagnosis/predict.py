@@ -51,10 +51,13 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
             then = flight.log.t_s[first:last] - lateness[output]
             found[first:last, output] = np.interp(then, part.t_s, y[:, output])
     for name, values in supposed.effects.items():
-        if name.endswith("_sensor.backlash"):
-            sensor = kit.bound.model.places.sensors[name.split(".")[0]]
-            output = kit.outputs.index(sensor.output)
-            _behind_play(flight, found[:, output], flight.log.y[:, output], values["width"])
+        place, kind = name.split(".")
+        if place in kit.bound.model.places.sensors and kind in ("backlash", "quantization"):
+            output = kit.outputs.index(kit.bound.model.places.sensors[place].output)
+            if kind == "backlash":
+                _behind_play(flight, found[:, output], flight.log.y[:, output], values["width"])
+            else:
+                found[:, output] = values["q"] * np.round(found[:, output] / values["q"])
     return found
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,17 +13,19 @@ from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.screen import Look, look
-from diagnosis.unrest import with_unrest
+from diagnosis.unrest import FIRST_UNREST, with_unrest
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 1)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
 FURTHER_GAIN = 10.0  # that a further effect must promise
+STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 WORKERS = 2
 SETTLED = 5
+ASTRAY = 4.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 CERTAIN = 3.5  # standard deviations
 LEAST_SLIP = 1.5  # counts
 WORTH_REFINING = 0.2  # of the best first fit's gain
@@ -70,6 +72,7 @@ def evidence(found: Fit) -> float:
     new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
     prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
     shapes = [row for row, is_size in new if not is_size]
+    prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.supposed.effects)
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 
@@ -170,7 +173,22 @@ def _rough(case: Case, job: Job) -> Tried | None:
     found = fit(case, start, rounds=4)
     if found is not None and job.calm:
         found = awake(case, found)
+    if start.theta @ start.theta > ASTRAY * len(start.theta):
+        found = _likelier(found, _from_stated(case, start))
     return None if found is None or not _whole_counts(case, found) else _tried(case, found)
+
+
+def _from_stated(case: Case, start: Supposed) -> Fit | None:
+    """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
+    calm = np.minimum(start.unrest, FIRST_UNREST)
+    found = fit(case, replace(start, theta=np.zeros_like(start.theta), unrest=calm), rounds=4)
+    return None if found is None else awake(case, found)
+
+
+def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
+    if one is None or other is None:
+        return one or other
+    return one if one.log_posterior >= other.log_posterior else other
 
 
 def _tried(case: Case, found: Fit) -> Tried:

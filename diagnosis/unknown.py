@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection
+from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection, gains
 from diagnosis.generic import Form
 
 Array = NDArray[np.float64]
 NATS_PER_FORM = 2.0
 MOST_FORMS = 4
+SAME_PLACE = 0.3
 OWN = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
@@ -31,6 +32,21 @@ def suspects(detection: Detection) -> list[Suspect]:
         groups.setdefault((form.place, form.class_text), []).append(index)
     found = [Suspect(place, text, class_gain(detection, members)) for (place, text), members in groups.items()]
     return sorted(found, key=lambda suspect: -suspect.gain)
+
+
+def left_beside(detection: Detection, effects: Sequence[str]) -> float:
+    """Nats that the best class of forms still gains beside effects; what acts where they do is rather their own form, a little other."""
+    own = {_side(name.split(".")[0]) for name in effects}
+    usual = np.maximum(1.0, detection.null_gain / MEAN_GAIN)
+    alone = gains(detection.scores) / usual
+    found = [(suspect.place, suspect.gain) for suspect in suspects(detection)]
+    found += [(form.place, float(gain)) for form, gain in zip(detection.forms, alone, strict=True)]
+    return max((gain * (SAME_PLACE if _side(place) in own else 1.0) for place, gain in found), default=0.0)
+
+
+def _side(place: str) -> str:
+    """A rotor and its input as one."""
+    return place.removesuffix("_rotor").removesuffix("_input")
 
 
 def class_gain(detection: Detection, members: Sequence[int]) -> float:

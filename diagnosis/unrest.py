@@ -10,6 +10,7 @@ from diagnosis.hypothesis import Supposed, passes
 
 LEAST, MOST = -5.0, 1.5
 FIRST_STEP = 0.3
+FIRST_UNREST = -1.5  # before any log was seen
 MOST_STEPS = 12
 
 

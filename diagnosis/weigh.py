@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.prior import prior_odds
 from diagnosis.search import Tried
 
 Array = NDArray[np.float64]
@@ -15,10 +16,7 @@ Array = NDArray[np.float64]
 ALIKE, OFF_FORM, FURTHER = 4.0, 0.006, 4.0
 LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.08, 2.5, 1.5
 RETUNE_COST = 10.0
-PLAIN = 0.1  # by which a constant force goes before what fits as well
 SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
-OWN_PARAMETERS = 3.0  # by which effects that are parameters of the plant under another name stand back
-SAME_AS_PARAMETERS = (".gain", ".balance_weight")
 KEPT = 12
 
 
@@ -43,8 +41,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     best = max(entry.evidence for entry in named)
     scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
-    scores += [PLAIN * sum(name.endswith(".offset_force") for name in entry.effects) for entry in named]
-    scores -= [OWN_PARAMETERS * sum(name.endswith(SAME_AS_PARAMETERS) for name in entry.effects) for entry in named]
+    scores += [prior_odds(entry) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
     scores -= strain - strain.min()
     expected = LEFT_NATS + LEFT_SHARE * max(best - nominal.evidence, 0.0)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from diagnosis.case import Case, make_case
-from diagnosis.engine import FIRST_UNREST
 from diagnosis.fit import fit
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.kit import make_kit
@@ -32,7 +31,7 @@ def case(plant: BoundPlant, fly: Fly) -> Case:
 
 
 def fitted(case: Case, effects: Mapping[str, Mapping[str, float]]) -> Tried:
-    start = with_unrest(case, nothing_supposed(case, FIRST_UNREST).with_effects(effects))
+    start = with_unrest(case, nothing_supposed(case, -1.5).with_effects(effects))
     found = fit(case, start, rounds=5)
     assert found is not None
     return Tried(tuple(effects), found, evidence(found))

@@ -1,0 +1,47 @@
+"""What one believes of effects before any log: the common ones come before the rare, a size of the wrong sign is no such effect."""
+
+from diagnosis.search import Tried
+
+# Effects that rigs of this kind are known for (docs/effects.md names the sources); what else the library holds is rarer.
+COMMON = (
+    "deadzone", "saturation", "supply_sag", "delay", "slew_limit", "quantization", "lag", "warmup", "dry_friction",
+    "ground_effect", "reverse_asymmetry", "downwash", "coulomb", "stribeck", "quadratic_drag", "cable_spring",
+    "centre_of_gravity", "weight_shift", "tail_coupling", "rotor_acceleration", "disturbance", "flexible_mode",
+    "tilt", "gyroscopic", "friction_asymmetry", "offset", "scale", "backlash", "dropped_frames", "gain",
+    "quadratic_thrust",
+)  # fmt: skip
+# Joints that gravity or a driver may push at all times; a turntable is pushed by nothing, so there it is friction that differs.
+PUSHED = ("pitch", "yaw", "arm", "carriage")
+# Sizes that exist in one direction only: a spring pulls back, air brakes, a supply sags, a motor that warms up weakens.
+ONE_WAY = {
+    "cable_spring": "k",
+    "quadratic_drag": "c",
+    "supply_sag": "s",
+    "warmup": "a",
+    "ground_effect": "a",
+    "downwash": "a",
+    "wind": "c",
+    "load_friction": "c",
+}
+# In units of the scale on which hypotheses are compared.
+RARE, WRONG_WAY = 1.5, 3.0
+PLAIN = 0.1  # by which a constant force goes before what fits as well
+OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another name
+SAME_AS_PARAMETERS = ("gain", "balance_weight")
+
+
+def prior_odds(tried: Tried) -> float:
+    """Log of how much less probable a hypothesis is before the data than one of as many common effects."""
+    return sum(_odds(name, tried) for name in tried.effects)
+
+
+def _odds(name: str, tried: Tried) -> float:
+    place, kind = name.split(".")
+    common = kind in COMMON or (kind == "offset_force" and place in PUSHED)
+    odds = PLAIN * (kind == "offset_force")
+    odds += 0.0 if common and not (kind == "offset" and place.endswith("_input")) else -RARE
+    if kind in ONE_WAY and tried.fit.supposed.effects[name][ONE_WAY[kind]] < 0.0:
+        odds -= WRONG_WAY
+    if kind in SAME_AS_PARAMETERS:
+        odds -= OWN_PARAMETERS
+    return odds
