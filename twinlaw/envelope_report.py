@@ -51,14 +51,14 @@ def notes_of(found: Study) -> tuple[str, ...]:
 
 def _inputs(entry: ConditionResult, found: Study) -> Section:
     return Section(
-        "Manoeuvres (1.2)",
+        "Manoeuvres and margins (1.2, Table 1.1)",
         (
             "Multistep inputs cover more octaves than a doublet, at 3.5 times its energy, and can be flown by hand. Both are asymmetric, "
             "so some energy lies at zero frequency; the 2-3-1-1 begins with the shorter step and stays nearer to trim.",
             f"The four manoeuvres of {entry.condition.name} one after the other, as deviations from each flight's trim; the other "
             "controls move too, as the pilot steadies the machine.",
         ),
-        (tables.input_rows(1.0),),
+        (tables.input_rows(1.0), tables.margins()),
         (plots.inputs(), plots.points(found), plots.controls(entry.checks[0])),
     )
 
@@ -146,8 +146,8 @@ def _interpolation(found: Study) -> Section:
         (
             "Conditions of which no flight was used: each element of A, B, C and D lies straight between its neighbours in speed. Beside "
             "it the model of the nearest speed, without interpolation.",
-            f"The worst of them, {worst.condition.name}:",
+            f"The picture shows the worst of them, {worst.condition.name}.",
         ),
-        (tables.interpolation(found),),
+        tables.interpolation(found),
         (plots.states(worst.between, None),),
     )

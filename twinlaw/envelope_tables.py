@@ -9,6 +9,7 @@ from identification.envelope.flight import OUTPUTS, STATES
 from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.outputs import METHODS
 from identification.envelope.study import FINAL, TUNINGS, Check, ConditionResult, Study
+from identification.margins import MARGINS, FOOT_m
 from twinlaw.page import Table
 
 # Table 2.1 of the thesis, open loop at HA6000ft-50kts [%].
@@ -150,18 +151,37 @@ def goodness(found: Study, ways: Ways) -> Table:
     return Table(rows, ("equation", "score, identification", "held 3 s", "score, validation", "held 3 s"))
 
 
-def interpolation(found: Study) -> Table:
-    """4.4: flights of conditions left out, by the model between its neighbours and by the nearest one's."""
+def interpolation(found: Study) -> tuple[Table, Table]:
+    """4.4: flights of conditions left out, by the model between its neighbours, and by the nearest one's."""
+    return (
+        _left_out("between neighbours", [(entry.condition.name, entry.between) for entry in found.left_out]),
+        _left_out("nearest model", [(entry.condition.name, entry.nearest) for entry in found.left_out]),
+    )
+
+
+def _left_out(title: str, checks: Sequence[tuple[str, Check]]) -> Table:
     rows = []
-    for entry in found.left_out:
-        cells = []
-        for check in (entry.between, entry.nearest):
-            shares = [f"{outside_percent(check.states[how]):.2f}" for how in ("measured", "automatic", FINAL)]
-            cells += [*shares, f"{check.held[FINAL]} of {len(check.data.x)}"]
-        cells.append(f"{outside_percent(entry.between.overall['linear']):.2f}")
-        rows.append((entry.condition.name, *cells))
-    heading = _by_group(("between", "nearest"), ("measured", "automatic", FINAL, "held 3 s"))
-    return Table(rows, ("points outside [%]", *heading, "accelerations"))
+    for name, check in checks:
+        shares = [f"{outside_percent(check.states[how]):.2f}" for how in TUNINGS]
+        held = f"{check.held[FINAL]} of {len(check.data.x)}"
+        rows.append((name, *shares, held, f"{outside_percent(check.overall['linear']):.2f}"))
+    return Table(rows, (f"{title}: outside [%]", *TUNINGS, "held 3 s", "accelerations"))
+
+
+def margins() -> Table:
+    """Table 1.1: the margins by mission, in the units of the thesis."""
+    units = {
+        "m_s": (FOOT_m, "ft/s"),
+        "m_s2": (FOOT_m, "ft/s^2"),
+        "rad_s": (np.radians(1.0), "deg/s"),
+        "rad": (np.radians(1.0), "deg"),
+    }
+    rows = []
+    for name in (*STATES, *OUTPUTS):
+        symbol = symbols((name,))[0]
+        scale, unit = units[name[len(symbol) + 1 :]]
+        rows.append((f"{symbol} [{unit}]", *(f"{by_name[name] / scale:.4g}" for by_name in MARGINS.values())))
+    return Table(rows, ("margin to either side", *MARGINS))
 
 
 def _groups(found: Study) -> tuple[list[Check], list[Check]]:

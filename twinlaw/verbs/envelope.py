@@ -60,7 +60,8 @@ def run(chosen: argparse.Namespace) -> int:
     print(f"\n{found.at(SHOWN).condition.name}, one step ahead\n{_shown(open_loop(found.at(SHOWN)))}")
     print(f"\nPoints outside the margins, starts tuned\n{_shown(conditions(found))}")
     if found.left_out:
-        print(f"\nConditions left out\n{_shown(interpolation(found))}")
+        tables = "\n\n".join(map(_shown, interpolation(found)))
+        print(f"\nConditions left out\n{tables}")
     for note in notes_of(found):
         print(f"- {note}")
     print(f"\n{chosen.out / 'report.html'}")

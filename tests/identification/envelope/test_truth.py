@@ -158,6 +158,11 @@ def test_the_plan_identifies_22_conditions_and_flies_nine_between():
     tests = plan()
     uses = [test.use for test in tests]
     assert (uses.count("identification"), uses.count("validation"), uses.count("interpolation")) == (88, 66, 36)
+    of_the_thesis = [test for test in tests if test.condition.name == "HA6000ft-50kts" and test.use == "validation"]
+    assert [(test.mission, test.manoeuvre) for test in of_the_thesis] == [
+        ("level", "longitudinal"), ("descending", "none"), ("level", "lateral")
+    ]  # fmt: skip
+    assert {test.mission for test in tests} == {"level", "ascending", "descending"}
     assert len({(test.condition, test.mission, test.manoeuvre, test.number) for test in tests}) == len(tests)
 
 
