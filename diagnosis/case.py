@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from sim.simulate import simulate
 
 Array = NDArray[np.float64]
 START_S = 0.1
+LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
 RUN_UP_S = 4.0
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
 START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
@@ -36,7 +38,8 @@ class Flight:
 class Case:
     """All flights of one plant, and the slot that each output's innovations take (-1: never measured).
 
-    `stated` are effects that the plant file itself states, by symbol, with `stated_sd`: every hypothesis supposes them.
+    `stated` are effects that the plant file itself states, by symbol, with `stated_sd`: every hypothesis supposes them. `spread`
+    (free, free) is a root S of the correlation C = S S' that it states of its coefficients, None where they are independent.
     """
 
     kit: Kit
@@ -45,10 +48,23 @@ class Case:
     free: NDArray[np.int64]
     stated: Mapping[str, Values] = field(default_factory=dict)
     stated_sd: Mapping[str, Values] = field(default_factory=dict)
+    spread: Array | None = None
 
     def added(self, effects: Iterable[str]) -> tuple[str, ...]:
         """Those of `effects` that the plant file does not state."""
         return tuple(name for name in effects if name not in self.stated)
+
+    @cached_property
+    def known(self) -> Array:
+        """What the plant file says of theta, as information (free, free): the inverse of its correlation."""
+        if self.spread is None:
+            return np.eye(len(self.free))
+        root = np.linalg.inv(self.spread)
+        return np.asarray(root.T @ root)
+
+    def pull_of(self, theta: Array) -> Array:
+        """Where what is stated pulls theta (free,): the slope of its squared distance, halved."""
+        return theta if self.spread is None else np.asarray(self.known @ theta)
 
     @property
     def sd(self) -> Array:
@@ -80,7 +96,17 @@ def make_case(
     entries = {} if stated is None else stated.effects
     values = {name: {symbol: entry.values[0] for symbol, entry in own.items()} for name, own in entries.items()}
     sd = {name: {symbol: entry.sds[0] for symbol, entry in own.items()} for name, own in entries.items()}
-    return Case(kit, flights, slots, np.flatnonzero(kit.bound.sd > 0.0), values, sd)
+    free = np.flatnonzero(kit.bound.sd > 0.0)
+    return Case(kit, flights, slots, free, values, sd, _spread(kit.bound, free))
+
+
+def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
+    """A root of the stated correlation; what is stated as impossible is taken for nearly so."""
+    if bound.plant.correlation is None:
+        return None
+    names = [str(symbol) for symbol in bound.model.parameter_symbols]
+    values, vectors = np.linalg.eigh(bound.plant.correlation.spread_over(tuple(names[place] for place in free)))
+    return np.asarray(vectors * np.sqrt(np.maximum(values, LEAST_VARIANCE)))
 
 
 def _flight(kit: Kit, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from diagnosis.case import Case
-from diagnosis.fit import Fit, away, size_scale
+from diagnosis.fit import Fit, away, size_scale, strain
 from diagnosis.generic import Form, forms
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
@@ -51,9 +51,9 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     first = columns[0].shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
-    moved = away(ground.fit.supposed, ground.fit.free)
-    strain = float(chi2.sf(moved @ moved, len(moved)))
-    p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strain))
+    numbers = len(away(ground.fit.supposed, ground.fit.free))
+    strained = float(chi2.sf(strain(case, ground.fit.supposed, ground.fit.free), numbers))
+    p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
     return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
 
 

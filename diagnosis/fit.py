@@ -89,15 +89,14 @@ def likelihood(runs: Sequence[Pass]) -> float:
     return sum(run.log_likelihood for run in runs)
 
 
-def log_prior(supposed: Supposed, free: Sequence[Free]) -> float:
+def log_prior(case: Case, supposed: Supposed, free: Sequence[Free]) -> float:
     """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [
         (supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
         for entry in free
         if from_zero(entry.parameter) and entry.stated is None
     ]
-    moved = away(supposed, free)
-    return -0.5 * float(moved @ moved) - 0.5 * float(np.sum(np.square(sizes)))
+    return -0.5 * strain(case, supposed, free) - 0.5 * float(np.sum(np.square(sizes)))
 
 
 def away(supposed: Supposed, free: Sequence[Free]) -> Array:
@@ -108,6 +107,13 @@ def away(supposed: Supposed, free: Sequence[Free]) -> Array:
         if entry.stated is not None
     ]
     return np.append(supposed.theta, stated)
+
+
+def strain(case: Case, supposed: Supposed, free: Sequence[Free]) -> float:
+    """The squared distance of all that the plant file states from there, in its own spread: chi-squared under a plant as stated."""
+    moved, theta = away(supposed, free), supposed.theta
+    beside = 0.0 if case.spread is None else float(theta @ (case.pull_of(theta) - theta))
+    return float(moved @ moved) + beside
 
 
 def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) -> Fit | None:
@@ -167,15 +173,15 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
         _add_differences(case, supposed, free, runs, own, information, pull)
     information *= np.outer(scale, scale)
     pull *= scale
-    _add_prior(supposed, free, information, pull)
+    _add_prior(case, supposed, free, information, pull)
     found = likelihood(runs)
-    return Fit(supposed, found, found + log_prior(supposed, free), free, information, pull)
+    return Fit(supposed, found, found + log_prior(case, supposed, free), free, information, pull)
 
 
-def _add_prior(supposed: Supposed, free: Sequence[Free], information: Array, pull: Array) -> None:
+def _add_prior(case: Case, supposed: Supposed, free: Sequence[Free], information: Array, pull: Array) -> None:
     count = len(supposed.theta)
-    information[np.diag_indices(count)] += 1.0
-    pull[:count] += supposed.theta
+    information[:count, :count] += case.known
+    pull[:count] += case.pull_of(supposed.theta)
     for row, entry in enumerate(free, count):
         value = supposed.effects[entry.effect][entry.parameter.symbol]
         if entry.stated is not None:

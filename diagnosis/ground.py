@@ -47,13 +47,13 @@ class Ground:
 
     def still_to_gain(self, w: Array) -> float:
         """What moving the plant's coefficients would add to the log likelihood of innovations w, to first order."""
-        pull = self.slopes.T @ w + self.fit.supposed.theta
+        pull = self.slopes.T @ w + self.case.pull_of(self.fit.supposed.theta)
         return 0.5 * float(pull @ self.solve @ pull)
 
     def scores(self, gram: Array, cross: Array, pull: Array) -> Scores:
         """Scores of columns with products gram = E'E (k, k), cross = J'E (free, k) and pull = E'w (k,)."""
         share = self.solve @ cross
-        own = self.slopes.T @ self.w + self.fit.supposed.theta
+        own = self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta)
         return Scores(gram - cross.T @ share, -(pull - share.T @ own), np.diag(gram).copy())
 
     def scores_of(self, columns: Array) -> Scores:
@@ -106,7 +106,7 @@ def ground_of(case: Case, fit: Fit) -> Ground:
         fit=fit,
         w=stacked(runs),
         slopes=slopes,
-        solve=np.asarray(np.linalg.inv(slopes.T @ slopes + np.eye(slopes.shape[1])), float),
+        solve=np.asarray(np.linalg.inv(slopes.T @ slopes + case.known), float),
         runs=tuple(runs),
         tapes=tuple(tape_under(case, variant, flight, supposed.effects) for flight in case.flights),
         filter=variant.filter,

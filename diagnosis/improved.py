@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.fit import Fit
 from diagnosis.hypothesis import coefficients
+from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
 from sim.effects.api import with_effects
 
 Array = NDArray[np.float64]
+DIGITS = 9
 SOURCE = "re-estimated from logs by twinlaw diagnose"
 
 
@@ -36,12 +38,25 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
                 entry, value=value[0] if single else value, sd=deviation[0] if single else deviation, source=SOURCE
             )
         parameters[spec.name] = entry
-    plant = replace(nominal.plant, parameters=parameters, effects={})
+    plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
     if not fit.supposed.effects:
         return plant
     sizes = {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
     return with_effects(bound, fit.supposed.effects, sd=sizes, source="found by twinlaw diagnose").plant
+
+
+def _correlation(case: Case, fit: Fit) -> Correlation | None:
+    """How the coefficients' uncertainties hang together after the logs; None where the plant file took them for independent."""
+    if case.spread is None:
+        return None
+    count = len(case.free)
+    covariance = np.linalg.pinv(fit.information)[:count, :count]
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
+    matrix = np.clip(np.round((covariance + covariance.T) / 2.0 / np.outer(deviation, deviation), DIGITS), -1.0, 1.0)
+    np.fill_diagonal(matrix, 1.0)
+    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
+    return Correlation(tuple(names[place] for place in case.free), tuple(tuple(row) for row in matrix.tolist()))
 
 
 def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:

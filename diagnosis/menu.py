@@ -80,6 +80,7 @@ def plans(case: Case, period_s: float) -> Iterator[Plan]:
     if not room:
         return
     make = _Maker(case, room, period_s)
+    yield make.lively("lively run", "fly every axis in steps, at times that do not coincide", 0.05)
     unseen = [case.kit.outputs[place] for place, slot in enumerate(case.slots) if slot < 0]
     if unseen and model.places.rotors:
         told = " and ".join(name.rsplit("_rad_s", 1)[0] for name in unseen if name.startswith("omega"))

@@ -54,7 +54,7 @@ def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     if sum(pairs.values()) < LEAST:
         return None
     tried = [tried for tried, _ in leading]
-    period_s = min(LONGEST_PERIOD_S, 2.0 * min(flight.log.sample_period_s for flight in case.flights))
+    period_s = period_of(case)
     found = [trial for plan in plans(case, period_s) if (trial := _trial(case, plan, tried, pairs)) is not None]
     if not found:
         return None
@@ -64,7 +64,7 @@ def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
 
 def _trial(case: Case, plan: Plan, tried: Sequence[Tried], pairs: Mapping[tuple[int, int], float]) -> Trial | None:
     """Fly a plan under every hypothesis and compare each pair on what the likelier of the two would record."""
-    law = _law(case, plan)
+    law = law_of(case, plan)
     there = setting(case, plan)
     flown = [None if law is None else rehearse(there, plan, law, entry.fit.supposed) for entry in tried]
     if any(entry is None for entry in flown):
@@ -83,7 +83,13 @@ def _trial(case: Case, plan: Plan, tried: Sequence[Tried], pairs: Mapping[tuple[
     return Trial(plan, good, z)
 
 
-def _law(case: Case, plan: Plan) -> StandIn | None:
+def period_of(case: Case) -> float:
+    """The sample period of a rehearsal: coarser than the logs' own, as nobody has to wait for it."""
+    return min(LONGEST_PERIOD_S, 2.0 * min(flight.log.sample_period_s for flight in case.flights))
+
+
+def law_of(case: Case, plan: Plan) -> StandIn | None:
+    """The law that flies a plan in the simulation; None where there is none."""
     room = rooms(case)
     at = {entry.axis: entry.middle for entry in room}
     size = np.array([0.3 * entry.reach for entry in room])

@@ -15,6 +15,7 @@ FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence
 SEEN = 4.0  # score that an effect needs to be seen
 IMITATED = 0.995
 BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
+HIDDEN = "effects of the library would go unseen in these logs"
 UNSEEN = "too little excitation to see"
 IMITATION = "a re-tune of the plant's own parameters imitates these, so these data cannot tell them"
 
@@ -86,7 +87,7 @@ def _unseen(case: Case, looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
     imitated = {entry.effect for entry in looks if entry.absorbed > IMITATED}
     if _share_hidden(case, looks) > BLIND:
         whole = len(_judged(case, looks))
-        yield f"{len(hidden)} of {whole} effects of the library would go unseen in these logs at the size that they may well have"
+        yield f"{len(hidden)} of {whole} {HIDDEN} at the size that they may well have"
     said = {
         name: ratio
         for name, ratio in hidden.items()

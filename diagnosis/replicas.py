@@ -40,7 +40,8 @@ def replicas(ground: Ground, count: int = COUNT) -> Array:
     rng = np.random.default_rng(SEED)
     parts = [_flight(ground, index, count, rng) for index in range(len(ground.tapes))]
     drawn = rng.standard_normal((ground.slopes.shape[1], count))
-    return np.asarray(np.concatenate(parts) + ground.slopes @ drawn)
+    spread = ground.case.spread
+    return np.asarray(np.concatenate(parts) + ground.slopes @ (drawn if spread is None else spread @ drawn))
 
 
 def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) -> Array:

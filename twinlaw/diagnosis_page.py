@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from diagnosis.notes import UNSEEN
+from diagnosis.notes import HIDDEN, UNSEEN
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.block_diagram import block_diagram
@@ -178,8 +178,9 @@ def _unseen(diagnosis: Diagnosis) -> Section | None:
     rows = [_parts(note) for note in diagnosis.notes if note.startswith(UNSEEN)]
     if not rows:
         return None
-    told = "At each place, what may be there and would not have shown, and below which size; the largest first."
-    return Section("What these logs could not have shown", (told,), (Table(rows, ("place", "effects")),))
+    told = [f"{note}." for note in diagnosis.notes if HIDDEN in note]
+    told.append("At each place, what may be there and would not have shown, and below which size; the largest first.")
+    return Section("What these logs could not have shown", told, (Table(rows, ("place", "effects")),))
 
 
 def _parts(note: str) -> tuple[str, str]:
@@ -188,5 +189,5 @@ def _parts(note: str) -> tuple[str, str]:
 
 
 def _notes(diagnosis: Diagnosis) -> Section | None:
-    others = [note for note in diagnosis.notes if not note.startswith(UNSEEN)]
+    others = [note for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note]
     return Section("Notes", others) if others else None

@@ -30,7 +30,8 @@ def shrinkage_sections(shrinkage: Shrinkage, found: bool) -> list[Section]:
 def _predictions(shrinkage: Shrinkage, found: bool) -> Section:
     sentences = [
         "Errors of free-running predictions over windows of 1 s on logs that were not used to find the effect. "
-        "The lower a bar, the better; below the green one noise decides."
+        "The lower a bar, the better; below the green one noise decides.",
+        "Re-tuned means that parameters moved within what the plant file states of them: that is no gap.",
     ]
     if shrinkage.fraction is not None:
         interval = shrinkage.fraction_ci95

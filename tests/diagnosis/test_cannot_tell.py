@@ -49,6 +49,17 @@ def test_a_rig_that_hardly_moves_cannot_tell(hover: Diagnosis) -> None:
     assert any("effects of the library would go unseen" in note for note in hover.notes)
 
 
+def test_the_run_to_record_next_is_one_that_shows_more(hover: Diagnosis) -> None:
+    # Truth: whatever is flown moves the rig more than a hover of two counts, so more effects show than do now.
+    told = hover.next_experiment
+    assert told is not None
+    shown, now = (
+        int(part.split()[index]) for part, index in zip(told["expected_outcome"].split("; "), (0, 3), strict=True)
+    )
+    assert shown > 2 * now + 10
+    assert told["within_limits"]
+
+
 def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> None:
     # Truth: a drag with the square of a speed of 0.2 deg/s, and a stop never reached, leave no trace at any size; a delay leaves a bound.
     told = {note.split(" at the ")[1].split(":")[0]: note for note in hover.notes if note.startswith(UNSEEN)}

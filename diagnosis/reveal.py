@@ -1,0 +1,61 @@
+"""What to record when logs show too little: of the rig's own menu, the run in which most effects of the library would show."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.fit import size_scale
+from diagnosis.hypothesis import Supposed, passes
+from diagnosis.menu import plans
+from diagnosis.next_experiment import EFFORT, law_of, period_of
+from diagnosis.notes import SEEN
+from diagnosis.rehearsal import recorded, rehearse, setting
+
+Array = NDArray[np.float64]
+
+
+def revealing_experiment(case: Case, supposed: Supposed) -> Mapping[str, Any] | None:
+    """The run that shows most effects on the equations at their reference sizes, less its effort; None where none can be flown."""
+    names = [name for name in case.kit.candidates if name in case.kit.names and name not in supposed.effects]
+    best, worth, shown = None, -np.inf, 0
+    for plan in plans(case, period_of(case)):
+        there, law = setting(case, plan), law_of(case, plan)
+        flown = None if law is None else rehearse(there, plan, law, supposed)
+        if flown is None:
+            continue
+        seen = _seen(recorded(there, flown), supposed, names)
+        if seen * (1.0 - EFFORT * plan.effort) > worth:
+            best, worth, shown = (plan, flown), seen * (1.0 - EFFORT * plan.effort), seen
+    if best is None:
+        return None
+    plan, flown = best
+    now = _seen(case, supposed, names)
+    return {
+        "experiment": plan.name,
+        "instruction": plan.instruction,
+        "separates": [],
+        "expected_outcome": f"{shown} of {len(names)} effects would show at the size that they may well have; "
+        f"in these logs {now} do",
+        "within_limits": flown.within_limits,
+        "duration_s": round(float(plan.t_s[-1] + plan.t_s[1]), 2),
+    }
+
+
+def _seen(case: Case, supposed: Supposed, names: list[str]) -> int:
+    """How many effects would stand SEEN deviations out at their reference size, the plant's own coefficients re-tuned."""
+    effects = case.kit.effects
+    touched = {name: {p.symbol: p.touched for p in effects[name].parameters} for name in names}
+    variant = case.kit.variant((*supposed.effects, *names))
+    places = [variant.place(name, effects[name].size.symbol) for name in names]
+    runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), [*case.free.tolist(), *places])
+    if runs is None:
+        return 0
+    scale = np.concatenate([case.sd, [size_scale(effects[name].size) for name in names]])
+    gram = np.sum([run.gram for run in runs], axis=0) * np.outer(scale, scale)
+    own = len(case.free)
+    cross = gram[:own, own:]
+    left = np.diag(gram)[own:] - np.sum(cross * np.linalg.solve(gram[:own, :own] + case.known, cross), axis=0)
+    return int(np.sum(left >= SEEN**2))
