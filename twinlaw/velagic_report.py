@@ -21,19 +21,20 @@ def figure_plots(shown: Mapping[str, Response]) -> dict[str, str]:
     """SVG text of Figs. 12, 13, 14, by number."""
     ramp, step, cross, turned, both = (shown[name] for name in SAID)
     inputs = Panel(
-        "voltage [MU]",
+        "14a: voltage [MU]",
         (Curve(both.t_s, both.u_MU[:, 0], "u1", BLUE), Curve(both.t_s, both.u_MU[:, 1], "u2", ORANGE)),
     )
     over_u = "voltage on main motor u1 [MU]"
     return {
         "12": row(
-            (_angle(ramp, "elevation", ramp.u_MU[:, 0]), _angle(step, "elevation", step.t_s)),
+            (_angle(ramp, "12a: elevation", ramp.u_MU[:, 0]), _angle(step, "12b: elevation", step.t_s)),
             (over_u, "time [s]"),
         ),
         "13": row(
-            (_angle(cross, "azimuth", cross.u_MU[:, 0]), _angle(turned, "azimuth", turned.t_s)), (over_u, "time [s]")
+            (_angle(cross, "13a: azimuth", cross.u_MU[:, 0]), _angle(turned, "13b: azimuth", turned.t_s)),
+            (over_u, "time [s]"),
         ),
-        "14": row((inputs, _angle(both, "azimuth", both.t_s)), ("time [s]", "time [s]")),
+        "14": row((inputs, _angle(both, "14b: azimuth", both.t_s)), ("time [s]", "time [s]")),
     }
 
 

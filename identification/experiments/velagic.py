@@ -25,11 +25,12 @@ from sim.columns import log_columns
 from sim.model import Model
 
 Array = NDArray[np.float64]
-DURATION_S, TURN_BACK_RAD, HOLD_ROWS = 60.0, 1.0, (100, 250)
+DURATION_S, TURN_BACK_RAD, HOLD_ROWS = 30.0, 1.0, (150, 350)
 ROWS = round(DURATION_S / PERIOD_S)
-FLIGHT = (1.04, 0.975)  # of the voltage that lifts the arm, of the one at which it flies up to its stop
+PUSH_ROWS = (30, 100)
+FLIGHT = (1.04, 0.97)  # of the voltage that lifts the arm, of the one at which it flies up to its stop
 TAIL_MU, CROSS_TAIL_MU, CROSS_MU, SWAY_MU = (0.05, 0.3), 0.15, (0.0, 0.4), (0.03, 0.07)
-RAMP = np.linspace(0.3, 0.8, 5000)
+RAMP = np.linspace(0.3, 0.8, 10000)
 
 
 def main_motor(truth: BoundPlant, rng: Generator) -> Experiment:
@@ -46,7 +47,7 @@ def tail_motor(truth: BoundPlant, rng: Generator) -> Experiment:
     def push(side: float, _: float) -> tuple[float, float]:
         return 0.0, side * rng.uniform(*TAIL_MU)
 
-    return _turned("tail_motor", VelagicRig(truth), push)
+    return _turned("tail_motor", VelagicRig(truth), push, rng)
 
 
 def cross_coupling(truth: BoundPlant, rng: Generator) -> Experiment:
@@ -59,7 +60,7 @@ def cross_coupling(truth: BoundPlant, rng: Generator) -> Experiment:
     def push(side: float, _: float) -> tuple[float, float]:
         return (rng.uniform(least, middle - 0.05) if side > 0.0 else rng.uniform(middle + 0.05, most)), CROSS_TAIL_MU
 
-    return _turned("cross_coupling", rig, push)
+    return _turned("cross_coupling", rig, push, rng)
 
 
 def gyroscopic(truth: BoundPlant, rng: Generator) -> Experiment:
@@ -70,18 +71,22 @@ def gyroscopic(truth: BoundPlant, rng: Generator) -> Experiment:
     def push(side: float, u_1: float) -> tuple[float, float]:
         return u_1, rig.balance_MU(u_1) + side * rng.uniform(*SWAY_MU)
 
-    return _turned("gyroscopic", rig, push, main)
+    return _turned("gyroscopic", rig, push, rng, main)
 
 
-def _turned(kind: str, rig: VelagicRig, push: models.Push, main: Array | None = None) -> Experiment:
-    """Both voltages from `push`, asked anew whenever the azimuth passes a limit or the main motor's voltage steps."""
+def _turned(kind: str, rig: VelagicRig, push: models.Push, rng: Generator, main: Array | None = None) -> Experiment:
+    """Both voltages from `push`, asked anew every now and then, and whenever the azimuth passes a limit.
+
+    At one steady speed an encoder's rounding may come back the same with each sample; many levels keep it random.
+    """
     x, side, u, history = rig.rest(), 1.0, np.zeros((ROWS, 2)), [rig.rest()]
+    anew = np.isin(np.arange(ROWS), np.cumsum(rng.integers(*PUSH_ROWS, ROWS)))
+    main = np.zeros(ROWS) if main is None else main
     for k in range(ROWS):
         turned = side * x[PHI] > TURN_BACK_RAD
         side = -side if turned else side
-        u_1 = 0.0 if main is None else float(main[k])
-        stepped = main is not None and k > 0 and main[k] != main[k - 1]
-        u[k] = push(side, u_1) if k == 0 or turned or stepped else u[k - 1]
+        stepped = main[k] != main[k - 1]
+        u[k] = push(side, float(main[k])) if k == 0 or anew[k] or turned or stepped else u[k - 1]
         x = rig.run(x, u[k : k + 1])[-1]
         history.append(x)
     return _record(kind, rig, u, history)
@@ -107,7 +112,7 @@ def _record(kind: str, rig: VelagicRig, u_MU: Array, history: list[State]) -> Ex
 
 
 def _flying_MU(rig: VelagicRig, rng: Generator) -> Array:
-    """Main motor voltages (rows,) between lifting the arm and losing it, in steps of 2 to 5 s."""
+    """Main motor voltages (rows,) between lifting the arm and losing it, in steps of 1.5 to 3.5 s."""
     lift, loss = _limits_MU(rig)
     levels = rng.uniform(FLIGHT[0] * lift, FLIGHT[1] * loss, ROWS)
     return np.repeat(levels, rng.integers(*HOLD_ROWS, ROWS))[:ROWS]

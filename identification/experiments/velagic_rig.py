@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
-PERIOD_S = 0.02
-STEPS = 4  # Runge-Kutta steps per sample
+PERIOD_S = 0.01
+STEPS = 2  # Runge-Kutta steps per sample
 UPRIGHT = math.pi / 2  # psi of a level arm
 State = tuple[float, ...]  # lag and speed of both motors as shares of those at 1 MU; psi, psi', phi, phi'
 PSI, PHI = 4, 6

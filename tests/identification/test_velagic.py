@@ -69,15 +69,16 @@ def test_the_stages_are_the_paper_s(found):
 
 
 def test_the_genetic_algorithm_alone_comes_near_and_the_gradient_method_nearer(truth, found):
-    """Genetic: 0.2 deg in the mean of 3000 readings, every parameter within 15 %. Gradient: 0.035 deg and 0.1 % (inertias 2 %)."""
+    """Genetic: 0.3 deg in the mean of 3000 readings, within 15 % (inertias 30 %). Gradient: 0.025 deg and 0.1 % (inertias 0.6 %)."""
     for stage in found:
         genetic, gradient = stage.result.searched
         assert (genetic.method, gradient.method) == ("genetic", "gradient")
-        assert genetic.error < 0.2 * 3000
-        assert gradient.error < 0.035 * 3000
+        assert genetic.error < 0.3 * 3000
+        assert gradient.error < 0.025 * 3000
         for name, coarse, fine in zip(genetic.names, genetic.values, gradient.values, strict=True):
-            assert coarse == pytest.approx(truth.parameter(name), rel=0.15), name
-            assert fine == pytest.approx(truth.parameter(name), rel=0.02 if name.endswith("_inv") else 1e-3), name
+            inertia = name.endswith("_inv")
+            assert coarse == pytest.approx(truth.parameter(name), rel=0.3 if inertia else 0.15), name
+            assert fine == pytest.approx(truth.parameter(name), rel=6e-3 if inertia else 1e-3), name
 
 
 def test_the_fitness_rises_as_in_fig_6(found):
