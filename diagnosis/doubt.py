@@ -7,14 +7,16 @@ import numpy as np
 
 from diagnosis.case import Case
 from diagnosis.contradiction import Contradiction, contradiction
+from diagnosis.instants import TIMES
 from diagnosis.misfit import ignorance
-from diagnosis.search import Search
+from diagnosis.search import Search, Tried
 from diagnosis.weigh import Weighed
 
 WORTH_TELLING = 60.0  # nats that one log gains by numbers of its own
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
 KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
 OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
+REFUTED = 1.2  # times the mean square error of the hold-out without it, beyond which a cause is refuted
 UNNAMED = 0.95  # probability of an unknown effect that is then stated at least
 
 
@@ -38,8 +40,9 @@ class Doubt:
         )
 
 
-def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str]) -> Doubt:
-    """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs."""
+def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
+    """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs, `worse` how many times
+    as large the hold-out's mean square error is with what would be named."""
     best = found.tried[0]
     gain = best.evidence - found.nominal.evidence
     sentences, forbids = [], False
@@ -55,6 +58,12 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str]) -> 
             f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
         )
         forbids = True
+    if worse > REFUTED and not _is_event(case, weighed.tried[0]):
+        named = " + ".join(weighed.tried[0].effects)
+        sentences.append(
+            f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as re-tuned without"
+        )
+        forbids = True
     furthest = float(np.max(np.abs(best.fit.supposed.theta), initial=0.0))
     if furthest > OTHERS and weighed.unknown > 0.5:
         sentences.append(
@@ -62,6 +71,11 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str]) -> 
             "the plant file states"
         )
     return Doubt(tuple(sentences), forbids)
+
+
+def _is_event(case: Case, tried: Tried) -> bool:
+    """Whether an effect happens at an instant, which is another one in another log."""
+    return any(parameter.symbol in TIMES for name in tried.effects for parameter in case.kit.effects[name].parameters)
 
 
 def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:

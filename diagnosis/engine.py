@@ -85,7 +85,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
     weighed = _checked(checked, material, weighed, stated, left)
-    doubts = doubt(case, found, weighed, material.names)
+    doubts = doubt(case, found, weighed, material.names, _worse(checked, material, weighed, stated))
     weighed, material = doubts.applied(weighed), replace(material, notes=(*material.notes, *doubts.sentences))
     chosen, predicted = _added(checked, material, weighed, stated, beyond)
     return Result(
@@ -133,6 +133,14 @@ def _checked(checked: Case | None, material: Material, weighed: Weighed, retuned
         return weighed
     gone = shrinkage(checked, _predicted(checked, material, retuned, first)).fraction
     return weighed if gone is None or gone < NEARLY_ALL else confirmed(weighed, 1.0 - gone)
+
+
+def _worse(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried) -> float:
+    """How many times as large the hold-out's mean square error is with what is named as without it; 0 where nothing is."""
+    if checked is None or not weighed.tried or weighed.probabilities[0] < weighed.unknown:
+        return 0.0
+    predicted = _predicted(checked, material, retuned, weighed.tried[0])
+    return error(checked, predicted, "after") / error(checked, predicted, "before")
 
 
 def _added(

@@ -84,6 +84,26 @@ def test_noise_instead_of_angles_gives_no_confident_name(tmp_path: Path, log: Ru
         assert all(entry.probability < 0.9 for entry in diagnosis.effects)
 
 
+def test_an_input_with_the_wrong_sign_is_refused_by_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], log: RunLog
+) -> None:
+    turned = replace(log, u=log.u * [1.0, -1.0], extra={})
+    line = refused(tmp_path, capsys, part(turned, slice(0, 1500)))
+    assert "u_T_V has the wrong sign" in line
+    assert "turn the sign of u_T_V" in line
+
+
+def test_inputs_of_another_run_give_no_name(tmp_path: Path, log: RunLog) -> None:
+    # Truth: these inputs drove the same rig seven seconds later, so no term of any model ties them to these angles.
+    late = part(replace(log, u=np.roll(log.u, -700, axis=0), extra={}), slice(0, 1200))
+    assert diagnosed(tmp_path, late, holdout=part(log, slice(1200, 2000))) == 0
+    diagnosis = load_diagnosis(tmp_path / "out" / "diagnosis.json")
+    assert diagnosis.verdict == "gap"
+    assert diagnosis.found == ()
+    assert all(entry.probability < 0.5 for entry in diagnosis.effects)
+    assert diagnosis.unknown.probability > 0.5
+
+
 def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files(tmp_path: Path, log: RunLog) -> None:
     assert diagnosed(tmp_path, part(log, slice(0, 1200)), holdout=part(log, slice(1200, 2000))) == 0
     content = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
