@@ -119,11 +119,11 @@ def _phase(found: FrequencyIdentification, o: int, i: int) -> Panel:
 
 def _curves(found: FrequencyIdentification, o: int, i: int, shown: Callable[[Complex], Array]) -> tuple[Curve, ...]:
     fit, omega = found.fit, found.fit.responses.omega_rad_s
-    measured = shown(fit.responses.T[:, o, i])
+    corrected = shown(fit.responses.T[:, o, i])
     k = fit.points.frequency[(fit.points.output == o) & (fit.points.input == i)]
     return (
-        Curve(omega, measured, "measured", GREY),
-        Curve(omega[k], measured[k], "matched", BLUE, "", "o"),
+        Curve(omega, shown(fit.T_raw[:, o, i]), "measured", GREY),
+        Curve(omega[k], corrected[k], "matched, error of finite windows taken off", BLUE, "", "o"),
         Curve(omega, shown(fit.T[:, o, i]), "identified model", ORANGE, "--"),
         Curve(omega, shown(found.T_stated[:, o, i]), "plant file", RED, ":"),
     )

@@ -31,9 +31,9 @@ RESTARTS = 4
 class FrequencyFit:
     """A model matched with responses.
 
-    `responses` are those measured, corrected for finite windows, `points` those of them that were matched, `T` (f, outputs, inputs) the
-    model's, J the cost (7) and r its terms' roots; `left` (n, outputs) is what the model leaves of each record. `searches` are the
-    secant searches, best first; parameters `at_bound` ended at the edge of their range.
+    `responses` are those measured, corrected for finite windows, `T_raw` (f, outputs, inputs) is before that; `points` are those of them
+    that were matched, `T` the model's responses, J the cost (7) and r the roots of its terms; `left` (n, outputs) is what the model
+    leaves of each record. `searches` are the secant searches, best first; parameters `at_bound` ended at the edge of their range.
     """
 
     model: LinearModel
@@ -49,6 +49,7 @@ class FrequencyFit:
     left: tuple[Array, ...]
     searches: tuple[Found, ...]
     at_bound: tuple[str, ...]
+    T_raw: Complex
 
     @property
     def sd(self) -> Array:
@@ -132,7 +133,7 @@ def _corrected(
         best = again
         if float(moved @ moved) < CORRECTED * best.J:
             break
-    return _with_intervals(model, records, now, points, best, searches, size)
+    return _with_intervals(model, records, now, points, best, searches, size, measured.T)
 
 
 def _with_intervals(
@@ -143,6 +144,7 @@ def _with_intervals(
     best: Found,
     searches: tuple[Found, ...],
     size: Array,
+    T_raw: Complex,
 ) -> FrequencyFit:
     of = model.matrices(best.theta)
     assert of is not None
@@ -154,7 +156,9 @@ def _with_intervals(
     assert r is not None
     spread = covariance(now, records, left, points, slopes(J, size))
     T = held_response(of, now.omega_rad_s, records[0].period_s)
-    return FrequencyFit(model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches, at_bound)
+    return FrequencyFit(
+        model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches, at_bound, T_raw
+    )
 
 
 def _slopes(F: Residual, theta: Array, size: Array) -> tuple[Array, tuple[int, ...]]:

@@ -31,7 +31,8 @@ def linear_run(of: StateSpace, record: Record, stretch_s: float = np.inf) -> Lin
     growth = float(np.max(np.linalg.eigvals(of.A).real)) * record.duration_s / MOST_GROWTH
     count = max(1, int(np.ceil(growth)), int(np.ceil(record.duration_s / stretch_s - 1e-9)))
     edges = np.unique(np.rint(np.linspace(0, record.u.shape[0], count + 1)).astype(int))
-    scale = np.maximum(np.std(record.y, axis=0), 1e-300)
+    spread = np.std(record.y, axis=0)
+    scale = np.where(spread > 0.0, spread, 1.0)
     parts = [
         _stretch(of, record.u[a:b] - np.mean(record.u, axis=0), record.y[a:b], record.period_s, scale)
         for a, b in pairwise(edges.tolist())

@@ -14,6 +14,7 @@ from identification.result import Estimated
 Array = NDArray[np.float64]
 POOR_J = 100.0
 SAME_J = 1.01
+MOST_BANDS = 3
 
 
 def notes_on(
@@ -22,11 +23,12 @@ def notes_on(
     """One sentence for each parameter that is not told, for each of the `unmatched` pairs (input, output, best coherence), and for a
     match or a search that is in doubt.
     """
+    reasons: dict[str, list[str]] = {}
+    for entry in estimates:
+        if not entry.identified:
+            reasons.setdefault(_reason(fit, entry.name), []).append(entry.name)
     untold = [
-        f"{entry.name}: not told (sd {entry.sd:.2g} {entry.unit} about {entry.value:.3g}); {_reason(fit, entry.name)}; "
-        "the plant file's value is kept"
-        for entry in estimates
-        if not entry.identified
+        f"{', '.join(names)}: not told; {reason}; the plant file's value is kept" for reason, names in reasons.items()
     ]
     silent = [
         f"{name} to {output}: not matched, as its coherence is nowhere {GOOD_COHERENCE:g} over four frequencies (at most {best:.2f})"
@@ -51,11 +53,14 @@ def _reason(fit: FrequencyFit, name: str) -> str:
     shown = _shows(fit, fit.model.names.index(name))
     o, i = np.unravel_index(int(np.argmax(shown)), shown.shape)
     weak = _weak_bands(fit.responses, int(o), int(i))
-    where = f"it shows most in {fit.model.inputs[i]} to {fit.model.outputs[o]}"
+    where = f"shows most in {fit.model.inputs[i]} to {fit.model.outputs[o]}"
     if not weak:
         return f"{where}, whose coherence is good: sweep longer or with more amplitude, or hold a parameter that does the same"
-    bands = " and ".join(f"{low:.3g} to {high:.3g} rad/s" for low, high in weak)
-    return f"{where}, whose coherence is below {GOOD_COHERENCE:g} from {bands}"
+    bands = " and ".join(f"from {low:.3g} to {high:.3g} rad/s" for low, high in weak)
+    if len(weak) > MOST_BANDS:
+        share = float(np.mean(fit.responses.coherence[:, o, i] < GOOD_COHERENCE))
+        bands = f"over {100.0 * share:.0f} % of the band"
+    return f"{where}, whose coherence is below {GOOD_COHERENCE:g} {bands}"
 
 
 def _shows(fit: FrequencyFit, place: int) -> Array:

@@ -48,7 +48,8 @@ def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
     r = log.u
     if log.loop == "closed" and all(reference in log.extra for reference in references):
         r = np.column_stack([np.nan_to_num(log.extra[reference]) for reference in references])
-    return Record(name, log.sample_period_s, log.u[held], y, r[held], log.loop)
+    u = log.u[held]
+    return Record(name, log.sample_period_s, u, y, u if r is log.u else r[held], log.loop)
 
 
 def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:
@@ -60,8 +61,15 @@ def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:
 
 
 def with_instruments(records: Sequence[Record]) -> tuple[Record, ...]:
-    """The records with r such that all inputs are told apart: where not every reference moves in some record, r is u itself."""
-    spread = np.max([np.ptp(record.r, axis=0) for record in records], axis=0)
-    if np.all(spread > MOVED):
+    """The records as they are, or where no reference of a closed loop moves at all, with u for r: the sweep was on the inputs.
+
+    Raises BadInput where some references move and others do not: then the loop hides what the input of the others does.
+    """
+    still = np.max([np.ptp(record.r, axis=0) for record in records], axis=0) <= MOVED
+    if not np.any(still):
         return tuple(records)
+    if not np.all(still) and any(record.r is not record.u for record in records):
+        got = f"reference {int(np.flatnonzero(still)[0]) + 1} of {still.size} moves in none of them"
+        names = ", ".join(record.name for record in records)
+        raise BadInput("references", names, got, "each swept on its own", "add a record in which it is swept")
     return tuple(replace(entry, r=entry.u) for entry in records)

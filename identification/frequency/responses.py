@@ -2,10 +2,13 @@
 
     (1)  T(omega) = S_yr S_ur^-1,                       with r = u in an open loop: each input's part with the others taken off
     (2)  gamma^2 = |S_yi.c|^2 / (S_ii.c S_yy.c)         partial coherence of input i and output y, the other inputs c taken off
+         and no more than the multiple coherence of input and of output with r
     (3)  e = sqrt(0.55) sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))      random error of a response over n_d windows, half overlapped
 
-after ref [5] of seed 002. A long window resolves low frequencies, short ones average more where there is room for many: the responses of
-all lengths that hold at least two periods are averaged with the weights e^-4, which leaves a pair to the windows that know it best.
+after ref [5] of seed 002. The second line of (2) is for closed loops: what goes round a loop, an encoder's steps, is coherent without
+telling anything of the plant. A long window resolves low frequencies, short ones average more where there is room for many: the
+responses of all lengths that hold at least two periods are averaged with the weights e^-4, which leaves a pair to the windows that
+know it best.
 """
 
 from collections.abc import Sequence
@@ -50,7 +53,7 @@ def frequency_responses(records: Sequence[Record], omega_rad_s: Array, lengths_s
     windows = tuple(window(length, period_s, omega_rad_s) for length in lengths_s)
     _check_told_apart(records)
     found = [spectra(entry, records) for entry in windows]
-    coherence = np.stack([partial_coherence(entry) for entry in found])
+    coherence = np.stack([pair_coherence(entry) for entry in found])
     error = np.stack([random_error(own, entry.windows) for own, entry in zip(coherence, found, strict=True)])
     held = np.array(
         [[entry.length_s * w >= 2.0 * np.pi * WINDOW_PERIODS * 0.999 for w in omega_rad_s] for entry in windows]
@@ -72,8 +75,16 @@ def responses_with(base: Responses, records: Sequence[Record]) -> Complex:
     return np.asarray(np.sum(base.weights * each, axis=0))
 
 
-def partial_coherence(of: Spectra) -> Array:
+def pair_coherence(of: Spectra) -> Array:
     """(2), shape (f, outputs, inputs), within 1e-6 .. 1."""
+    inputs = of.S_uu.shape[1]
+    by_input, by_output = of.by_r[:, None, :inputs], of.by_r[:, inputs:, None]
+    least = np.minimum(partial_coherence(of), np.minimum(by_input, by_output))
+    return np.clip(least, NO_COHERENCE, FULL_COHERENCE)
+
+
+def partial_coherence(of: Spectra) -> Array:
+    """The first line of (2), shape (f, outputs, inputs)."""
     inputs, outputs = of.S_uu.shape[1], of.S_yy.shape[1]
     gamma2 = np.empty((of.S_uu.shape[0], outputs, inputs))
     for i in range(inputs):
@@ -85,7 +96,7 @@ def partial_coherence(of: Spectra) -> Array:
         S_yi = of.S_yu[:, :, i] - (to_y @ take @ _adjoint(to_i))[:, :, 0]
         S_yy = np.real(np.einsum("foo->fo", of.S_yy - to_y @ take @ _adjoint(to_y)))
         gamma2[:, :, i] = np.abs(S_yi) ** 2 / np.maximum(S_ii[:, None] * S_yy, 1e-300)
-    return np.clip(gamma2, NO_COHERENCE, FULL_COHERENCE)
+    return gamma2
 
 
 def random_error(coherence: Array, windows: float) -> Array:

@@ -63,6 +63,7 @@ def transforms(of: Window, signal: Array) -> Complex:
 class Spectra:
     """Sums over all windows, S_ab = sum a b^* at each frequency, (f, channels of a, channels of b).
 
+    `by_r` (f, inputs + outputs) is the multiple coherence of the inputs, then the outputs, with r: 1 for inputs that are r themselves.
     `along` (windows, f, inputs) = r^* S_ur^-1 makes responses of the transforms of outputs: T = sum y along. `windows` is how many would
     fit side by side, which is what random errors go by.
     """
@@ -70,6 +71,7 @@ class Spectra:
     S_uu: Complex
     S_yu: Complex
     S_yy: Complex
+    by_r: Array
     along: Complex
     T: Complex
     windows: float
@@ -84,7 +86,15 @@ def spectra(of: Window, records: Sequence[Record]) -> Spectra:
     S_ur = S_uu if r is u else _cross(u, r)
     along = np.einsum("wfr,fri->wfi", np.conj(r), np.linalg.inv(S_ur))
     count = sum(record.u.shape[0] / of.rows for record in records if record.u.shape[0] >= of.rows)
-    return Spectra(S_uu, _cross(y, u), _cross(y, y), along, response(y, along), count)
+    by_r = multiple_coherence(np.concatenate([u, y], axis=2), r)
+    return Spectra(S_uu, _cross(y, u), _cross(y, y), by_r, along, response(y, along), count)
+
+
+def multiple_coherence(signals: Complex, r: Complex) -> Array:
+    """Share of the power of each signal (windows, f, channels) that r (windows, f, instruments) explains, (f, channels)."""
+    S_sr = _cross(signals, r)
+    explained = np.einsum("fsr,frq,fsq->fs", S_sr, np.linalg.pinv(_cross(r, r), hermitian=True), np.conj(S_sr)).real
+    return np.asarray(explained / np.maximum(np.sum(np.abs(signals) ** 2, axis=0), 1e-300))
 
 
 def response(y: Complex, along: Complex) -> Complex:

@@ -83,6 +83,14 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput(
             "--repetitions", str(chosen.plant), repr(plant.model), f"the model {LATERAL!r}", "leave the option out"
         )
+    if not plant.design:
+        raise BadInput(
+            "plant",
+            str(chosen.plant),
+            "no section [design]",
+            "a plant that flies under a controller",
+            "give another plant",
+        )
     designed = design_controller(chosen.plant)
     low, high = chosen.band_rad_s or BANDS_RAD_S["ce150"]
     sweep = design_sweep(low, high, designed.table.sample_period_s, chosen.duration_s)

@@ -58,7 +58,9 @@ def test_a_weak_sweep_names_the_parameters_it_cannot_tell_and_where_coherence_la
     logs, _ = flights(raptor, (2.0, 0.05))
     fit = match(lateral_model(raptor), lateral_records(logs, raptor), (0.25, 12.0))
     notes = frequency_identification(raptor, fit).notes
-    assert any(note.startswith("L_ped: not told") and "coherence is below 0.6 from" in note for note in notes)
+    assert any(
+        "L_ped" in note.split(":")[0] and "not told" in note and "coherence is below 0.6" in note for note in notes
+    )
     assert any("delta_ped to p_rad_s: not matched" in note for note in notes)
     assert not any(note.startswith("L_lat") for note in notes)
 
@@ -145,6 +147,14 @@ def test_a_plant_that_cannot_rest_where_its_logs_are_is_refused(loop):
     plant, _ = loop
     with pytest.raises(BadInput, match="elevation angle"):
         operating_point_model(plant, ("J_E",), {"psi_rad": -2.0, "phi_rad": 0.0})
+
+
+def test_a_loop_in_which_only_one_axis_was_swept_is_refused(loop):
+    plant, table = loop
+    logs = closed_loop_sweeps(plant, table, design_sweep(0.3, 10.0, 0.01), PSI_RAD, (0.06, 0.15), "references")
+    model = operating_point_model(plant, ("J_E",), {"psi_rad": PSI_RAD, "phi_rad": 0.0})
+    with pytest.raises(BadInput, match="reference 1 of 2 moves in none of them"):
+        match(model, [record_of(logs["sweep_azimuth"], "sweep_azimuth", tuple(plant.model.outputs))], (0.3, 10.0))
 
 
 def test_a_sweep_beyond_the_controller_s_range_is_refused(loop):

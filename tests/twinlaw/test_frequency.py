@@ -1,0 +1,84 @@
+"""The verbs `sweep` and `identify --method frequency`: files in, files out, one line for what is wrong."""
+
+import json
+
+import pytest
+
+from records.plant import load_plant
+from tests.plants import PLANTS
+from twinlaw.command import main
+
+RAPTOR = ["--plant", str(PLANTS / "raptor50.toml")]
+FREQUENCY = ["identify", "--method", "frequency", *RAPTOR]
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    """One sweep of each stick, 70 s long, and the doublets."""
+    path = tmp_path_factory.mktemp("flown")
+    assert main(["sweep", *RAPTOR, "--repeats", "1", "--band-rad-s", "0.4", "12", "--out", str(path)]) == 0
+    return path
+
+
+def swept(folder):
+    return [str(folder / f"sweep_{stick}_1.csv") for stick in ("lat", "ped")]
+
+
+def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
+    held = ["--holdout", str(flown / "doublets.csv")]
+    assert main([*FREQUENCY, "--out", str(tmp_path), "--json", "--band-rad-s", "0.4", "12", *held, *swept(flown)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told == json.loads((tmp_path / "identification.json").read_text())
+    assert told["schema"] == "identification/1"
+    assert told["method"] == "frequency"
+    assert len(told["estimates"]) == 15
+    assert len(told["frequency"]["pairs"]) == 6
+    assert [check["run"] for check in told["frequency"]["checks"]] == ["doublets"]
+    true, found = load_plant(PLANTS / "raptor50.toml"), load_plant(tmp_path / "plant.toml")
+    assert found.correlation is not None
+    for name in ("L_p", "N_r", "L_lat", "N_ped"):
+        assert found.parameters[name].value == pytest.approx(true.parameters[name].value, rel=0.1)
+        assert 0.0 < found.parameters[name].sd < 0.1 * abs(found.parameters[name].value)
+    page = (tmp_path / "report.html").read_text()
+    for words in ("Fig. 5", "Fig. 6", "eq (8)", "coherence", "delta_ped to a_y_m_s2"):
+        assert words in page
+
+
+def test_the_same_seed_flies_the_same_flight(flown, tmp_path):
+    again = ["sweep", *RAPTOR, "--repeats", "1", "--band-rad-s", "0.4", "12", "--out", str(tmp_path)]
+    assert main(again) == 0
+    assert (tmp_path / "sweep_lat_1.csv").read_bytes() == (flown / "sweep_lat_1.csv").read_bytes()
+    assert main([*again, "--seed", "2"]) == 0
+    assert (tmp_path / "sweep_lat_1.csv").read_bytes() != (flown / "sweep_lat_1.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["sweep", *RAPTOR, "--duration-s", "20"], "duration: got 20 s, expected at least 100.5 s"),
+        (["sweep", *RAPTOR, "--band-rad-s", "5", "1"], "band"),
+        (["sweep", *RAPTOR, "--amplitudes", "0", "1"], "--amplitudes"),
+        (["sweep", "--plant", str(PLANTS / "emps.toml")], "no section [design]"),
+        (["sweep", "--repetitions", "2"], "--repetitions"),
+        ([*FREQUENCY, "--band-rad-s", "0.05", "5", "FILES"], "4 periods of the lowest frequency, 0.05 rad/s"),
+        ([*FREQUENCY, "--free", "L_q", "FILES"], "parameter 'L_q'"),
+        ([*FREQUENCY, "--prior", "FILES"], "--prior"),
+        ([*FREQUENCY, "FOLDER"], "not a run log"),
+        (["identify", "--band-rad-s", "1", "5", "FILES"], "--method frequency"),
+    ],
+)
+def test_what_is_wrong_is_one_line_and_leaves_nothing(arguments, said, flown, tmp_path, capsys):
+    files = [name for word in arguments for name in ({"FILES": swept(flown), "FOLDER": [str(flown)]}.get(word, [word]))]
+    assert main([*files[:1], "--out", str(tmp_path / "out"), *files[1:]]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_helicopter_s_repetitions_tell_their_coverage(tmp_path, capsys):
+    short = ["--repetitions", "1", "--repeats", "1", "--band-rad-s", "0.4", "12"]
+    assert main(["sweep", *RAPTOR, *short, "--out", str(tmp_path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert len(told["coverage"]) == 15
+    assert len(json.loads((tmp_path / "coverage.json").read_text())["repetitions"]) == 1
