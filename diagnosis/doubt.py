@@ -16,7 +16,7 @@ WORTH_TELLING = 60.0  # nats that one log gains by numbers of its own
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
 KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
 OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
-REFUTED = 1.2  # times the mean square error of the hold-out without it, beyond which a cause is refuted
+REFUTED = 1.4  # times the mean square error of the hold-out without it, beyond which a cause is refuted
 UNNAMED = 0.95  # probability of an unknown effect that is then stated at least
 
 
