@@ -1,8 +1,10 @@
 """Differential evolution on criterion (10), by SciPy: what stands in for the commercial toolbox of seed 000."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import differential_evolution
+from scipy.optimize import OptimizeResult, differential_evolution
 
 from identification.prediction import predicted
 from identification.solve import Problem
@@ -12,8 +14,13 @@ GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each paramete
 HUGE = 1e300
 
 
-def evolution(problem: Problem, places: list[int], seed: int) -> tuple[Array, tuple[float, ...]]:
-    """The best values at `places` and the least criterion of each generation; wide positive bounds are searched by logarithms."""
+def evolution(
+    problem: Problem, places: list[int], seed: int, watch: Callable[[Array], None]
+) -> tuple[Array, tuple[float, ...]]:
+    """The best values at `places` and the least criterion of each generation; wide positive bounds are searched by logarithms.
+
+    `watch` is told the best values so far after each generation.
+    """
     lower, upper = problem.lower[places], problem.upper[places]
     logarithmic = lower > 0.0
 
@@ -33,6 +40,11 @@ def evolution(problem: Problem, places: list[int], seed: int) -> tuple[Array, tu
     bounds = [(np.log(a), np.log(b)) if log else (a, b) for a, b, log in zip(lower, upper, logarithmic, strict=True)]
     started = np.where(logarithmic, np.log(np.maximum(problem.start[places], 1e-300)), problem.start[places])
     best: list[float] = []
+
+    def told(intermediate_result: OptimizeResult) -> None:
+        best.append(float(intermediate_result.fun))
+        watch(unscaled(intermediate_result.x)[places])
+
     found = differential_evolution(
         cost,
         bounds,
@@ -42,6 +54,6 @@ def evolution(problem: Problem, places: list[int], seed: int) -> tuple[Array, tu
         x0=started,
         tol=1e-3,
         polish=False,
-        callback=lambda intermediate_result: best.append(float(intermediate_result.fun)),
+        callback=told,
     )
     return unscaled(found.x)[places], tuple(best)

@@ -169,7 +169,7 @@ def _coarse(
     problem = problem_of(runs, tuple(names), ranges, before)
     if wanted is not None:
         places = [problem.names.index(name) for name in names]
-        problem = started(problem, places, search(problem, places, wanted)[0])
+        problem = started(problem, places, search(problem, places, replace(wanted, beside=()))[0])
     point = solve(problem, watch, COARSE_SETTLED)
     found = dict(zip(problem.names, point.theta.tolist(), strict=True))
     return {name: found[name] for name in names}

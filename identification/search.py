@@ -86,7 +86,7 @@ Trail = tuple[Array, tuple[float, ...], tuple[float, ...], tuple[int, ...]]
 
 
 def _evolution(problem: Problem, places: list[int], wanted: Search) -> Trail:
-    values, best = evolution(problem, places, wanted.seed)
+    values, best = evolution(problem, places, wanted.seed, _better(problem, places, wanted))
     return _with(problem, places, values), best, (), ()
 
 
@@ -98,11 +98,7 @@ def _genetic(problem: Problem, places: list[int], wanted: Search) -> Trail:
     def cost(members: Array) -> Array:
         return absolute_error(problem, np.stack([_with(problem, places, values) for values in members]))
 
-    def better(values: Array) -> None:
-        if wanted.watch is not None:
-            wanted.watch(dict(zip(names, values.tolist(), strict=True)))
-
-    found = evolve(code, cost, wanted.seed, watch=better)
+    found = evolve(code, cost, wanted.seed, watch=_better(problem, places, wanted))
     return _with(problem, places, found.values), found.best, found.mean, code.bits
 
 
@@ -119,6 +115,17 @@ def _gradient(problem: Problem, places: list[int], wanted: Search) -> Trail:
     blind = replace(problem, start=start, prior=replace(problem.prior, mean=start))
     point = solve(blind, lambda _, cost: costs.append(cost))
     return point.theta, tuple(costs), (), ()
+
+
+def _better(problem: Problem, places: list[int], wanted: Search) -> Callable[[Array], None]:
+    """Tells the one who watches of better values (parameters,), by name."""
+    names = [problem.names[place] for place in places]
+
+    def tell(values: Array) -> None:
+        if wanted.watch is not None:
+            wanted.watch(dict(zip(names, values.tolist(), strict=True)))
+
+    return tell
 
 
 def _with(problem: Problem, places: list[int], values: Array) -> Array:

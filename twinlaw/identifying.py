@@ -1,7 +1,8 @@
 """What `twinlaw identify` does between its files: tell experiments from logs, go stage by stage, leave what was found so far."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,6 +25,10 @@ from sim.columns import log_columns
 from twinlaw import console
 
 Limits = Mapping[str, tuple[float, float]]
+Save = Callable[[Identification], None]
+Done = tuple[
+    list[tuple[str, Estimate]], list[tuple[Belief, float]], Belief
+]  # stages, what they needed besides, the last belief
 INTERRUPTED = "the best so far of a search that was interrupted"
 
 
@@ -126,14 +131,13 @@ def free_names(bound: BoundPlant, wanted: str | None) -> tuple[str, ...]:
     return tuple(found)
 
 
-def identify(
-    bound: BoundPlant, inputs: Inputs, wishes: Wishes, save: Callable[[Identification], None]
-) -> Identification:
+def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, save: Save) -> Identification:
     """Stage by stage; `save` is told the result after each, so that an interrupted run leaves what it has."""
     stages, aids, belief = _from_experiments(bound, inputs.experiments, wishes, save)
     shifts: dict[str, float] = {}
     if inputs.logs:
-        found = _from_logs(bound, inputs.logs, wishes, belief)
+        with _kept(bound, wishes.search, (stages, aids, belief), save) as wanted:
+            found = _from_logs(bound, inputs.logs, replace(wishes, search=wanted), belief)
         trims = tuple(name for name in found.belief.names if name.startswith("offset."))
         shifts = {name: found.belief.value(name) for name in trims}
         belief = found.belief.part(tuple(name for name in found.belief.names if name not in trims))
@@ -150,23 +154,27 @@ def identify(
     return result
 
 
-def _from_experiments(
-    bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, save: Callable[[Identification], None]
-) -> tuple[list[tuple[str, Estimate]], list[tuple[Belief, float]], Belief]:
+@contextmanager
+def _kept(bound: BoundPlant, search: Search | None, done: Done, save: Save) -> Iterator[Search | None]:
+    """The search under watch: interrupted, it leaves the best so far beside what was done before."""
+    so_far: dict[str, float] = {}
+    try:
+        yield None if search is None else replace(search, watch=so_far.update)
+    except KeyboardInterrupt:
+        if so_far:
+            stages, aids, belief = done
+            save(identification(with_values(bound.plant, so_far, INTERRUPTED), stages, belief, aids))
+        raise
+
+
+def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, save: Save) -> Done:
     """Estimates of all stages, what the experiments needed besides with its degrees of freedom, and the last belief."""
     stages: list[tuple[str, Estimate]] = []
     aids: list[tuple[Belief, float]] = []
     belief = stated(bound) if wishes.keep_knowledge else NOTHING
     for experiment in experiments:
-        so_far: dict[str, float] = {}
-        wanted = None if wishes.search is None else replace(wishes.search, watch=so_far.update)
-        try:
-            with console.stage(title(experiment)):
-                stage = identify_stage(bound, experiment, belief, wishes.limits, wanted, wishes.only)
-        except KeyboardInterrupt:
-            if so_far:
-                save(identification(with_values(bound.plant, so_far, INTERRUPTED), stages, belief, aids))
-            raise
+        with _kept(bound, wishes.search, (stages, aids, belief), save) as wanted, console.stage(title(experiment)):
+            stage = identify_stage(bound, experiment, belief, wishes.limits, wanted, wishes.only)
         belief = stage.belief
         stages.append((title(experiment), stage.result))
         if stage.aids.names:

@@ -3,10 +3,15 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from identification import genetic
+from identification import genetic, search
+from records.log import RunLog, save_log
 from records.plant import load_plant
+from sim.bind import bind
+from sim.columns import log_columns
+from sim.simulate import simulate
 from twinlaw.command import main
 
 PLANT = ["--plant", "plants/ce150_velagic.toml"]
@@ -73,6 +78,44 @@ def test_an_interrupted_search_leaves_the_best_so_far(monkeypatch, folder, tmp_p
         assert left[name].value != stated[name].value
         assert left[name].sd == stated[name].sd
     assert left["a_2"] == stated["a_2"]
+
+
+def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch, tmp_path):
+    """Ctrl-C behind the third generation of `--search evolution` on a run log."""
+    bound = bind(load_plant(Path(PLANT[1])))
+    t_s = np.linspace(0.0, 4.99, 500)
+    u = np.column_stack([np.where(t_s < 2.5, 5.3, 5.0), np.zeros(500)])
+    x0 = np.zeros(8)
+    x0[2] = -np.pi / 4
+    y = simulate(bound, t_s, x0, u, locked=("azimuth",)).y
+    save_log(tmp_path / "log.csv", RunLog(log_columns(bound.model), 0.01, "open", t_s, u, y, locked=("azimuth",)))
+    told, original = [], search._better
+
+    def stops_at_the_third(*given):
+        tell = original(*given)
+
+        def telling(values):
+            tell(values)
+            told.append(values)
+            if len(told) == 3:
+                raise KeyboardInterrupt
+
+        return telling
+
+    monkeypatch.setattr(search, "_better", stops_at_the_third)
+    arguments = [
+        "--search",
+        "evolution",
+        "--free",
+        "a_1,I_inv",
+        "--out",
+        str(tmp_path / "out"),
+        str(tmp_path / "log.csv"),
+    ]
+    assert main(["identify", *PLANT, *arguments]) == 130
+    left = load_plant(tmp_path / "out" / "plant.toml").parameters
+    assert [left[name].value for name in ("a_1", "I_inv")] == pytest.approx(told[-1].tolist())
+    assert "interrupted" in left["a_1"].source
 
 
 def test_only_what_is_named_is_estimated(folder, tmp_path, capsys):
