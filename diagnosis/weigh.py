@@ -37,7 +37,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     is the evidence for parameters beyond their spread."""
     named = [entry for entry in tried if entry.effects]
     if not named:
-        return Weighed((), (), 1.0, 0.0, ALIKE)
+        return _nameless(nominal, left, retune)
     best = max(entry.evidence for entry in named)
     scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
@@ -54,6 +54,16 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     return Weighed(
         chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
     )
+
+
+def _nameless(nominal: Tried, left: float, retune: float | None) -> Weighed:
+    """Where no effect was worth a fit: other parameters alone, or what no candidate explains."""
+    if retune is None:
+        return Weighed((), (), 1.0, 0.0, ALIKE)
+    other = (retune - RETUNE_COST - nominal.evidence) / ALIKE
+    unknown = LEFT_POWER * float(np.log(max(left, 1.0) / LEFT_NATS)) - UNKNOWN
+    alone = float(1.0 / (1.0 + np.exp(np.clip(unknown - other, -500.0, 500.0))))
+    return Weighed((), (), 1.0 - alone, alone, ALIKE)
 
 
 def _strain(entry: Tried) -> float:
