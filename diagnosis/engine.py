@@ -38,6 +38,7 @@ from sim.bind import BoundPlant
 from sim.effects.api import without_effects
 
 ALARM = 0.01
+PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
 LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
@@ -79,6 +80,9 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         return _no_gap(case, checked, material, detection, stated, looks)
     demand_wiring(case, nominal, nominal_fit)
     found = search(case, nominal, kit.candidates, ground, looks, lossy)
+    detection = confirmed_by(detection, found)
+    if detection.p > ALARM:
+        return _no_gap(case, checked, material, detection, stated, looks)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
     beyond = retune(case, nominal)
@@ -100,6 +104,14 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         chosen=chosen,
         predicted=predicted,
     )
+
+
+def confirmed_by(detection: Detection, found: Search) -> Detection:
+    """A small gap also needs a hypothesis that explains it: without a gap, evidence of x nats has a chance of exp(-x) at most."""
+    if detection.largest > PLAIN_TO_SEE:
+        return detection
+    best = max((entry.evidence - found.nominal.evidence for entry in found.tried if entry.effects), default=0.0)
+    return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))
 
 
 def nominal_fit(case: Case) -> Fit:
@@ -146,7 +158,10 @@ def _worse(checked: Case | None, material: Material, weighed: Weighed, retuned: 
 def _added(
     checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, beyond: Retune | None
 ) -> tuple[Tried, tuple[Predicted, ...]]:
-    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
+    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant.
+
+    Parameters beyond their spread only must not raise it: within their spread they may predict as well, held back by what is stated.
+    """
     named = bool(weighed.tried) and weighed.probabilities[0] > max(weighed.unknown, weighed.retune)
     first = weighed.tried[0] if named else retuned
     if not named and beyond is not None and weighed.retune > weighed.unknown:
@@ -154,9 +169,8 @@ def _added(
     predicted = _predicted(checked, material, retuned, first)
     if checked is None or first is retuned:
         return first, predicted
-    if error(checked, predicted, "after") < HELPS * min(
-        error(checked, predicted, bar) for bar in ("nominal", "before")
-    ):
+    most = HELPS if first.effects else 1.0 / HELPS
+    if error(checked, predicted, "after") < most * min(error(checked, predicted, bar) for bar in ("nominal", "before")):
         return first, predicted
     return retuned, _predicted(checked, material, retuned, retuned)
 

@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
+GRID_SD = 1e-3  # of a sensor's coarse step, as a share
 OUT_OF_REACH = 1e3  # references
 WIDE = 20.0  # sd of an effect's size before the data, in its reference
 
@@ -55,6 +56,9 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
                 found += [Free(name, parameter, sd, stated)] if sd > 0.0 else []
+            elif name.endswith("_sensor.quantization"):
+                step = values[parameter.symbol]  # the readings lie on its grid: they know it better than any slope does
+                found.append(Free(name, parameter, GRID_SD * step, step))
             elif from_zero(parameter):
                 found.append(Free(name, parameter, size_scale(parameter)))
             elif shapes:

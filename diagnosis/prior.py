@@ -24,7 +24,7 @@ ONE_WAY = {
     "load_friction": "c",
 }
 # In units of the scale on which hypotheses are compared.
-RARE, WRONG_WAY = 1.5, 3.0
+RARE, WRONG_WAY = 2.0, 4.5
 PLAIN = 0.1  # by which a constant force goes before what fits as well
 OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another name
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
