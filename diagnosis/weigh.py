@@ -11,8 +11,8 @@ from diagnosis.search import Tried
 
 Array = NDArray[np.float64]
 # Set on development cases of the sealed benchmark's generator (seed 21): nats below which two hypotheses are alike, and what a form a
-# little off the truth may cost, which grows with the whole gain; what each further effect must overcome; and what a right effect of the library
-# may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
+# little off the truth may cost, which grows with the whole gain; what each further effect must overcome; and what a right effect of
+# the library may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
 ALIKE, OFF_FORM, OFF_POWER, FURTHER = 10.0, 1.0, 0.35, 2.5
 LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
 RETUNE_COST = 10.0
