@@ -22,7 +22,7 @@ from records.plant import Plant, load_plant, plant_text
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
 from twinlaw import console
-from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows
+from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows, pictures
 from twinlaw.identify_summary import HEADING, estimate_rows
 from twinlaw.identifying import free_names, read_limits
 from twinlaw.page import page_text
@@ -46,7 +46,10 @@ def identify_by_frequency(chosen: argparse.Namespace) -> int:
         found = _lateral(chosen, plant) if plant.model == LATERAL else _operating_point(chosen, bind(plant))
     write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
     write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
-    write_atomic(chosen.out / "report.html", page_text(frequency_page(found)))
+    page = frequency_page(found)
+    for name, picture in pictures(found).items():
+        write_atomic(chosen.out / f"{name}.svg", picture)
+    write_atomic(chosen.out / "report.html", page_text(page))
     _tell(chosen, found)
     return 0
 
@@ -72,6 +75,11 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
 
 
 def _operating_point(chosen: argparse.Namespace, bound: BoundPlant) -> FrequencyIdentification:
+    if bound.input_path or bound.output_path:
+        raise BadInput(
+            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
+            "identify from the plant without them",
+        )  # fmt: skip
     logs, held = _read(chosen, plant_columns(bound.model))
     outputs = tuple(bound.model.outputs)
     records, others = ([record_of(log, name, outputs) for name, log in some.items()] for some in (logs, held))
@@ -104,7 +112,12 @@ def _log(path: Path, columns: LogColumns) -> RunLog:
         raise BadInput(
             "FILES", str(path), "not a run log", "run logs, NAME.csv", "experiments have no frequency method"
         )
-    return load_log(path, columns)
+    log = load_log(path, columns)
+    if log.locked:
+        raise BadInput(
+            "locked", str(path), ", ".join(log.locked), "all axes free", "give records in which no axis is held"
+        )
+    return log
 
 
 def _tell(chosen: argparse.Namespace, found: FrequencyIdentification) -> None:

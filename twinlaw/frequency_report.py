@@ -1,6 +1,6 @@
 """The report of `twinlaw identify --method frequency`: matrices, pairs, Figs. 5 and 6 of seed 002 redrawn; its tables as rows of text."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +9,12 @@ from identification.frequency.elements import StateSpaces, state_space_with_sd
 from identification.frequency.result import FrequencyIdentification, Pair, TimeCheck
 from twinlaw.identify_summary import HEADING, estimate_rows
 from twinlaw.page import Page, Section, Table
-from twinlaw.plots import BLUE, GREY, ORANGE, RED, Curve, Panel, grid
+from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Curve, Panel, grid
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 PAIR_HEADING = ("input", "output", "matched from", "to", "coherence", "J", "model off by", "plant file off by")
+ROUNDING = 1e-9
 CHECK_HEADING = ("record", "output", "rms", "fit", "fit of the plant file")
 
 
@@ -64,6 +65,13 @@ def frequency_page(found: FrequencyIdentification) -> Page:
     )
 
 
+def pictures(found: FrequencyIdentification) -> Mapping[str, str]:
+    """Figs. 5 and 6 of seed 002 as SVG texts by name: the responses of each output, each record checked on."""
+    outputs = enumerate(found.fit.model.outputs)
+    responses = {f"fig-5-{name}": _bode(found, o) for o, name in outputs}
+    return responses | {f"fig-6-{check.name}": _history(found, check) for check in found.checks}
+
+
 def _parameters(found: FrequencyIdentification) -> Section:
     return Section(
         "Parameters", found.notes or ("Nothing to remark.",), (Table(estimate_rows(found.result.estimates), HEADING),)
@@ -79,8 +87,15 @@ def _matrices(found: FrequencyIdentification) -> Section:
 
 def _matrix_rows(of: StateSpaces, name: str) -> list[tuple[str, ...]]:
     values, sds = getattr(of.value, name), getattr(of.sd, name)
+    least = ROUNDING * float(np.max(sds))
     return [
-        (name, *(f"{value:.4g}" + (f" ± {1.96 * sd:.2g}" if sd else "") for value, sd in zip(line, own, strict=True)))
+        (
+            name,
+            *(
+                f"{value:.4g}" + (f" ± {1.96 * sd:.2g}" if sd > least else "")
+                for value, sd in zip(line, own, strict=True)
+            ),
+        )
         for line, own in zip(values, sds, strict=True)
     ]
 
@@ -135,18 +150,22 @@ def _coherence(found: FrequencyIdentification, o: int, i: int) -> Panel:
 
 
 def _check(found: FrequencyIdentification, check: TimeCheck) -> Section:
-    """Inputs above, outputs below, measured and predicted."""
-    model = found.fit.model
-    lines = [[Panel(name, (Curve(check.t_s, check.u[:, i], "input", GREY),))] for i, name in enumerate(model.inputs)]
-    for o, name in enumerate(model.outputs):
-        measured = Curve(check.t_s, check.y[:, o], "measured", GREY)
-        lines.append([Panel(name, (measured, Curve(check.t_s, check.y_model[:, o], "identified model", ORANGE, "--")))])
-    sentence = (
-        "A record that was not matched: the identified model under its inputs; start and trim are fitted, nothing else."
-    )
+    """How a record that was not matched is predicted."""
+    anew = "" if np.isinf(check.window_s) else f" It starts anew every {check.window_s:g} s, as the loop was closed."
+    sentence = f"A record that was not matched: the identified model under its inputs; start and trim are fitted, nothing else.{anew}"
     return Section(
         f"Verification in time: {check.name} (Fig. 6)",
         (sentence,),
-        (Table(check_rows((check,), model.outputs), CHECK_HEADING),),
-        (grid(lines, [""], "time [s]", height_in=1.3),),
+        (Table(check_rows((check,), found.fit.model.outputs), CHECK_HEADING),),
+        (_history(found, check),),
     )
+
+
+def _history(found: FrequencyIdentification, check: TimeCheck) -> str:
+    """Inputs above, outputs below, measured and predicted."""
+    model = found.fit.model
+    lines = [[Panel(name, (Curve(check.t_s, check.u[:, i], "input", SKY),))] for i, name in enumerate(model.inputs)]
+    for o, name in enumerate(model.outputs):
+        measured = Curve(check.t_s, check.y[:, o], "measured", GREY)
+        lines.append([Panel(name, (measured, Curve(check.t_s, check.y_model[:, o], "identified model", ORANGE, "--")))])
+    return grid(lines, [""], "time [s]", height_in=1.3)

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 POOR_J = 100.0
 SAME_J = 1.01
 MOST_BANDS = 3
+BEYOND = 2.0
 
 
 def notes_on(
@@ -39,13 +40,33 @@ def notes_on(
     poor = [
         f"J is {mean:.0f} on average over the pairs, above {POOR_J:g}: the model has not the form of these responses"
     ]
+    beyond = [
+        f"{name} to {output}: the model misses {times:.1f} times as much as random errors explain: the plant has something there that "
+        "the model lacks, and the intervals do not cover it"
+        for name, output, times in _misses(fit)
+        if times > BEYOND
+    ]
     alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
     lonely = [f"only one of {len(fit.searches)} searches came to this J; try other starts with --search SEED"]
     edge = [
         f"{name}: ended at its bound; the data pull it further: widen --bounds, or doubt the model"
         for name in fit.at_bound
     ]
-    return (*untold, *edge, *silent, *(poor if mean > POOR_J else []), *(lonely if alone else []))
+    return (*untold, *edge, *silent, *beyond, *(poor if mean > POOR_J else []), *(lonely if alone else []))
+
+
+def _misses(fit: FrequencyFit) -> list[tuple[str, str, float]]:
+    """For each matched pair what is left of its responses beside their random errors, eq (3) of responses.py, both as rms."""
+    found = []
+    for o, output in enumerate(fit.model.outputs):
+        for i, name in enumerate(fit.model.inputs):
+            mine = (fit.points.output == o) & (fit.points.input == i)
+            k = fit.points.frequency[mine]
+            if k.size:
+                left = float(np.mean(np.abs(fit.points.T[mine] / fit.T[k, o, i] - 1.0) ** 2))
+                error = float(np.mean(2.0 * fit.responses.error[k, o, i] ** 2))
+                found.append((name, output, float(np.sqrt(left / max(error, 1e-300)))))
+    return found
 
 
 def _reason(fit: FrequencyFit, name: str) -> str:

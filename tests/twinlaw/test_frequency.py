@@ -42,6 +42,9 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
     page = (tmp_path / "report.html").read_text()
     for words in ("Fig. 5", "Fig. 6", "eq (8)", "coherence", "delta_ped to a_y_m_s2"):
         assert words in page
+    assert {path.name for path in tmp_path.glob("*.svg")} == {
+        "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg",
+    }  # fmt: skip
 
 
 def test_the_same_seed_flies_the_same_flight(flown, tmp_path):

@@ -134,6 +134,9 @@ def test_the_ce150_in_its_loop_has_the_responses_of_its_linearisation(loop, on, 
     model = operating_point_model(plant, ("J_E", "b_vE", "J_A", "b_vA"), {"psi_rad": PSI_RAD, "phi_rad": 0.0})
     fit = match(model, [record_of(log, name, outputs) for name, log in logs.items()], (0.3, 10.0))
     facts = frequency_facts(frequency_identification(plant.plant, fit))
+    assert not any(
+        "the model misses" in note and ("u_M_V to psi" in note or "u_T_V to phi" in note) for note in facts["notes"]
+    )
     own = [pair for pair in facts["frequency"]["pairs"] if pair["input"][2] + pair["output"][:3] in ("Mpsi", "Tphi")]
     assert len(own) == 2
     for pair in own:
@@ -141,6 +144,17 @@ def test_the_ce150_in_its_loop_has_the_responses_of_its_linearisation(loop, on, 
         assert pair["stated_dB"] < off_dB
         assert pair["stated_deg"] < off_deg
     np.testing.assert_allclose(fit.theta, model.start, rtol=0.12)
+
+
+def test_dry_friction_is_told_as_something_that_the_model_lacks(loop):
+    """The same sweeps with the plant file's dry friction: a linear model misses more than random errors explain, and says so."""
+    _, table = loop
+    rough = bound("ce150")
+    logs = closed_loop_sweeps(rough, table, design_sweep(0.3, 10.0, 0.01), PSI_RAD, (0.06, 0.15), "references")
+    model = operating_point_model(rough, ("J_E", "b_vE", "J_A", "b_vA"), {"psi_rad": PSI_RAD, "phi_rad": 0.0})
+    fit = match(model, [record_of(log, name, tuple(rough.model.outputs)) for name, log in logs.items()], (0.3, 10.0))
+    notes = frequency_identification(rough.plant, fit).notes
+    assert any(note.startswith("u_M_V to psi_rad: the model misses") for note in notes)
 
 
 def test_a_plant_that_cannot_rest_where_its_logs_are_is_refused(loop):

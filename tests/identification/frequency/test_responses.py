@@ -47,6 +47,18 @@ def test_coherence_is_the_share_of_power_that_the_input_explains():
     assert abs(float(np.mean(found.coherence)) - 0.5) < 0.06
 
 
+def test_an_input_that_only_moves_with_another_has_no_coherence_of_its_own():
+    """u_2 = u_1 + w and y = u_1 + n, all of variance 1: u_2 and y share a quarter of their power, all of it by u_1."""
+    rng = np.random.default_rng(8)
+    one, other, noise = rng.standard_normal((3, 16000, 1))
+    u = np.hstack([one, one + other])
+    found = frequency_responses([Record("led", PERIOD_S, u, one + noise, u)], OMEGA, (20.0,))
+    alone = frequency_responses([Record("alone", PERIOD_S, u[:, 1:], one + noise, u[:, 1:])], OMEGA, (20.0,))
+    assert abs(float(np.mean(alone.coherence)) - 0.25) < 0.08
+    assert float(np.mean(found.coherence[:, 0, 1])) < 0.06
+    assert abs(float(np.mean(found.coherence[:, 0, 0])) - 1.0 / 3.0) < 0.08  # of u_1 given u_2: 1/2 over 1/2 + 1
+
+
 def test_the_random_error_is_what_responses_scatter_by():
     """60 records of y = u + n: the rms error of T and the one that eq (3) gives agree within a quarter."""
     rng = np.random.default_rng(3)

@@ -1,0 +1,64 @@
+"""Logs as even records, and a linear model under their inputs: truths written out."""
+
+import numpy as np
+import pytest
+
+from identification.frequency.lateral import StateSpace
+from identification.frequency.linear_run import linear_run
+from identification.frequency.record import Record, record_of, with_instruments
+from records.errors import BadInput
+from records.log import LogColumns, RunLog
+
+COLUMNS = LogColumns("lag", ("u_V",), ("x_rad",), ("x_ref_rad",), ())
+
+
+def log(t_s, u, y, loop="open", **extra):
+    return RunLog(COLUMNS, 0.1, loop, np.asarray(t_s), np.asarray(u)[:, None], np.asarray(y)[:, None], extra)
+
+
+def test_a_lost_row_and_a_missing_reading_lie_on_lines_and_the_input_before_is_held():
+    t_s = np.array([0.0, 0.1, 0.3, 0.4, 0.5])
+    found = record_of(log(t_s, [1.0, 2.0, 3.0, 4.0, 5.0], [0.0, 1.0, 3.0, np.nan, 5.0]), "gap", ("x_rad",))
+    np.testing.assert_allclose(found.y[:, 0], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    np.testing.assert_array_equal(found.u[:, 0], [1.0, 2.0, 2.0, 3.0, 4.0, 5.0])
+
+
+def test_an_output_that_was_never_read_is_refused():
+    with pytest.raises(BadInput, match=r"column 'x_rad'.*0 readings"):
+        record_of(log([0.0, 0.1], [1.0, 2.0], [np.nan, np.nan]), "blind", ("x_rad",))
+
+
+def test_a_closed_loop_is_told_by_its_references_unless_none_moves():
+    t_s, u = 0.1 * np.arange(4), np.array([0.0, 1.0, 0.0, 1.0])
+    for reference, by in (([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 3.0]), ([1.0] * 4, [0.0, 1.0, 0.0, 1.0])):
+        closed = log(t_s, u, u, "closed", x_ref_rad=np.array(reference))
+        found = with_instruments([record_of(closed, "loop", ("x_rad",))])
+        np.testing.assert_array_equal(found[0].r[:, 0], by)
+
+
+def one(value):
+    return np.array([[value]])
+
+
+@pytest.mark.parametrize("rate", [-0.5, 0.0, 0.8])
+def test_a_run_finds_start_and_trim_of_a_plant_stable_or_not(rate):
+    """x' = rate x + (u + 0.3), x(0) = 2, read with an offset of 0.7, over 20 s: growth by exp(16) takes more than one stretch."""
+    h, rows = 0.1, 200
+    u = np.sin(0.7 * h * np.arange(rows))
+    keep = np.exp(rate * h)
+    gain = h if rate == 0.0 else (keep - 1.0) / rate
+    x = np.full(rows, 2.0)
+    for k in range(rows - 1):
+        x[k + 1] = keep * x[k] + gain * (u[k] + 0.3)
+    found = linear_run(
+        StateSpace(one(rate), one(1.0), one(1.0), one(0.0)), Record("x", h, u[:, None], x[:, None] + 0.7, u[:, None])
+    )
+    assert (found.stretches > 1) == (rate > 0.5)
+    np.testing.assert_allclose(found.y[:, 0], x + 0.7, rtol=1e-8, atol=1e-8)
+
+
+def test_a_direct_part_shows_one_row_late():
+    u = np.random.default_rng(1).standard_normal((50, 1))
+    y = 3.0 * np.vstack([u[:1], u[:-1]])
+    found = linear_run(StateSpace(one(-1.0), one(0.0), one(0.0), one(3.0)), Record("direct", 0.1, u, y, u))
+    np.testing.assert_allclose(found.y, y, atol=1e-9)
