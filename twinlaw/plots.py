@@ -123,6 +123,25 @@ def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
         return _svg(figure)
 
 
+def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
+    """Stated probabilities against the shares that were right: one point a bin (stated, right, count), larger for more cases."""
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(4.2, 4.2), layout="constrained")
+        axes = figure.subplots()
+        axes.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linestyle="--", label="as stated")
+        stated, right, count = np.array(bins, float).reshape(-1, 3).T
+        axes.plot(stated, right, color=BLUE)
+        axes.scatter(stated, right, s=20.0 + count, color=BLUE, zorder=3, label="cases, the area their number")
+        axes.set(
+            xlim=(-0.02, 1.04),
+            ylim=(-0.02, 1.04),
+            xlabel="stated probability of the first answer",
+            ylabel="share right",
+        )
+        axes.legend(loc="upper left")
+        return _svg(figure)
+
+
 def _draw_bars(axes: Axes, panel: Bars) -> None:
     colours = [panel.colours[i % len(panel.colours)] for i in range(len(panel.heights))]
     if all(isinstance(edge, str) for edge in panel.edges):

@@ -1,35 +1,44 @@
 """Make sealed cases for a diagnosis, or score what it said of them.
 
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld; `twinlaw blind score DIR RESULTS` opens the seal and
-scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind baseline NAME DIR RESULTS` answers all cases in a plain way, to be beaten. The
-generator shares no code with simulation or diagnosis.
+scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind
+baseline NAME DIR RESULTS` answers them in a plain way, to be beaten. The generator shares no code with simulation or diagnosis.
 """
 
 import argparse
 import json
 from pathlib import Path
+from time import perf_counter
 
 import blind
 from diagnosis.baselines import BASELINES
 from records.diagnosis import save_diagnosis
 from records.errors import BadInput
+from records.files import write_atomic
 from records.log import load_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from twinlaw import options
+from twinlaw import options, plots
 from twinlaw.console import stage
+from twinlaw.diagnosing import diagnose_logs
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds; score DIR RESULTS; --json."""
-    verbs = parser.add_subparsers(title="what to do", metavar="make|baseline|score", required=True)
+    """make --seed --out --cases --kinds; diagnose, baseline, score DIR RESULTS; --json."""
+    verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score", required=True)
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
     maker.add_argument("--cases", type=options.count, default=60, help="default: %(default)s")
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
     maker.set_defaults(part=_make)
+    asker = verbs.add_parser(
+        "diagnose", help="diagnose all cases that RESULTS does not answer yet, with the time of each"
+    )
+    asker.add_argument("cases", type=Path, metavar="DIR")
+    asker.add_argument("results", type=Path, metavar="RESULTS")
+    asker.set_defaults(part=_diagnose)
     plain = verbs.add_parser("baseline", help="answer all cases in a plain way that a diagnosis has to beat")
     plain.add_argument("name", choices=BASELINES)
     plain.add_argument("cases", type=Path, metavar="DIR")
@@ -38,8 +47,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     scorer = verbs.add_parser("score", help="score answers against the truth")
     scorer.add_argument("cases", type=Path, metavar="DIR")
     scorer.add_argument("results", type=Path, metavar="RESULTS")
+    scorer.add_argument(
+        "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
+    )
     scorer.set_defaults(part=_score)
-    for part in (maker, plain, scorer):
+    for part in (maker, asker, plain, scorer):
         part.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
 
@@ -55,12 +67,30 @@ def _make(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _baseline(chosen: argparse.Namespace) -> int:
-    folders = sorted(chosen.cases.glob("case-*"))
+def _folders(cases: Path) -> list[Path]:
+    folders = sorted(cases.glob("case-*"))
     if not folders:
-        raise BadInput(
-            "cases", str(chosen.cases), "no folder case-*", "what `twinlaw blind make` wrote", "name its DIR"
-        )
+        raise BadInput("cases", str(cases), "no folder case-*", "what `twinlaw blind make` wrote", "name its DIR")
+    return folders
+
+
+def _diagnose(chosen: argparse.Namespace) -> int:
+    folders = _folders(chosen.cases)
+    left = [folder for folder in folders if not (chosen.results / folder.name / "run.json").exists()]
+    for count, folder in enumerate(left, 1):
+        out, start_s = chosen.results / folder.name, perf_counter()
+        with stage(f"{folder.name}, {count} of {len(left)}"):
+            diagnose_logs(folder / "plant.toml", sorted(folder.glob("train-*.csv")), [folder / "hold-1.csv"], out)
+        write_atomic(out / "run.json", json.dumps({"time_s": round(perf_counter() - start_s, 2)}))
+    told = {"results": str(chosen.results), "cases": len(folders), "new": len(left)}
+    print(
+        json.dumps(told) if chosen.json else f"{chosen.results}  {len(folders)} cases answered, {len(left)} of them now"
+    )
+    return 0
+
+
+def _baseline(chosen: argparse.Namespace) -> int:
+    folders = _folders(chosen.cases)
     for folder in folders:
         bound = bind(load_plant(folder / "plant.toml"))
         columns = log_columns(bound.model)
@@ -75,5 +105,8 @@ def _baseline(chosen: argparse.Namespace) -> int:
 
 def _score(chosen: argparse.Namespace) -> int:
     result = blind.score(chosen.cases, chosen.results)
+    if chosen.reliability is not None:
+        bins = [(entry.stated, entry.right, entry.count) for entry in result.bins]
+        write_atomic(chosen.reliability, plots.reliability(bins))
     print(blind.to_json(result) if chosen.json else blind.markdown(result))
     return 0
