@@ -158,10 +158,7 @@ def _worse(checked: Case | None, material: Material, weighed: Weighed, retuned: 
 def _added(
     checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, beyond: Retune | None
 ) -> tuple[Tried, tuple[Predicted, ...]]:
-    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant.
-
-    Parameters beyond their spread only must not raise it: within their spread they may predict as well, held back by what is stated.
-    """
+    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
     named = bool(weighed.tried) and weighed.probabilities[0] > max(weighed.unknown, weighed.retune)
     first = weighed.tried[0] if named else retuned
     if not named and beyond is not None and weighed.retune > weighed.unknown:
@@ -169,8 +166,9 @@ def _added(
     predicted = _predicted(checked, material, retuned, first)
     if checked is None or first is retuned:
         return first, predicted
-    most = HELPS if first.effects else 1.0 / HELPS
-    if error(checked, predicted, "after") < most * min(error(checked, predicted, bar) for bar in ("nominal", "before")):
+    if error(checked, predicted, "after") < HELPS * min(
+        error(checked, predicted, bar) for bar in ("nominal", "before")
+    ):
         return first, predicted
     return retuned, _predicted(checked, material, retuned, retuned)
 

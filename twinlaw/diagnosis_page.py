@@ -65,8 +65,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 def _nothing_added(diagnosis: Diagnosis) -> str:
     """The verdict on a gap for which no effect was added: other parameters, an effect that did not help, or none that fits."""
     unknown, first = diagnosis.unknown, diagnosis.effects[0] if diagnosis.effects else None
-    retuned = 1.0 - unknown.probability - sum(h.probability for h in diagnosis.effects)
-    moved = [note.partition(" is ")[0] for note in diagnosis.notes if MOVED in note]
+    retuned = _parameters_alone(diagnosis)
+    moved = [note.partition(" is ")[0].removeprefix("parameter ") for note in diagnosis.notes if MOVED in note]
     if moved and retuned > max(unknown.probability, first.probability if first else 0.0):
         return f"The rig has other parameters than the plant file states, and nothing else is missing: {listed(moved)}."
     where = f" in {words(unknown.place)}" if unknown.place else ""
@@ -76,6 +76,11 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
             f"({percent(first.probability)}); but that predicts the hold-out logs no better, so it was not added."
         )
     return f"The rig does something{where} that the plant file lacks, and no effect of the library can be named for it."
+
+
+def _parameters_alone(diagnosis: Diagnosis) -> float:
+    """The probability that other parameters explain the gap and nothing is missing."""
+    return 1.0 - diagnosis.unknown.probability - sum(h.probability for h in diagnosis.effects)
 
 
 def _place(diagnosis: Diagnosis, places: Places) -> Section:
@@ -103,12 +108,9 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         for h in diagnosis.effects[:1]
         if h.ambiguous_with and diagnosis.found
     ]
-    unknown = diagnosis.unknown
-    if (
-        unknown.class_
-        and not diagnosis.found
-        and unknown.probability > max((h.probability for h in diagnosis.effects), default=0.0)
-    ):
+    unknown, retuned = diagnosis.unknown, _parameters_alone(diagnosis)
+    likeliest = max([retuned, *(h.probability for h in diagnosis.effects)])
+    if unknown.class_ and not diagnosis.found and unknown.probability > likeliest:
         where = f" {words(unknown.place)}" if unknown.place else ""
         told.append(
             f"What is missing acts on{where} and is of the form {unknown.class_}; no effect of the library fits it."
@@ -118,7 +120,6 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         for place, h in enumerate(diagnosis.effects)
         if place < ALWAYS or h.probability > SELDOM
     ]
-    retuned = 1.0 - unknown.probability - sum(h.probability for h in diagnosis.effects)
     if retuned > SELDOM:
         rows.append(("other parameters alone", "see the notes", percent(retuned), "", ""))
     rows.append(("none of the library", unknown.class_ or "", percent(unknown.probability), "", ""))

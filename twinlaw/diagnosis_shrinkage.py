@@ -33,7 +33,7 @@ def _predictions(shrinkage: Shrinkage, found: bool) -> Section:
         "The lower a bar, the better; below the green one noise decides.",
         "Re-tuned means that parameters moved within what the plant file states of them: that is no gap.",
     ]
-    if shrinkage.fraction is not None:
+    if shrinkage.fraction is not None and found:
         interval = shrinkage.fraction_ci95
         within = "" if interval is None else f", 95 % interval {percent(interval[0])} to {percent(interval[1])}"
         sentences.append(
@@ -56,7 +56,7 @@ def _closed_loop(loop: ClosedLoop, found: bool) -> Section:
         f"The controller's own code flew each model along {', '.join(loop.logs)} again, from where the rig was after 2 s. "
         "The bars show how far angles and commands then are from the log; the floor is what unrest and rounding make of it."
     ]
-    if loop.fraction is not None:
+    if loop.fraction is not None and found:
         sentences.append(f"Of what a perfect model could remove beyond re-tuning, {percent(loop.fraction)} is removed.")
     for bar in loop.diverged:
         sentences.append(

@@ -125,7 +125,7 @@ def test_the_page_needs_no_network_and_no_script() -> None:
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
         (
             {"found": (), "effects": (), "unknown": Unknown(0.01), "notes": (MOVED,)},
-            "other parameters than the plant file",
+            "nothing else is missing: J_A.",
         ),
     ],
 )
