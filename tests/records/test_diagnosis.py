@@ -1,0 +1,59 @@
+"""diagnosis.json: what is written is read back, and a file of the contract's keys alone is one, too."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from records.diagnosis import (
+    Agreement,
+    ClosedLoop,
+    Diagnosis,
+    Hypothesis,
+    PlaceShare,
+    Shrinkage,
+    Unknown,
+    diagnosis_text,
+    parse_diagnosis,
+)
+from records.errors import BadInput
+
+RMS = {"psi_rad": 0.01, "phi_rad": 0.02}
+LOOP = ClosedLoop({**RMS, "u_M_V": 0.3}, RMS, RMS, RMS, None, None, ("nominal",), ("hold",))
+AGREEMENT = Agreement(0.026, {"nominal": 0.5, "after": 1.0}, {"after": 0.99}, {}, {"before": -20.0})
+WHOLE = Diagnosis(
+    verdict="gap",
+    false_alarm_probability=0.001,
+    places=(PlaceShare("azimuth", 1.0),),
+    effects=(Hypothesis("azimuth.tilt", "torque(phi) on azimuth", 0.9, {}, ("azimuth.wind",)),),
+    unknown=Unknown(0.1),
+    shrinkage=Shrinkage(RMS, RMS, RMS, RMS, 0.9, (0.8, 0.95), {"psi_rad": AGREEMENT}, LOOP),
+    notes=("one",),
+)
+
+
+@pytest.mark.parametrize(
+    "diagnosis",
+    [WHOLE, replace(WHOLE, shrinkage=None), Diagnosis("no gap", None)],
+    ids=["whole", "no hold-out", "least"],
+)
+def test_what_is_written_is_read_back(diagnosis: Diagnosis) -> None:
+    assert parse_diagnosis(json.loads(diagnosis_text(diagnosis)), "file") == diagnosis
+
+
+def test_a_file_without_the_further_keys_of_shrinkage_is_read() -> None:
+    content = json.loads(diagnosis_text(WHOLE))
+    for key in ("agreement", "closed_loop"):
+        del content["shrinkage"][key]
+    found = parse_diagnosis(content, "file")
+    assert found.shrinkage is not None
+    assert found.shrinkage.agreement == {}
+    assert found.shrinkage.closed_loop is None
+
+
+@pytest.mark.parametrize(("part", "key"), [("shrinkage", "rms_after"), ("unknown", "probability")])
+def test_a_missing_key_of_the_contract_is_named(part: str, key: str) -> None:
+    content = json.loads(diagnosis_text(WHOLE))
+    del content[part][key]
+    with pytest.raises(BadInput, match=key):
+        parse_diagnosis(content, "file")
