@@ -5,6 +5,7 @@ the arm lies on its lower stop in u2 and u3, is ours: the reaction torque is not
 stays below what lifts the arm. Levels and times are ours too; the text has none.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -27,7 +28,7 @@ from sim.model import Model
 Array = NDArray[np.float64]
 DURATION_S, TURN_BACK_RAD, HOLD_ROWS = 30.0, 1.0, (150, 350)
 ROWS = round(DURATION_S / PERIOD_S)
-PUSH_ROWS = (30, 100)
+PUSH_ROWS = (30, 100)  # how long a push of the azimuth lasts at one level
 FLIGHT = (1.04, 0.97)  # of the voltage that lifts the arm, of the one at which it flies up to its stop
 TAIL_MU, CROSS_TAIL_MU, CROSS_MU, SWAY_MU = (0.05, 0.3), 0.15, (0.0, 0.4), (0.03, 0.07)
 RAMP = np.linspace(0.3, 0.8, 10000)
@@ -125,9 +126,9 @@ def _limits_MU(rig: VelagicRig) -> tuple[float, float]:
     return float(RAMP[np.argmax(moved)]), float(RAMP[np.argmax(level)])
 
 
-def run(experiment: Experiment, bound: BoundPlant, model: Model) -> Run:
-    """The whole record as one window from rest, a start that is known: what the part `model` of the plant has of inputs and outputs."""
-    motion = experiment.streams["motion"]
+def run(experiment: Experiment, bound: BoundPlant, part_of: Callable[[], Model]) -> Run:
+    """The whole record as one window from rest, a start that is known: what a part of the plant has of inputs and outputs."""
+    model, motion = part_of(), experiment.streams["motion"]
     part, columns = subsystem(bound, model), log_columns(model)
     u, y = (np.stack([motion[name] for name in names], axis=1) for names in (columns.inputs, columns.outputs))
     period_s = float(np.median(np.diff(motion["t_s"])))
@@ -139,9 +140,9 @@ def run(experiment: Experiment, bound: BoundPlant, model: Model) -> Run:
     return replace(whole, x0=x0, free=(), start_sd=np.zeros((1, 0)))
 
 
-def _kind(number: int, title: str, locked: tuple[str, ...], perform: models.Performed, model: Model,
+def _kind(number: int, title: str, locked: tuple[str, ...], perform: models.Performed, part_of: Callable[[], Model],
           code: dict[str, tuple[float, float, int]]) -> Kind:  # fmt: skip
-    return Kind(number, title, "upright", locked, tuple(code), perform, partial(run, model=model), {}, code)
+    return Kind(number, title, "upright", locked, tuple(code), perform, partial(run, part_of=part_of), {}, code)
 
 
 def _coded(lower: float, bits: int) -> tuple[float, float, int]:
@@ -158,7 +159,7 @@ KINDS = {
         "u1: main motor lifts the arm",
         ("azimuth",),
         main_motor,
-        models.arm(),
+        models.arm,
         {
             "a_1": _coded(0.0, 17),
             "b_1": _coded(0.0, 16),
@@ -172,7 +173,7 @@ KINDS = {
         "u2: tail motor turns the azimuth",
         (),
         tail_motor,
-        models.turn_by_tail(),
+        models.turn_by_tail,
         {"a_2": _coded(0.0, 19), "b_2": _coded(0.0, 16), "B_phi": _coded(0.0, 20), "Ic_inv": _coded(450.0, 26)},
     ),
     "cross_coupling": _kind(
@@ -180,10 +181,10 @@ KINDS = {
         "u3: main motor turns the azimuth",
         (),
         cross_coupling,
-        models.turn_by_both(),
+        models.turn_by_both,
         {"a_3": _coded(0.0, 18), "b_3": _coded(0.0, 16)},
     ),
     "gyroscopic": _kind(
-        4, "kG: a turning azimuth tips the arm", (), gyroscopic, models.whole(), {"k_G": _coded(0.0, 19)}
+        4, "kG: a turning azimuth tips the arm", (), gyroscopic, models.whole, {"k_G": _coded(0.0, 19)}
     ),
 }
