@@ -8,7 +8,7 @@ import pytest
 from diagnosis.case import Case, make_case
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.kit import make_kit
-from diagnosis.reflight import closed_loop
+from diagnosis.reflight import closed_loop, refly
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effects.api import with_effects
@@ -81,3 +81,16 @@ def test_rows_that_are_missing_are_flown_through(plant: BoundPlant, log: RunLog)
 def test_logs_without_a_table_are_not_flown(case: Case) -> None:
     without = nothing_supposed(case, -4.0)
     assert closed_loop(case, ["hold"], [None], dict.fromkeys(("nominal", "before", "after"), without)) is None
+
+
+def test_only_the_first_samples_of_a_long_log_are_flown(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Truth: the spring's flights of the first 200 samples behind the lead of 2 s are those of the whole flight, cut.
+    without = nothing_supposed(case, -4.0)
+    bars = dict.fromkeys(("nominal", "before", "after"), without)
+    whole = refly(case, "hold", ce150_table(), bars)
+    monkeypatch.setattr("diagnosis.reflight.MOST_SAMPLES", 200)
+    cut = refly(case, "hold", ce150_table(), bars)
+    assert whole is not None
+    assert cut is not None
+    assert len(cut.t_s) == 200
+    assert np.array_equal(cut.errors["after"], whole.errors["after"][:200])
