@@ -14,6 +14,7 @@ from identification.solve import Problem, solve
 
 Array = NDArray[np.float64]
 DRAWN = 50  # points, as many as a population of seed 001
+UNBOUNDED = 5.0  # sizes
 BITS = 20  # of a parameter whose length nobody states: one step is a millionth of its range
 
 
@@ -53,9 +54,16 @@ class Searched:
 def search(problem: Problem, places: list[int], wanted: Search) -> tuple[Searched, ...]:
     """The wanted method's result for the parameters at `places`, the others held, and those of the methods beside it.
 
-    The same seed gives the same values.
+    A parameter without bounds is looked for within some sizes of its start. The same seed gives the same values.
     """
-    return tuple(_one(problem, places, wanted, method) for method in (wanted.method, *wanted.beside))
+    reach = UNBOUNDED * problem.scale
+    lower, upper = np.maximum(problem.lower, problem.start - reach), np.minimum(problem.upper, problem.start + reach)
+    finite = replace(
+        problem,
+        lower=np.where(np.isfinite(problem.lower), problem.lower, lower),
+        upper=np.where(np.isfinite(problem.upper), problem.upper, upper),
+    )
+    return tuple(_one(finite, places, wanted, method) for method in (wanted.method, *wanted.beside))
 
 
 def started(problem: Problem, places: list[int], found: Searched) -> Problem:

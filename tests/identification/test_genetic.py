@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from identification.belief import NOTHING
 from identification.experiments.table import kinds_of, perform
 from identification.experiments.velagic import KINDS
 from identification.genetic import Code, Settings, evolve, steps
@@ -10,6 +11,7 @@ from identification.population import absolute_error, predictions
 from identification.prediction import predicted
 from identification.search import Search, search
 from identification.solve import Prior, Problem
+from identification.staged import identify_stage
 from tests.plants import bound as plant_of
 
 
@@ -126,6 +128,18 @@ def test_what_is_left_at_the_truth_is_the_encoder_s_rounding(problem):
     """Rounding to steps q leaves q/4 in the mean: 0.022 deg each, and less while the arm rests on its stop."""
     mean_deg = absolute_error(problem, problem.start[None])[0] / problem.runs[0].y.size
     assert 0.5 * 0.022 < mean_deg < 1.1 * 0.022
+
+
+@pytest.mark.parametrize("method", ["genetic", "evolution", "gradient"])
+def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start(method):
+    """Experiment 3 of seed 000: Psi_m has no bounds, and is 0 on this rig; every reading is a balance, not a motion."""
+    plant = plant_of("ce150")
+    stage = identify_stage(plant, perform("gravity", plant, 1), NOTHING, None, Search(method, 1))
+    (found,) = stage.result.searched
+    place = found.names.index("Psi_m")
+    assert (found.lower[place], found.upper[place]) == (-0.5, 0.5)
+    assert abs(found.values[place]) < 0.1
+    assert stage.belief.value("tau_gE") == pytest.approx(plant.parameter("tau_gE"), rel=3e-3)
 
 
 def test_a_better_string_is_told_at_once(problem):
