@@ -12,6 +12,7 @@ from scipy.optimize import lsq_linear
 
 from identification.envelope.flight import Deviations
 from identification.envelope.free_run import Model, free_run
+from identification.margins import REQUIRED_s
 
 Array = NDArray[np.float64]
 
@@ -54,20 +55,26 @@ def by_hand(model: Model, flight: Deviations, margins: Array, rounds: int = 2) -
 def automatic(model: Model, flight: Deviations, margins: Array, trim: bool = False) -> Tuned:
     """The start, and with `trim` the drift of an error of the trim too, that minimise the squared error in margins within bounds.
 
-    The bounds are `REACH` and `TRIM_s`; at the minimum the conditions of Karush, Kuhn and Tucker hold.
+    The bounds are `REACH` and `TRIM_s`; at the minimum the conditions of Karush, Kuhn and Tucker hold. The whole flight counts, unless
+    its late errors bend the start so far that the three-second rule is broken: then half of it, a quarter, and so on.
     """
-    x, states = flight.x[0], len(margins)
-    effects = _effects(model, len(x))[:, :, : 2 * states if trim else states]
+    x, needed = flight.x[0], round(REQUIRED_s / flight.sample_period_s)
+    effects = _effects(model, len(x))[:, :, : (2 if trim else 1) * len(margins)]
     base = free_run(model, flight.u, flight.x[:, 0])[0]
     reach = REACH * margins
     if trim:
         reach = np.concatenate([reach, margins * flight.sample_period_s / TRIM_s])
-    # Unknowns are counted in their bounds, else the small drifts spoil the conditioning.
-    matrix = (effects * reach / margins[:, None]).reshape(-1, effects.shape[2])
-    found = lsq_linear(matrix, ((x - base) / margins).ravel(), (-1.0, 1.0), tol=1e-12)
-    move = found.x * reach
-    drift = move[states:] if trim else np.zeros(states)
-    return _run(model, flight, flight.x[0, 0] + move[:states], drift)
+    rows = len(x)
+    while True:
+        # Unknowns are counted in their bounds, else the small drifts spoil the conditioning.
+        matrix = (effects[:rows] * reach / margins[:, None]).reshape(-1, effects.shape[2])
+        found = lsq_linear(matrix, ((x - base)[:rows] / margins).ravel(), (-1.0, 1.0), tol=1e-12)
+        move = np.zeros(2 * len(margins))
+        move[: len(reach)] = found.x * reach
+        tuned = _run(model, flight, x[0] + move[: len(margins)], move[len(margins) :])
+        rows //= 2
+        if rows < needed or np.all(np.abs(tuned.x - x)[:needed] <= margins):
+            return tuned
 
 
 def _run(model: Model, flight: Deviations, start: Array, drift: Array) -> Tuned:

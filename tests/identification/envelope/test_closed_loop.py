@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from identification.envelope import initial_state
 from identification.envelope.closed_loop import optimise
 from identification.envelope.flight import Deviations
 from identification.envelope.free_run import Model, free_run, model_of, one_step, slopes
@@ -78,6 +79,19 @@ def test_automatic_tuning_finds_a_shift_within_its_bounds():
     shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim)
     shifted.x[0, 0] += shift
     assert automatic(TRUTH, shifted, MARGINS).start == pytest.approx(data.x[0, 0], abs=2e-3)
+
+
+def test_late_errors_do_not_break_the_first_three_seconds(monkeypatch):
+    """A model that diverges late: the whole flight's best start leaves the margins early, the tuned one does not for 60 rows of 0.05 s."""
+    data = flown(0.05, flights=1)
+    model = Model(1.01 * TRUTH.A, TRUTH.B, 0.05)
+
+    def broken(tuned):
+        return np.any(np.abs(tuned.x - data.x[0])[:60] > MARGINS)
+
+    assert not broken(automatic(model, data, MARGINS, trim=True))
+    monkeypatch.setattr(initial_state, "REQUIRED_s", 0.0)
+    assert broken(automatic(model, data, MARGINS, trim=True))
 
 
 def test_beyond_a_bound_it_stays_there_and_no_step_inwards_helps():
