@@ -185,3 +185,10 @@ def test_held_inputs_act_one_row_later():
     np.testing.assert_allclose(
         held_response(Lag().matrices(np.array([1.0, T])), omega, h)[:, 0, 0], by_hand, rtol=1e-10
     )
+
+
+def test_a_direct_part_is_read_a_row_after_its_input():
+    """y = 3 u of the row before: T = 3 exp(-j omega h)."""
+    omega, zero = np.array([0.5, 20.0]), np.zeros((1, 1))
+    direct = StateSpace(zero - 1.0, zero, zero, zero + 3.0)
+    np.testing.assert_allclose(held_response(direct, omega, 0.05)[:, 0, 0], 3.0 * np.exp(-0.05j * omega), rtol=1e-12)
