@@ -8,6 +8,7 @@ import sympy
 
 from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from diagnosis.integrity_locked import locked_findings
+from diagnosis.integrity_motion import motion_findings
 from diagnosis.integrity_units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
 from records.log import RunLog
@@ -62,6 +63,7 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
         yield from _grid(log, name, column, facts.steps.get(column, 0.0))
         yield from reference_unit(log, name, column)
     yield from locked_findings(log, name, bound)
+    yield from motion_findings(log, name, bound)
     yield from rate_unit(log, name, bound.model)
     yield from rotor_unit(log, name, bound, facts.limits)
 

@@ -94,6 +94,11 @@ def test_a_clean_log_has_no_findings_and_its_numbers_are_told() -> None:
         (lambda log: replace(log, u=0.0 * log.u, y=0.0 * log.y + 0.1, extra={}), "constant", None),
         (lambda log: replace(log, y=0.0 * log.y + 0.1, extra={}), "stuck_sensors", None),
         (lambda log: replace(log, y=np.nan * log.y, extra={}), "not_recorded", None),
+        (
+            lambda log: _column(log, "phi_rad", np.random.default_rng(8).permutation(log.y[:, 1])),
+            "no_motion",
+            "phi_rad",
+        ),
         (lambda log: _column(log, "phi_rad", np.full(2001, 0.2)), "axis_stands", "phi_rad"),
         (lambda log: _column(log, "psi_rad", np.full(2001, 0.1)), "axis_stands", "psi_rad"),
         (lambda log: rows_of(log, np.arange(len(log.t_s)) < 10), "too_short", "t_s"),

@@ -75,13 +75,11 @@ def test_a_log_of_one_constant_gives_no_name(tmp_path: Path, log: RunLog) -> Non
         assert diagnosis.found == ()
 
 
-def test_noise_instead_of_angles_gives_no_confident_name(tmp_path: Path, log: RunLog) -> None:
+def test_noise_instead_of_angles_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], log: RunLog) -> None:
     rng, log = np.random.default_rng(3), part(log, slice(0, 600))
     step = 1.5339807878856412e-3
     y = step * np.round(0.3 * rng.standard_normal(log.y.shape) / step)
-    if diagnosed(tmp_path, replace(log, y=y, extra={})) == 0:
-        diagnosis = load_diagnosis(tmp_path / "out" / "diagnosis.json")
-        assert all(entry.probability < 0.9 for entry in diagnosis.effects)
+    assert "from row to row" in refused(tmp_path, capsys, replace(log, y=np.clip(y, -0.7, 0.7), extra={}))
 
 
 def test_an_input_with_the_wrong_sign_is_refused_by_name(
@@ -91,17 +89,6 @@ def test_an_input_with_the_wrong_sign_is_refused_by_name(
     line = refused(tmp_path, capsys, part(turned, slice(0, 1500)))
     assert "u_T_V has the wrong sign" in line
     assert "turn the sign of u_T_V" in line
-
-
-def test_inputs_of_another_run_give_no_name(tmp_path: Path, log: RunLog) -> None:
-    # Truth: these inputs drove the same rig seven seconds later, so no term of any model ties them to these angles.
-    late = part(replace(log, u=np.roll(log.u, -700, axis=0), extra={}), slice(0, 1200))
-    assert diagnosed(tmp_path, late, holdout=part(log, slice(1200, 2000))) == 0
-    diagnosis = load_diagnosis(tmp_path / "out" / "diagnosis.json")
-    assert diagnosis.verdict == "gap"
-    assert diagnosis.found == ()
-    assert all(entry.probability < 0.5 for entry in diagnosis.effects)
-    assert diagnosis.unknown.probability > 0.5
 
 
 def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files(tmp_path: Path, log: RunLog) -> None:

@@ -1,0 +1,31 @@
+"""Angles that no mass could have: as far from row to row as over the whole run."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from diagnosis.integrity_finding import REFUSE, Finding, Found
+from records.log import RunLog
+from sim.bind import BoundPlant
+
+LEAST_STEPS = 20.0  # of its encoder that an angle must usually be off its middle
+JUMPS = 1.0  # median change from row to row over the median distance from the middle: 1.41 for numbers without order
+
+
+def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
+    """Outputs that are an axis' position and whose rows know nothing of each other: noise, or rows that were shuffled."""
+    positions = {str(axis.position) for axis in bound.model.axes if axis.position is not None}
+    for column, expression in bound.model.outputs.items():
+        read = log.column(column)[np.isfinite(log.column(column))]
+        step = bound.plant.sensors.get(column, 0.0)
+        if str(expression) not in positions or step <= 0.0 or read.size < 3:
+            continue
+        usual = float(np.median(np.abs(read - np.median(read))))
+        jump = float(np.median(np.abs(np.diff(read))))
+        if usual > LEAST_STEPS * step and jump > JUMPS * usual:
+            span = (float(log.t_s[0]), float(log.t_s[-1]))
+            sentence = (
+                f"{column} jumps by {jump:.3g} from row to row, as far as it is from its middle: rows without order"
+            )
+            remedy = f"check the order of the rows and what was read as {column}"
+            yield Found(Finding("no_motion", name, column, *span, sentence, REFUSE, 0, "an angle that moves", remedy))
