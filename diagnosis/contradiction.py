@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.filter import Pass
-from diagnosis.fit import WIDE, Fit
+from diagnosis.fit import WIDE, Fit, fit
 from diagnosis.hypothesis import passes
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ class Contradiction:
     moved: tuple[tuple[str, float], ...]
 
 
-def contradiction(case: Case, fit: Fit) -> Contradiction | None:
+def contradiction(case: Case, found: Fit) -> Contradiction | None:
     """The log that gains most by numbers of its own beside a joint fit, to first order; None for a single log.
 
     With g the slope of one log's misfit and I its information at the joint fit, numbers d of its own gain g' S^-1 g / 2 where
@@ -32,18 +32,24 @@ def contradiction(case: Case, fit: Fit) -> Contradiction | None:
     """
     if len(case.flights) < 2:
         return None
-    variant = case.kit.variant(fit.supposed.effects)
-    inside = [entry for entry in fit.free if entry.effect in variant.names]
+    variant = case.kit.variant(found.supposed.effects)
+    inside = [entry for entry in found.free if entry.effect in variant.names]
     places = [variant.place(entry.effect, entry.parameter.symbol) for entry in inside]
-    runs = passes(case, fit.supposed, [*case.free.tolist(), *places])
+    runs = passes(case, found.supposed, [*case.free.tolist(), *places])
     if runs is None:
         return None
     scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
     before = np.concatenate([np.ones(len(case.free)), np.full(len(inside), WIDE**-2)])
     names = [str(case.kit.bound.model.parameter_symbols[place]) for place in case.free]
     names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]
-    found = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]
-    return max(found, key=lambda entry: entry.gain)
+    parts = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]
+    return max(parts, key=lambda entry: entry.gain)
+
+
+def parted_gain(case: Case, found: Fit) -> float:
+    """Nats that the logs gain if each is fitted by itself: what first order promises of limits and steps is often not there."""
+    apart = [fit(case.with_flights([flight]), found.supposed, rounds=6) for flight in case.flights]
+    return sum(entry.log_posterior if entry else -np.inf for entry in apart) - found.log_posterior
 
 
 def _own_numbers(runs: Sequence[Pass], index: int, scale: Array, before: Array, names: Sequence[str]) -> Contradiction:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.contradiction import Contradiction, contradiction
+from diagnosis.contradiction import Contradiction, contradiction, parted_gain
 from diagnosis.instants import TIMES
 from diagnosis.misfit import ignorance
 from diagnosis.search import Search, Tried
@@ -47,6 +47,8 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
     gain = best.evidence - found.nominal.evidence
     sentences, forbids = [], False
     apart = contradiction(case, best.fit)
+    if apart is not None and apart.gain > max(WORTH_TELLING, TOO_MUCH * gain):
+        apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
     if apart is not None and apart.gain > WORTH_TELLING:
         sentences.append(_contradiction(apart, names))
         forbids = apart.gain > TOO_MUCH * gain

@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 NATS_PER_FORM = 2.0
 MOST_FORMS = 4
 SAME_PLACE = 0.3
+LIMITS, OTHER_KNEE = (".saturation", ".slew_limit"), 0.05  # a limit's knee may be rounder than the library's
 OWN = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
@@ -37,11 +38,18 @@ def suspects(detection: Detection) -> list[Suspect]:
 def left_beside(detection: Detection, effects: Sequence[str]) -> float:
     """Nats that the best class of forms still gains beside effects; what acts where they do is rather their own form, a little other."""
     own = {_side(name.split(".")[0]) for name in effects}
+    limited = {_side(name.split(".")[0]) for name in effects if name.endswith(LIMITS)}
+
+    def weight(place: str, text: str) -> float:
+        if text.startswith("limit(") and _side(place) in limited:
+            return OTHER_KNEE
+        return SAME_PLACE if _side(place) in own else 1.0
+
     usual = np.maximum(1.0, detection.null_gain / MEAN_GAIN)
     alone = gains(detection.scores) / usual
-    found = [(suspect.place, suspect.gain) for suspect in suspects(detection)]
-    found += [(form.place, float(gain)) for form, gain in zip(detection.forms, alone, strict=True)]
-    return max((gain * (SAME_PLACE if _side(place) in own else 1.0) for place, gain in found), default=0.0)
+    found = [suspect.gain * weight(suspect.place, suspect.class_text) for suspect in suspects(detection)]
+    found += [float(g) * weight(form.place, form.class_text) for form, g in zip(detection.forms, alone, strict=True)]
+    return max(found, default=0.0)
 
 
 def _side(place: str) -> str:

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 # Set on development cases of the sealed benchmark's generator (seed 21): nats below which two hypotheses are alike, and what a form a
 # little off the truth may cost, which grows with the whole gain; what each further effect must overcome; and what a right effect of
 # the library may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
-ALIKE, OFF_FORM, OFF_POWER, FURTHER = 10.0, 1.0, 0.35, 2.5
+ALIKE, OFF_FORM, OFF_POWER, OFF_SHARE, FURTHER = 10.0, 1.0, 0.35, 4e-4, 2.5
 LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
 RETUNE_COST = 10.0
 SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
@@ -39,12 +39,13 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     if not named:
         return _nameless(nominal, left, retune)
     best = max(entry.evidence for entry in named)
-    scale = ALIKE + OFF_FORM * max(best - nominal.evidence, 0.0) ** OFF_POWER
+    whole = max(best - nominal.evidence, 0.0)
+    scale = ALIKE + OFF_FORM * whole**OFF_POWER + OFF_SHARE * whole
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
     scores += [prior_odds(entry) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
     scores -= strain - strain.min()
-    expected = LEFT_NATS + LEFT_SHARE * max(best - nominal.evidence, 0.0)
+    expected = LEFT_NATS + LEFT_SHARE * whole
     unknown = LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - UNKNOWN
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
