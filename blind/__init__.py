@@ -2,7 +2,7 @@
 
 from blind.make import make
 from blind.mix import KINDS
-from blind.score import Score, score
+from blind.score import Score, score, score_all
 from blind.table import markdown, to_json
 
-__all__ = ["KINDS", "Score", "make", "markdown", "score", "to_json"]
+__all__ = ["KINDS", "Score", "make", "markdown", "score", "score_all", "to_json"]

@@ -64,8 +64,16 @@ def score(folder: Path, results: Path) -> Score:
 
     A missing or unreadable answer counts as wrong in every figure and is named. Raises BadInput where the seal is broken.
     """
-    truths = open_seal(folder)
-    judgements = [_judged(folder / name, results / name, name, truth) for name, truth in truths.items()]
+    return score_all([(folder, results)])
+
+
+def score_all(answered: Sequence[tuple[Path, Path]]) -> Score:
+    """One score over several folders of cases, each with its results."""
+    judgements = [
+        _judged(folder / name, results / name, name if len(answered) == 1 else f"{folder.name}/{name}", truth)
+        for folder, results in answered
+        for name, truth in open_seal(folder).items()
+    ]
     bins = reliability([j.stated for j in judgements if j.stated is not None])
     return Score(
         cases=len(judgements),

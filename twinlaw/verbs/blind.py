@@ -45,8 +45,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     plain.add_argument("results", type=Path, metavar="RESULTS")
     plain.set_defaults(part=_baseline)
     scorer = verbs.add_parser("score", help="score answers against the truth")
-    scorer.add_argument("cases", type=Path, metavar="DIR")
-    scorer.add_argument("results", type=Path, metavar="RESULTS")
+    scorer.add_argument(
+        "answered",
+        type=Path,
+        nargs="+",
+        metavar="DIR RESULTS",
+        help="cases and their answers; several are scored as one",
+    )
     scorer.add_argument(
         "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
     )
@@ -104,7 +109,10 @@ def _baseline(chosen: argparse.Namespace) -> int:
 
 
 def _score(chosen: argparse.Namespace) -> int:
-    result = blind.score(chosen.cases, chosen.results)
+    if len(chosen.answered) % 2:
+        got = f"{len(chosen.answered)} folders"
+        raise BadInput("folders", "blind score", got, "a RESULTS behind every DIR", "name both of each")
+    result = blind.score_all(list(zip(chosen.answered[::2], chosen.answered[1::2], strict=True)))
     if chosen.reliability is not None:
         bins = [(entry.stated, entry.right, entry.count) for entry in result.bins]
         write_atomic(chosen.reliability, plots.reliability(bins))
