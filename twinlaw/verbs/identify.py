@@ -4,7 +4,9 @@ FILES are experiments (TOML of `twinlaw experiments`, or a folder of them) and r
 taken in the order of the paper, each for its own subsystem, and what one tells goes on to the next with its covariance; logs come last
 and are cut into windows with free starts, so that closed loops and unstable plants are welcome. Writes DIR/plant.toml, which every verb
 takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what is done.
-With --truth the controller designed from the result flies that plant, and the report lays both flights over one another.
+--search looks through the whole range first (genetic: the algorithm of seed 001), and the report lays the gradient method beside it.
+With --truth the controller designed from the result flies that plant, and the report lays both flights over one another; for
+ce150_velagic it redraws Figs. 12 to 14 of seed 001.
 
 --method frequency matches the frequency responses of swept logs (`twinlaw sweep`) instead: the plant linearised where the logs rest, or
 the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --band-rad-s, --trim, --holdout and --seed.
