@@ -63,7 +63,7 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
     if worse > REFUTED and not _is_event(case, weighed.tried[0]):
         named = " + ".join(weighed.tried[0].effects)
         sentences.append(
-            f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as re-tuned without"
+            f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as without"
         )
         forbids = True
     furthest = float(np.max(np.abs(best.fit.supposed.theta), initial=0.0))

@@ -148,11 +148,17 @@ def _checked(checked: Case | None, material: Material, weighed: Weighed, retuned
 
 
 def _worse(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried) -> float:
-    """How many times as large the hold-out's mean square error is with what is named as without it; 0 where nothing is."""
+    """How many times as large the hold-out's mean square error is with what is named as without, re-tuned or not; 0 for no name."""
     if checked is None or not weighed.tried or weighed.probabilities[0] < weighed.unknown:
         return 0.0
     predicted = _predicted(checked, material, retuned, weighed.tried[0])
-    return error(checked, predicted, "after") / error(checked, predicted, "before")
+    return error(checked, predicted, "after") / _without(checked, predicted)
+
+
+def _without(checked: Case, predicted: Sequence[Predicted]) -> float:
+    """The hold-out's error without an effect, as stated or re-tuned, whichever is less; a plant that predicts no row does not count."""
+    errors = [error(checked, predicted, bar) for bar in ("nominal", "before")]
+    return min((value for value in errors if value > 0.0), default=float("inf"))
 
 
 def _added(
@@ -166,9 +172,7 @@ def _added(
     predicted = _predicted(checked, material, retuned, first)
     if checked is None or first is retuned:
         return first, predicted
-    if error(checked, predicted, "after") < HELPS * min(
-        error(checked, predicted, bar) for bar in ("nominal", "before")
-    ):
+    if error(checked, predicted, "after") < HELPS * _without(checked, predicted):
         return first, predicted
     return retuned, _predicted(checked, material, retuned, retuned)
 
