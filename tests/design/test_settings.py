@@ -1,6 +1,7 @@
 """The [design] section: defaults, and each thing that cannot be used as one clear line."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +9,7 @@ from design.operating_points import design_points
 from design.settings import AXIS_DEFAULTS, DEFAULTS, MARGIN_DEFAULTS, read_settings
 from design.table import make_table
 from records.errors import BadInput
+from records.plant import load_plant
 from sim.bind import bind
 from tests.design.helicopter import helicopter
 
@@ -96,3 +98,10 @@ def test_an_operating_point_that_the_rotor_cannot_hold_is_named():
     settings = read_settings(bound)
     with pytest.raises(BadInput, match=r"u_M_V.*at -40 deg.*V needed|at -40 deg.*u_M_V.*V needed"):
         make_table(bound, settings, design_points(bound, settings))
+
+
+def test_a_plant_without_an_elevation_is_told_what_the_design_is_for():
+    """The other plants have no schedule over Psi; a reader of the message learns which plants do."""
+    bound = bind(load_plant(Path("plants/emps.toml")))
+    with pytest.raises(BadInput, match=r"plant 'emps'.*a helicopter with an elevation"):
+        read_settings(bound)
