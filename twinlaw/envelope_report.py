@@ -54,7 +54,7 @@ def _inputs(entry: ConditionResult, found: Study) -> Section:
         "Manoeuvres and margins (1.2, Table 1.1)",
         (
             "Multistep inputs cover more octaves than a doublet, at 3.5 times its energy, and can be flown by hand. Both are asymmetric, "
-            "so some energy lies at zero frequency; the 2-3-1-1 begins with the shorter step and stays nearer to trim.",
+            "so some energy lies at zero frequency; the 2-3-1-1 begins with a shorter step than its longest, nearer to trim.",
             f"The four manoeuvres of {entry.condition.name} one after the other, as deviations from each flight's trim; the other "
             "controls move too, as the pilot steadies the machine.",
         ),
