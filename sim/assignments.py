@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import sympy
 
@@ -20,6 +21,7 @@ class Constants:
     expressions: list[sympy.Expr] = field(default_factory=list)
     reserved: int = 0
     places: dict[sympy.Expr, int] = field(default_factory=dict)  # of those that are not reserved
+    known: dict[sympy.Expr, sympy.Expr] = field(default_factory=dict, init=False)  # parts that were lifted before
 
     def index(self, expression: sympy.Expr) -> int:
         """The place of `expression` in the list, which it joins if it is new."""
@@ -30,6 +32,11 @@ class Constants:
 
     def lifted(self, expression: sympy.Expr) -> sympy.Expr:
         """The same expression with every part that depends on parameters alone replaced by a symbol c[i]."""
+        if expression not in self.known:
+            self.known[expression] = self._lifted(expression)
+        return self.known[expression]
+
+    def _lifted(self, expression: sympy.Expr) -> sympy.Expr:
         if expression.is_Number:
             return expression
         if isinstance(expression, sympy.Expr) and not symbols_of(expression) & self.variables:
@@ -76,12 +83,19 @@ def _single_angles(expression: sympy.Expr) -> sympy.Expr:
     """sin(2 a) and the like in terms of sin a and cos a, so that one pair serves them all."""
     multiples = [
         function
-        for function in expression.atoms(sympy.sin, sympy.cos)
+        for function in _functions_of(expression)
         if function.args[0].as_coeff_Mul()[0].is_Integer and abs(function.args[0].as_coeff_Mul()[0]) > 1
     ]
     return expression.xreplace({function: sympy.expand_trig(function) for function in multiples})
 
 
 def _angles(expressions: Iterable[sympy.Expr]) -> list[sympy.Expr]:
-    found = {function.args[0] for expression in expressions for function in expression.atoms(sympy.sin, sympy.cos)}
+    found = {function.args[0] for expression in expressions for function in _functions_of(expression)}
     return sorted(found, key=sympy.default_sort_key)
+
+
+@lru_cache(maxsize=1 << 16)
+def _functions_of(expression: sympy.Basic) -> frozenset[sympy.Function]:
+    """Sines and cosines in an expression; each shared part is looked through once."""
+    own = frozenset((expression,)) if isinstance(expression, (sympy.sin, sympy.cos)) else frozenset()
+    return own.union(*(_functions_of(argument) for argument in expression.args))
