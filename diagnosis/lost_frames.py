@@ -8,6 +8,7 @@ innovations were found with a share pi of the loss supposed already, the log of 
 and under a loss with probability p in every frame the log evidence of all is the sum of log(1 - p + p exp L).
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,8 @@ from diagnosis.inputs import LOST_FRAMES, lost_with
 from diagnosis.unrest import with_unrest
 
 Array = NDArray[np.float64]
-APART = 100  # rows after which the filter has forgotten a frame
+APART = 60  # rows after which the filter has forgotten a frame
+SWEEPS, FIRST_SHARE = 3, 0.1
 SHARES = np.geomspace(1e-3, 0.8, 60)
 WORTH = 10.0  # nats below which no frame counts as lost
 
@@ -32,7 +34,12 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
     and None where nothing speaks for losses."""
     if LOST_FRAMES not in case.kit.candidates or not _drives(case):
         return case, None
-    found = _with_ratios(case, ground)
+    if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
+        return case, None
+    found = _with_ratios(case, ground, 0)
+    if evidence(found, likely_share(found)) < WORTH:
+        return case, None
+    found = _with_ratios(case, ground, SWEEPS)
     if evidence(found, likely_share(found)) < WORTH:
         return case, None
     supposed = ground.fit.supposed
@@ -67,34 +74,52 @@ def _drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     }
 
 
-def _with_ratios(case: Case, ground: Ground) -> Case:
+def _with_ratios(case: Case, ground: Ground, sweeps: int) -> Case:
+    """The case with L of every frame, 0 where the command stays as it was; `sweeps` 0 takes every frame for itself."""
     at = 0
     flights: list[Flight] = []
-    for flight, tape in zip(case.flights, ground.tapes, strict=True):
-        rows = tape.rows * (max(case.slots) + 1)
-        w = ground.w[at : at + rows].reshape(tape.rows, -1)
+    for index, flight in enumerate(case.flights):
+        rows = flight.tape.rows * (max(case.slots) + 1)
+        w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
-        flights.append(replace(flight, tape=replace(flight.tape, lost=_ratios(case, ground, len(flights), w))))
+        answers = _unit_answers(case, ground, index)
+        ratios = _ratios(flight.tape.u, list(_drives(case)), answers, w, sweeps)
+        flights.append(replace(flight, tape=replace(flight.tape, lost=ratios)))
     return case.with_flights(flights)
 
 
-def _ratios(case: Case, ground: Ground, index: int, w: Array) -> Array:
-    """L of every frame of a flight; 0 where the command stays as it was."""
-    flight, tape, run = case.flights[index], ground.tapes[index], ground.runs[index]
-    supposed = ground.fit.supposed
+def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
+    """Answers (rows, slots, drives, APART) to a unit step of each drive's input that lasts one frame: frames APART rows apart share a
+    column."""
+    tape, run, supposed = ground.tapes[index], ground.runs[index], ground.fit.supposed
     p = coefficients(case, case.kit.variant(supposed.effects), supposed)
     known = {symbol: p[place] for place, symbol in enumerate(case.kit.bound.model.parameter_symbols)}
-    rows = np.arange(len(tape.t_s))
+    rows, drives = np.arange(len(tape.t_s)), _drives(case)
     h = np.append(np.diff(tape.t_s), 0.0)
-    drives = _drives(case)
-    values = np.zeros((len(rows), len(drives), APART))
-    for place, (column, (_, gain)) in enumerate(drives.items()):
-        held = np.append(0.0, tape.u[:-1, column] - flight.tape.u[1:, column])
-        values[rows, place, rows % APART] = held * h * float(sympy.sympify(gain).subs(known))
-    answers = ground.filter.respond(tape, run, values, [state for state, _ in drives.values()], case.slots)
-    shares = lost_with(flight.tape.lost, supposed.effects.get(LOST_FRAMES, {}).get("p", 0.0))
-    found = np.zeros(len(rows))
-    for row in rows[1:].tolist():
-        a = answers[row : row + APART, :, row % APART]
-        found[row] = np.sum(a * (w[row : row + APART] + shares[row] * a)) - 0.5 * np.sum(a * a)
+    found = []
+    for state, gain in drives.values():
+        values = np.zeros((len(rows), 1, APART))
+        values[rows, 0, rows % APART] = h * float(sympy.sympify(gain).subs(known))
+        found.append(ground.filter.respond(tape, run, values, [state], case.slots))
+    return np.stack(found, axis=2)
+
+
+def _ratios(u: Array, columns: Sequence[int], answers: Array, w: Array, sweeps: int) -> Array:
+    """L of every frame: first each for itself, then in `sweeps` with what is supposed of all others taken out of the innovations."""
+    rows, left = len(u), w.copy()
+    found, lost, arrived = np.zeros(rows), np.zeros(rows), u.copy()
+    taken = np.zeros((rows, len(columns)))
+    for sweep in range(sweeps + 1):
+        share = float(np.clip(np.mean(lost), 0.003, 0.8)) if sweep else 0.0
+        for row in range(1, rows):
+            unit = answers[row : row + APART, :, :, row % APART]
+            held = (arrived[row - 1] - u[row])[columns]
+            a = unit @ held
+            before = left[row : row + APART] + unit @ taken[row]
+            found[row] = np.sum(a * before) - 0.5 * np.sum(a * a) if held.any() else 0.0
+            if sweeps:
+                lost[row] = lost_with(found[row], share if sweep else FIRST_SHARE) if held.any() else share
+                taken[row] = lost[row] * held
+                left[row : row + APART] = before - unit @ taken[row]
+                arrived[row, columns] = u[row, columns] + taken[row]
     return found

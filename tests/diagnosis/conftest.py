@@ -30,7 +30,8 @@ def plant() -> BoundPlant:
 def fly(plant: BoundPlant) -> Fly:
     """fly(seed, effects): a run of 30 s about level under lively references, with turbulence and parameters of `seed`.
 
-    With a `rig_seed` the parameters are that rig's, the same in every run.
+    With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
+    `jumps_rad` make the references jump so far every 50 ms.
     """
     table, _ = design(plant, read_settings(plant))
 
@@ -40,6 +41,8 @@ def fly(plant: BoundPlant) -> Fly:
         seconds: float = SECONDS,
         factors: Mapping[str, float] | None = None,
         rig_seed: int | None = None,
+        air: bool = True,
+        jumps_rad: float = 0.0,
     ) -> RunLog:
         rng = np.random.default_rng(seed)
         t_s = np.arange(0.0, seconds, 0.01)
@@ -48,6 +51,10 @@ def fly(plant: BoundPlant) -> Fly:
         reach = np.array([0.6, 1.2])
         swing = np.sin(2 * np.pi * waves[:, :, None] * t_s + phases[:, :, None]).mean(axis=1) * reach[:, None]
         reference = (swing - swing[:, :1]).T
+        if jumps_rad:
+            reference = (
+                reference + jumps_rad * rng.choice([-1.0, 1.0], (len(t_s) // 5 + 1, 2)).repeat(5, axis=0)[: len(t_s)]
+            )
         rig = with_effects(plant, effects) if effects else plant
         p = rig.p.copy()
         own = len(plant.p)
@@ -57,7 +64,7 @@ def fly(plant: BoundPlant) -> Fly:
         for name, factor in (factors or {}).items():
             p[names.index(name)] = factor * plant.p[names.index(name)]
         x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
-        noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3])
+        noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3]) if air else None
         run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy")
         manoeuvre = _Flown(t_s, reference)
         return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={})  # type: ignore[arg-type]

@@ -1,11 +1,18 @@
 """What readings say of sensors: play, delay and coarse grids recovered from readings made by their formulas."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from diagnosis.lattice import coarse_step, grid_evidence
 from diagnosis.sensors import standing_rows
-from diagnosis.tape import Tape, late
+from diagnosis.tape import Tape, late, tape_of
+from records.log import RunLog
+from records.plant import load_plant
+from sim.bind import bind
+from sim.columns import log_columns
 
 STEP = 1.5e-3
 
@@ -23,6 +30,7 @@ def tape(y: np.ndarray) -> Tape:
         place=places,
         rows=rows,
         usual=np.zeros(values.shape),
+        lost=np.zeros(rows),
     )
 
 
@@ -57,3 +65,29 @@ def test_late_readings_are_put_back_to_when_they_were_true(tau_s: float) -> None
     assert np.allclose(moved.t_s[seen], 0.01 * moved.y[seen, 0] - tau_s, atol=1e-6)
     assert np.array_equal(moved.place[seen, 0], moved.y[seen, 0].astype(int))
     assert seen.sum() >= 97
+
+
+def readings(y: np.ndarray) -> Tape:
+    """Readings of one output of the CE150 that only an encoder of STEP rounds."""
+    plant = load_plant(Path("plants/ce150.toml"))
+    columns = log_columns(bind(plant).model)
+    t_s = 0.01 * np.arange(len(y))
+    log = RunLog(columns, 0.01, "closed", t_s, np.zeros((len(y), 2)), np.column_stack([y, y]))
+    return tape_of(log, replace(plant, sensors={"psi_rad": STEP, "phi_rad": STEP}), list(columns.outputs))
+
+
+def test_the_same_count_read_again_says_no_more_than_once() -> None:
+    # n equal readings in a row are worth one reading: their weights 1/r add up to 12 / STEP^2, however many they are.
+    y = STEP * np.repeat([0, 1, 5, 6], [1, 7, 30, 2]).astype(float)
+    r = readings(y).r[:, 0]
+    for first, last in ((0, 1), (1, 8), (8, 38), (38, 40)):
+        assert np.sum(1.0 / r[first:last]) == pytest.approx(12.0 / STEP**2)
+
+
+def test_rounding_alone_is_no_noise_and_noise_is_seen() -> None:
+    # Rounding has STEP^2 / 12; white noise of two steps on top of it is seen to a tenth.
+    rng = np.random.default_rng(3)
+    angle = 0.3 * np.sin(np.linspace(0.0, 12.0, 6000))
+    assert readings(STEP * np.round(angle / STEP)).variance(0) == pytest.approx(STEP**2 / 12)
+    noisy = angle + 2.0 * STEP * rng.standard_normal(6000)
+    assert readings(STEP * np.round(noisy / STEP)).variance(0) == pytest.approx(4.0 * STEP**2, rel=0.1)
