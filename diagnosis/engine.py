@@ -80,12 +80,12 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         return _no_gap(case, checked, material, detection, stated, looks)
     demand_wiring(case, nominal, nominal_fit)
     found = search(case, nominal, kit.candidates, ground, looks, lossy)
-    detection = confirmed_by(detection, found)
+    beyond = retune(case, nominal)
+    detection = confirmed_by(detection, found, beyond)
     if detection.p > ALARM:
         return _no_gap(case, checked, material, detection, stated, looks)
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
-    beyond = retune(case, nominal)
     weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
     weighed = _checked(checked, material, weighed, stated, left)
@@ -106,11 +106,13 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     )
 
 
-def confirmed_by(detection: Detection, found: Search) -> Detection:
-    """A small gap also needs a hypothesis that explains it: without a gap, evidence of x nats has a chance of exp(-x) at most."""
+def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> Detection:
+    """A small gap also needs effects or parameters that explain it: without a gap, evidence of x nats has a chance of exp(-x) at most."""
     if detection.largest > PLAIN_TO_SEE:
         return detection
-    best = max((entry.evidence - found.nominal.evidence for entry in found.tried if entry.effects), default=0.0)
+    explained = [entry.evidence for entry in found.tried if entry.effects]
+    explained += [] if beyond is None else [beyond.score]
+    best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
     return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))
 
 

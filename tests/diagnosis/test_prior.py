@@ -43,4 +43,4 @@ def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, gap: 
     nothing = tried()
     ground = object()
     found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, ground, ())  # type: ignore[arg-type]
-    assert (confirmed_by(detection, found).p <= 0.01) is gap
+    assert (confirmed_by(detection, found, None).p <= 0.01) is gap
