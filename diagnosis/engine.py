@@ -167,7 +167,7 @@ def _added(
     checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, beyond: Retune | None
 ) -> tuple[Tried, tuple[Predicted, ...]]:
     """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
-    named = bool(weighed.tried) and weighed.probabilities[0] > max(weighed.unknown, weighed.retune)
+    named = bool(weighed.tried) and sum(weighed.probabilities) > max(weighed.unknown, weighed.retune)
     first = weighed.tried[0] if named else retuned
     if not named and beyond is not None and weighed.retune > weighed.unknown:
         first = beyond.tried
