@@ -36,10 +36,11 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         return case, None
     if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
         return case, None
-    found = _with_ratios(case, ground, 0)
+    answers = [_unit_answers(case, ground, index) for index in range(len(case.flights))]
+    found = _with_ratios(case, ground, answers, 0)
     if evidence(found, likely_share(found)) < WORTH:
         return case, None
-    found = _with_ratios(case, ground, SWEEPS)
+    found = _with_ratios(case, ground, answers, SWEEPS)
     if evidence(found, likely_share(found)) < WORTH:
         return case, None
     supposed = ground.fit.supposed
@@ -74,16 +75,15 @@ def _drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     }
 
 
-def _with_ratios(case: Case, ground: Ground, sweeps: int) -> Case:
+def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: int) -> Case:
     """The case with L of every frame, 0 where the command stays as it was; `sweeps` 0 takes every frame for itself."""
     at = 0
     flights: list[Flight] = []
-    for index, flight in enumerate(case.flights):
+    for flight, unit in zip(case.flights, answers, strict=True):
         rows = flight.tape.rows * (max(case.slots) + 1)
         w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
-        answers = _unit_answers(case, ground, index)
-        ratios = _ratios(flight.tape.u, list(_drives(case)), answers, w, sweeps)
+        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, sweeps)
         flights.append(replace(flight, tape=replace(flight.tape, lost=ratios)))
     return case.with_flights(flights)
 
