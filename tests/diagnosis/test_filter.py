@@ -36,7 +36,7 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
     for place, w in enumerate(run.w[200:].T):
         moving = flight.tape.r[200:, place] < 1.01 * flight.tape.variance(place)
         assert moving.sum() > 1500
-        assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.25)
+        assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25
         assert abs(np.mean(w[1:] * w[:-1])) < 0.2
 
