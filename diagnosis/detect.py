@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from diagnosis.case import Case
 from diagnosis.fit import Fit, away, size_scale, strain
@@ -52,7 +52,7 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
     first = columns[0].shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
     numbers = len(away(ground.fit.supposed, ground.fit.free))
-    strained = float(chi2.sf(strain(case, ground.fit.supposed, ground.fit.free), numbers))
+    strained = float(chdtrc(numbers, strain(case, ground.fit.supposed, ground.fit.free)))
     p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
     return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
 

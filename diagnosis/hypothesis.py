@@ -1,6 +1,7 @@
 """What one supposes of a plant: its coefficients, effects with their parameters, and how restless it is; and how the logs fit that."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -18,6 +19,7 @@ from sim.effects.effect import Values
 Array = NDArray[np.float64]
 SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
 START_SD = 0.05  # of states that effects brought, in their own units
+FLIGHTS = ThreadPoolExecutor(2)  # the filter leaves Python alone while it runs
 LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an axis' speeds, times their square
 
 
@@ -105,21 +107,23 @@ def passes(
     """The filter over all flights; None where it left all bounds on one."""
     variant = case.kit.variant(supposed.effects)
     p = coefficients(case, variant, supposed)
-    found = []
-    for flight in case.flights:
+
+    def over(flight: Flight) -> Pass | None:
         tape = tape_under(case, variant, flight, supposed.effects)
+        x0, noise = start_under(variant, flight)[0], noise_of(case, variant, flight, supposed, rub_s)
         run = variant.filter.run(
             tape,
             p,
-            start_under(variant, flight)[0],
-            noise_of(case, variant, flight, supposed, rub_s),
+            x0,
+            noise,
             case.slots,
             columns=columns,
             keep_slopes=slopes,
             locked=flight.locked,
             keep_gains=gains,
         )
-        if run is None or not np.isfinite(run.log_likelihood):
-            return None
-        found.append(replace(run, log_likelihood=run.log_likelihood + tape.known))
-    return found
+        return None if run is None else replace(run, log_likelihood=run.log_likelihood + tape.known)
+
+    runs = list(FLIGHTS.map(over, case.flights) if len(case.flights) > 1 else map(over, case.flights))
+    found = [run for run in runs if run is not None and np.isfinite(run.log_likelihood)]
+    return found if len(found) == len(runs) else None

@@ -1,7 +1,6 @@
 """The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
 
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +22,6 @@ STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
-WORKERS = 2
 SETTLED = 5
 ASTRAY = 4.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 CERTAIN = 3.5  # standard deviations
@@ -85,23 +83,22 @@ def search(
     worth = [entry.effect for entry in looks if entry.gain > LEAST_GAIN][:WORTH]
     found = {} if lossy is None else {frozenset((LOST_FRAMES,)): _tried(case, lossy)}
     first = Tried((), nominal, evidence(nominal))
-    with ThreadPoolExecutor(WORKERS) as pool:
-        calm = calmed(case, nominal)
-        jobs = _promising(nominal, looks, False)[:SINGLES]
-        if calm is not None:
-            calm_jobs = _promising(calm, look(case, ground_of(case, calm), names), True)
-            jobs = [*calm_jobs[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
-        _fit_all(case, pool, jobs, found, first)
-        for beam in BEAM:
-            size = max((len(chosen) for chosen in found), default=0)
-            best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
-            grown = _partners(case, best[0], names, worth) if best else []
-            if not grown:
-                break
-            grown += [job for jobs in pool.map(lambda t: _partners(case, t, names, worth), best[1:]) for job in jobs]
-            if not _fit_all(case, pool, grown, found, best[0]):
-                break
-        _settle(case, pool, found)
+    calm = calmed(case, nominal)
+    jobs = _promising(nominal, looks, False)[:SINGLES]
+    if calm is not None:
+        calm_jobs = _promising(calm, look(case, ground_of(case, calm), names), True)
+        jobs = [*calm_jobs[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
+    _fit_all(case, jobs, found, first)
+    for beam in BEAM:
+        size = max((len(chosen) for chosen in found), default=0)
+        best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
+        grown = _partners(case, best[0], names, worth) if best else []
+        if not grown:
+            break
+        grown += [job for tried in best[1:] for job in _partners(case, tried, names, worth)]
+        if not _fit_all(case, grown, found, best[0]):
+            break
+    _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry.fit)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
@@ -113,10 +110,10 @@ def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
     return [Job(start, entry, calm) for entry in looks if entry.gain > least]
 
 
-def _settle(case: Case, pool: ThreadPoolExecutor, found: dict[frozenset[str], Tried]) -> None:
+def _settle(case: Case, found: dict[frozenset[str], Tried]) -> None:
     """Once more the best of all, until effect and unrest agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry.fit)), key=lambda entry: -entry.evidence)
-    for entry in pool.map(lambda entry: refined(case, entry), best[:SETTLED]):
+    for entry in [refined(case, entry) for entry in best[:SETTLED]]:
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
 
@@ -144,7 +141,6 @@ def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[st
 
 def _fit_all(
     case: Case,
-    pool: ThreadPoolExecutor,
     jobs: Sequence[Job],
     found: dict[frozenset[str], Tried],
     known: Tried,
@@ -154,13 +150,13 @@ def _fit_all(
     for job in jobs:
         fresh.setdefault(frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job)
     wanted = [job for names, job in fresh.items() if names not in found]
-    rough = [entry for entry in pool.map(lambda job: _rough(case, job), wanted) if entry]
+    rough = [entry for job in wanted if (entry := _rough(case, job))]
     if not rough:
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
     good = [entry for entry in rough if entry.evidence - first >= WORTH_REFINING * (best - first)]
-    done = [entry for entry in pool.map(lambda entry: refined(case, entry), good) if entry]
-    found.update({frozenset(entry.effects): entry for entry in (*rough, *done)})
+    done = [refined(case, entry) for entry in good]
+    found.update({frozenset(entry.effects): entry for entry in (*rough, *done) if entry})
     return True
 
 

@@ -1,7 +1,7 @@
 """A model's equations as the C header `model.h` that the fixed kernels of sim/c include; a pure function of the model."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import sympy
 
@@ -13,11 +13,16 @@ _ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
 
 
 def model_header(model: Model) -> str:
-    """C text of a model: sizes, constants of the parameters, rates with torques, outputs, Jacobians for the sensitivities."""
+    """C text of a model: sizes, constants of the parameters, rates with torques, friction, outputs, and the slopes of rates and outputs."""
     limits = [limit for row in _limits(model).values() for limit in row]
     variables = frozenset((TIME, *model.states, *model.inputs, *model.friction_signs))
     constants = Constants(variables, limits, reserved=len(limits))
-    functions = [_rates(model, constants), _outputs(model, constants), _jacobians(model, constants)]
+    functions = [
+        _rates(model, constants),
+        _friction(model, constants),
+        _outputs(model, constants),
+        *_slopes(model, constants),
+    ]
     fill = constant_lines(constants, model.parameter_symbols)
     sizes = {
         "N_STATES": len(model.states),
@@ -92,6 +97,16 @@ def _rates(model: Model, constants: Constants) -> str:
     return _function(f"{head} num *dx, num *torque, num *up, num *down)", lines)
 
 
+def _friction(model: Model, constants: Constants) -> str:
+    """What the dry friction of each axis takes from its acceleration."""
+    targets = {
+        f"level[{place}]": sympy.sympify(axis.coulomb) * sign / axis.inertia
+        for place, (axis, sign) in enumerate(zip(model.axes, model.friction_signs, strict=True))
+    }
+    head = f"ALWAYS_INLINE void model_friction({_ARGUMENTS}, const num *sign, num *level)"
+    return _function(head, [*_locals(model), *assignments(targets, constants)])
+
+
 def _rest_rates(model: Model) -> dict[str, sympy.Expr]:
     """Rates of the states that are no axis' velocity."""
     return {f"dx[{row}]": model.rates[state] for row, state in enumerate(model.states) if state in model.rates}
@@ -104,23 +119,33 @@ def _outputs(model: Model, constants: Constants) -> str:
     return _function(head, lines)
 
 
-def _jacobians(model: Model, constants: Constants) -> str:
-    """A += df/dx, B += df/du, D += df/dp, H += dy/dx, E += dy/dp where not identically zero; held rows are the caller's."""
+def _slopes(model: Model, constants: Constants) -> list[str]:
+    """A = df/dx, B = df/du, D = df/dp, H = dy/dx with E = dy/dp, where not identically zero; held rows are the caller's.
+
+    Each is a function of its own: D costs more than all others together, and few callers need it.
+    """
     rates, outputs = model.state_rates(), sympy.Matrix(list(model.outputs.values()))
-    blocks: Mapping[str, tuple[sympy.Matrix, Sequence[sympy.Symbol]]] = {
-        "A": (rates, model.states),
-        "B": (rates, model.inputs),
-        "D": (rates, model.parameter_symbols),
-        "H": (outputs, model.states),
-        "E": (outputs, model.parameter_symbols),
-    }
-    targets = {}
-    for name, (functions, variables) in blocks.items():
-        slopes = jacobian(functions, variables)
-        for (row, column), entry in slopes.todok().items():
-            targets[f"{name}[{row}*{len(variables)} + {column}]"] = entry
-    head = f"ALWAYS_INLINE void model_jacobians({_ARGUMENTS}, const num *sign, num *A, num *B, num *D, num *H,"
-    return _function(f"{head} num *E)", [*_locals(model), *assignments(targets, constants)])
+    by_state, by_parameter = model.states, model.parameter_symbols
+    head = f"ALWAYS_INLINE void model_{{}}_slopes({_ARGUMENTS}, const num *sign, num *{{}})"
+    outputs_head = "ALWAYS_INLINE void model_output_slopes(num t_s, const num *x, const num *c, num *H, num *E)"
+    output_slopes = {**_entries("H", outputs, by_state), **_entries("E", outputs, by_parameter)}
+    return [
+        *(
+            _function(head.format(name, letter), [*_locals(model), *assignments(_entries(letter, rates, by), constants)])
+            for name, letter, by in (
+                ("state", "A", by_state),
+                ("input", "B", model.inputs),
+                ("parameter", "D", by_parameter),
+            )
+        ),
+        _function(outputs_head, [*_locals(model, inputs=False), *assignments(output_slopes, constants)]),
+    ]
+
+
+def _entries(letter: str, functions: sympy.Matrix, variables: Sequence[sympy.Symbol]) -> dict[str, sympy.Expr]:
+    """The entries of a Jacobian that are not identically zero, by their place in C."""
+    slopes = jacobian(functions, variables)
+    return {f"{letter}[{row}*{len(variables)} + {column}]": entry for (row, column), entry in slopes.todok().items()}
 
 
 def _locals(model: Model, *, inputs: bool = True) -> list[str]:

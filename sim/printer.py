@@ -35,8 +35,10 @@ class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
             factor = f"({self._print(base)})"
             product = "*".join([factor] * abs(int(exponent)))
             return f"({product})" if exponent > 0 else f"(NUM(1.0)/({product}))"
-        if exponent == sympy.Rational(1, 2):
-            return f"lane_sqrt({self._print(base)})"
+        if exponent.is_Rational and exponent.q == 2:  # libm's pow takes as long as all the rest of a plant's equations
+            root = f"lane_sqrt({self._print(base)})"
+            product = "*".join([root, *[f"({self._print(base)})"] * (abs(int(exponent.p)) // 2)])
+            return f"({product})" if exponent > 0 else f"(NUM(1.0)/({product}))"
         return f"lane_pow({self._print(base)}, {self._print(exponent)})"
 
     def _print_Mul(self, expr: Any) -> str:

@@ -10,26 +10,33 @@
 #include "filter.h"
 
 #define N N_STATES
+#define WIDTH ((N + 7) / 8 * 8)
 #define MAX_COLUMNS 256
 
+typedef double matrix[N][WIDTH]; /* N by N, its rows filled up with zeros to whole vectors */
+
+/* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
-    double A[N * N], B[N * N_INPUTS], D[N * N_PARAMETERS], H[N_OUTPUTS * N], E[N_OUTPUTS * N_PARAMETERS];
+    double A[N * N], D[N * N_PARAMETERS], H[N_OUTPUTS * N], E[N_OUTPUTS * N_PARAMETERS];
 } jacobians;
 
 typedef struct {
     filter_request *request;
     double c[N_CONSTANTS], u[N_INPUTS];
     plant_body body;
-    double P[N][N], S[N][MAX_COLUMNS];
+    jacobians j;
+    matrix P;
+    double S[N][MAX_COLUMNS];
 } filter_state;
 
 static void start(filter_state *at, filter_request *request)
 {
     at->request = request;
+    at->j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}};
     model_constants(request->p, at->c);
     for (int i = 0; i < N; i++) {
         at->body.x[i] = request->x0[i];
-        for (int j = 0; j < N; j++)
+        for (int j = 0; j < WIDTH; j++)
             at->P[i][j] = i == j ? request->p0[i] : 0.0;
         for (int k = 0; k < request->columns; k++)
             at->S[i][k] = 0.0;
@@ -55,12 +62,11 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
 {
     filter_request *const r = at->request;
     const double variance = r->r[step * N_OUTPUTS + output];
-    double PH[N], s = variance;
-    for (int i = 0; i < N; i++) {
-        PH[i] = 0.0;
-        for (int j = 0; j < N; j++)
-            PH[i] += at->P[i][j] * H[j];
-    }
+    double PH[WIDTH] = {0.0}, s = variance;
+    for (int j = 0; j < N; j++)
+        if (H[j] != 0.0)
+            for (int i = 0; i < WIDTH; i++)
+                PH[i] += at->P[j][i] * H[j];
     for (int i = 0; i < N; i++)
         s += H[i] * PH[i];
     const double nu = r->y[step * N_OUTPUTS + output] - predicted, scale = 1.0 / sqrt(s);
@@ -69,7 +75,7 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         K[i] = PH[i] / s;
     for (int i = 0; i < N; i++) {
         at->body.x[i] += K[i] * nu;
-        for (int j = 0; j < N; j++)
+        for (int j = 0; j < WIDTH; j++)
             at->P[i][j] -= K[i] * PH[j];
     }
     if (r->K)
@@ -122,13 +128,12 @@ static void measure(filter_state *at, int64_t step)
     for (int o = 0; o < N_OUTPUTS; o++)
         any_output |= !isnan(r->y[step * N_OUTPUTS + o]);
     if (any_output) {
-        jacobians j = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
-        model_jacobians(r->t_s[step], at->body.x, at->u, at->c, at->body.sign, j.A, j.B, j.D, j.H, j.E);
+        model_output_slopes(r->t_s[step], at->body.x, at->c, at->j.H, at->j.E);
         for (int o = 0; o < N_OUTPUTS; o++) {
             if (isnan(r->y[step * N_OUTPUTS + o]))
                 continue;
             model_outputs(r->t_s[step], at->body.x, at->c, y);
-            correct(at, step, o, y[o], j.H + o * N, j.E + o * N_PARAMETERS);
+            correct(at, step, o, y[o], at->j.H + o * N, at->j.E + o * N_PARAMETERS);
         }
     }
     if (row >= 0 && r->filtered)
@@ -136,39 +141,53 @@ static void measure(filter_state *at, int64_t step)
             r->filtered[row * N + i] = at->body.x[i];
 }
 
+/* to = left times right; most entries of `left` are 0. */
+static void product(const matrix left, const matrix right, matrix to)
+{
+    for (int i = 0; i < N; i++) {
+        double sum[WIDTH] = {0.0};
+        for (int m = 0; m < N; m++)
+            if (left[i][m] != 0.0)
+                for (int k = 0; k < WIDTH; k++)
+                    sum[k] += left[i][m] * right[m][k];
+        for (int k = 0; k < WIDTH; k++)
+            to[i][k] = sum[k];
+    }
+}
+
 /* F = 1 + h A + h^2 A^2 / 2, with the rows of a held axis' velocity emptied. */
-static void transition(const jacobians *j, double h_s, double F[N][N])
+static void transition(const double *slopes, double h_s, matrix F)
 {
+    matrix A = {{0.0}}, square;
     for (int i = 0; i < N; i++)
-        for (int k = 0; k < N; k++) {
-            double square = 0.0;
-            for (int m = 0; m < N; m++)
-                square += j->A[i * N + m] * j->A[m * N + k];
-            F[i][k] = (i == k) + h_s * (j->A[i * N + k] + 0.5 * h_s * square);
-        }
+        for (int k = 0; k < N; k++)
+            A[i][k] = slopes[i * N + k];
+    product(A, A, square);
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < WIDTH; k++)
+            F[i][k] = (i == k) + h_s * (A[i][k] + 0.5 * h_s * square[i][k]);
 }
 
-static void spread(filter_state *at, const double F[N][N], const double *noise)
+/* P = F P F' + noise */
+static void spread(filter_state *at, const matrix F, const double *noise)
 {
-    double FP[N][N];
+    matrix FP, PF = {{0.0}};
+    product(F, at->P, FP);
     for (int i = 0; i < N; i++)
-        for (int k = 0; k < N; k++) {
-            FP[i][k] = 0.0;
-            for (int m = 0; m < N; m++)
-                FP[i][k] += F[i][m] * at->P[m][k];
-        }
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k <= i; k++) {
-            double sum = i == k ? noise[i] : 0.0;
-            for (int m = 0; m < N; m++)
-                sum += FP[i][m] * F[k][m];
-            at->P[i][k] = at->P[k][i] = sum;
-        }
+        for (int k = 0; k < N; k++)
+            PF[k][i] = FP[i][k];
+    product(F, PF, at->P);
+    for (int i = 0; i < N; i++) {
+        for (int k = 0; k < i; k++)
+            at->P[k][i] = at->P[i][k];
+        at->P[i][i] += noise[i];
+    }
 }
 
-static void rates_of(const filter_state *at, const jacobians *j, double from[N][MAX_COLUMNS], double to[N][MAX_COLUMNS], bool forced)
+static void rates_of(const filter_state *at, double from[N][MAX_COLUMNS], double to[N][MAX_COLUMNS], bool forced)
 {
     const filter_request *const r = at->request;
+    const jacobians *const j = &at->j;
     for (int i = 0; i < N; i++) {
         if (forced)
             for (int k = 0; k < r->columns; k++)
@@ -185,11 +204,11 @@ static void rates_of(const filter_state *at, const jacobians *j, double from[N][
     }
 }
 
-static void move_slopes(filter_state *at, const jacobians *j, double h_s)
+static void move_slopes(filter_state *at, double h_s)
 {
     static _Thread_local double first[N][MAX_COLUMNS], second[N][MAX_COLUMNS];
-    rates_of(at, j, at->S, first, true);
-    rates_of(at, j, first, second, false);
+    rates_of(at, at->S, first, true);
+    rates_of(at, first, second, false);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < at->request->columns; k++)
             at->S[i][k] += h_s * (first[i][k] + 0.5 * h_s * second[i][k]);
@@ -212,21 +231,16 @@ static void stir(filter_state *at, double *noise)
 /* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. */
 static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
 {
-    double dx[N], torque[AXES], up[AXES], down[AXES], one[AXES], sign[AXES], without[N];
-    for (int a = 0; a < AXES; a++) {
-        one[a] = 1.0;
-        sign[a] = 0.0;
-    }
-    model_rates(t_s, at->body.x, at->u, at->c, sign, one, without, torque, up, down);
+    double level[AXES] = {0.0}, sign[AXES];
     for (int a = 0; a < AXES; a++)
         sign[a] = 1.0;
-    model_rates(t_s, at->body.x, at->u, at->c, sign, one, dx, torque, up, down);
+    model_friction(t_s, at->body.x, at->u, at->c, sign, level);
     for (int a = 0; a < N_AXES; a++) {
         const int v = AXIS_VELOCITY[a];
-        const double level = fabs(without[v] - dx[v]), width = level * level * h_s * h_s + at->P[v][v];
+        const double square = level[a] * level[a], width = square * h_s * h_s + at->P[v][v];
         const double rub = at->request->rub[a];
-        if (level > 0.0 && rub > 0.0)
-            noise[v] += level * level * h_s * rub * exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+        if (square > 0.0 && rub > 0.0)
+            noise[v] += square * h_s * rub * exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
     }
 }
 
@@ -234,7 +248,8 @@ static void advance(filter_state *at, int64_t step)
 {
     filter_request *const r = at->request;
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
-    double x[N], middle[N], noise[N], F[N][N];
+    double x[N], middle[N], noise[N];
+    matrix F;
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
@@ -249,19 +264,21 @@ static void advance(filter_state *at, int64_t step)
             at->body.x[i] = x[i];
     for (int i = 0; i < N; i++)
         middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
-    jacobians j = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
-    model_jacobians(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j.A, j.B, j.D, j.H, j.E);
+    jacobians *const j = &at->j;
+    model_state_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->A);
+    if (r->columns)
+        model_parameter_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->D);
     for (int a = 0; a < N_AXES; a++)
         if (at->body.move[a] == 0.0) {
             const int v = AXIS_VELOCITY[a];
             for (int k = 0; k < N; k++)
-                j.A[v * N + k] = 0.0;
+                j->A[v * N + k] = 0.0;
             for (int k = 0; k < N_PARAMETERS; k++)
-                j.D[v * N_PARAMETERS + k] = 0.0;
+                j->D[v * N_PARAMETERS + k] = 0.0;
         }
-    transition(&j, h_s, F);
+    transition(j->A, h_s, F);
     if (r->columns)
-        move_slopes(at, &j, h_s);
+        move_slopes(at, h_s);
     for (int a = 0; a < N_AXES; a++)
         if (at->body.move[a] == 0.0) {
             const int v = AXIS_VELOCITY[a];

@@ -24,15 +24,17 @@ typedef struct {
     int parameters; /* so many columns at the beginning are parameters */
 } context;
 
-/* f's derivatives by state, inputs and parameters, and the outputs' by state and parameters. */
+/* f's derivatives by state, inputs and parameters. */
 typedef struct {
-    double A[N_STATES * N_STATES], B[N_STATES * N_INPUTS], D[N_STATES * N_PARAMETERS], H[N_OUTPUTS * N_STATES], E[N_OUTPUTS * N_PARAMETERS];
+    double A[N_STATES * N_STATES], B[N_STATES * N_INPUTS], D[N_STATES * N_PARAMETERS];
 } jacobians;
 
 static inline void evaluate(const context *at, double t_s, const double *x, const double *sign, jacobians *j)
 {
-    *j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}, {0.0}};
-    model_jacobians(t_s, x, at->u, at->c, sign, j->A, j->B, j->D, j->H, j->E);
+    *j = (jacobians){{0.0}, {0.0}, {0.0}};
+    model_state_slopes(t_s, x, at->u, at->c, sign, j->A);
+    model_input_slopes(t_s, x, at->u, at->c, sign, j->B);
+    model_parameter_slopes(t_s, x, at->u, at->c, sign, j->D);
 }
 
 /* Row i of the derivatives by the columns, apart from the way through the state. */
@@ -194,16 +196,16 @@ static void advance_with(const context *at, plant_body *body, double t_s, double
 static void record(const context *at, const plant_body *body, double t_s, int64_t sample, const matrix *S)
 {
     const sensitivity_request *const request = at->request;
-    jacobians j;
-    evaluate(at, t_s, body->x, body->sign, &j);
+    double H[N_OUTPUTS * N_STATES] = {0.0}, E[N_OUTPUTS * N_PARAMETERS] = {0.0};
+    model_output_slopes(t_s, body->x, at->c, H, E);
     model_outputs(t_s, body->x, at->c, request->y + sample * N_OUTPUTS);
     for (int i = 0; i < N_OUTPUTS; i++) {
         double *const to = request->dy + (sample * N_OUTPUTS + i) * request->columns;
         for (int column = 0; column < request->columns; column++) {
             const int which = request->column[column];
-            to[column] = which < N_PARAMETERS ? j.E[i * N_PARAMETERS + which] : 0.0;
+            to[column] = which < N_PARAMETERS ? E[i * N_PARAMETERS + which] : 0.0;
             for (int k = 0; k < N_STATES; k++)
-                to[column] += j.H[i * N_STATES + k] * S->row[k][column];
+                to[column] += H[i * N_STATES + k] * S->row[k][column];
         }
     }
     for (int i = 0; request->x && i < N_STATES; i++)
