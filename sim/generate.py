@@ -131,7 +131,9 @@ def _slopes(model: Model, constants: Constants) -> list[str]:
     output_slopes = {**_entries("H", outputs, by_state), **_entries("E", outputs, by_parameter)}
     return [
         *(
-            _function(head.format(name, letter), [*_locals(model), *assignments(_entries(letter, rates, by), constants)])
+            _function(
+                head.format(name, letter), [*_locals(model), *assignments(_entries(letter, rates, by), constants)]
+            )
             for name, letter, by in (
                 ("state", "A", by_state),
                 ("input", "B", model.inputs),
