@@ -25,9 +25,9 @@ from diagnosis.reveal import revealing_experiment
 from diagnosis.screen import Look, look
 from diagnosis.search import Search, Tried, evidence, search
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
-from diagnosis.standing import with_usual
 from diagnosis.unknown import Suspect, left_beside, suspects
 from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, with_unrest
+from diagnosis.usual import with_usual
 from diagnosis.weigh import Weighed, alike, confirmed, weigh
 from diagnosis.wiring import demand_wiring
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown

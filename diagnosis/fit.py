@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
-GRID_SD = 1e-3  # of a sensor's coarse step, as a share
+GRID_SD = 3e-4  # of a sensor's coarse step, as a share: a range of a thousand counts holds its grid to a count
 OUT_OF_REACH = 1e3  # references
 WIDE = 20.0  # sd of an effect's size before the data, in its reference
 
@@ -53,17 +53,21 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
     found = []
     for name, values in supposed.effects.items():
         for parameter in case.kit.effects[name].parameters:
+            if seen_in_readings(name):
+                continue
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
                 found += [Free(name, parameter, sd, stated)] if sd > 0.0 else []
-            elif name.endswith("_sensor.quantization"):
-                step = values[parameter.symbol]  # the readings lie on its grid: they know it better than any slope does
-                found.append(Free(name, parameter, GRID_SD * step, step))
             elif from_zero(parameter):
                 found.append(Free(name, parameter, size_scale(parameter)))
             elif shapes:
                 found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
     return tuple(found)
+
+
+def seen_in_readings(name: str) -> bool:
+    """Whether an effect's number is read off the log: a sensor's coarse readings lie on its grid, and on no grid a little beside it."""
+    return name.endswith("_sensor.quantization")
 
 
 def from_zero(parameter: EffectParameter) -> bool:

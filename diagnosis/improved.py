@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case
-from diagnosis.fit import Fit
+from diagnosis.fit import GRID_SD, Fit, seen_in_readings
 from diagnosis.hypothesis import coefficients
 from records.correlation import Correlation
 from records.diagnosis import Estimate
@@ -63,6 +63,12 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
     """Each effect's parameters with one standard deviation."""
     spread = deviations(fit)[len(fit.supposed.theta) :]
     sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
+    sd |= {
+        (name, s): GRID_SD * v
+        for name, of in fit.supposed.effects.items()
+        if seen_in_readings(name)
+        for s, v in of.items()
+    }
     return {
         name: {
             symbol: Estimate(float(value), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))

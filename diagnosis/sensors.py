@@ -12,13 +12,15 @@ from diagnosis.tape import Tape, late
 from sim.effects.effect import Values
 
 Array = NDArray[np.float64]
+# A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
+BELL = 0.32
 
 
 def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
     """The tape under the sensor effects among `effects`.
 
     A delay puts the reading back to when it was true, a lag likewise by its time constant; steps make it less certain; behind play the
-    axis is half the play further the way it last moved, and anywhere within while the reading stands.
+    axis is half the play further the way it last moved, and anywhere within it while the reading stands.
     """
     for name, values in effects.items():
         place, kind = name.split(".")
@@ -31,29 +33,42 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
         elif kind == "quantization":
             tape = _coarser(tape, output, values["q"], kit.bound.plant.sensors[sensor.output])
         elif kind == "backlash":
-            tape = _behind_play(tape, output, values["width"])
+            tape = behind_play(tape, output, values["width"])
     return tape
 
 
 def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:
-    r = tape.r.copy()
-    r[:, output] *= 1.0 + grid**2 / 12.0 / tape.variance(output)
-    # Readings of one count stand for each other, but each would be charged for its greater variance: all but one are let off.
-    seen = np.isfinite(tape.y[:, output])
-    spared = 1.0 - tape.variance(output) / tape.r[seen, output]
-    known = 0.5 * float(np.sum(spared * np.log(r[seen, output] / tape.r[seen, output])))
-    return replace(tape, r=r, known=tape.known + known + grid_evidence(tape.y[:, output], grid, step))
+    seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
+    evidence = grid_evidence(tape.y[:, output], grid, step)
+    return _less_sure(tape, output, seen, grid, evidence - _once(tape, output, seen) * _charge(tape, output, grid))
 
 
-def _behind_play(tape: Tape, output: int, width: float) -> Tape:
+def behind_play(tape: Tape, output: int, width: float) -> Tape:
     y = tape.y.copy()
     seen = np.flatnonzero(np.isfinite(y[:, output]))
     moved = np.append(0.0, np.diff(y[seen, output]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
-    y[seen, output] += 0.5 * width * np.sign(moved[last])
     unsure = standing_rows(tape, output)
-    y[unsure, output] = np.nan
-    return replace(tape, y=y, known=tape.known + float(np.sum(tape.usual[unsure, output])))
+    y[seen, output] += np.where(np.isin(seen, unsure), 0.0, 0.5 * width * np.sign(moved[last]))
+    charge = min(BELL, _charge(tape, output, width))
+    return _less_sure(replace(tape, y=y), output, unsure, width, -_once(tape, output, unsure) * charge)
+
+
+def _less_sure(tape: Tape, output: int, rows: NDArray[np.int64], span: float, known: float) -> Tape:
+    """The tape where the readings of `rows` may be off by anything within `span`, which is charged with `known` instead of by each row."""
+    r, charge = tape.r.copy(), _charge(tape, output, span)
+    r[rows, output] *= np.exp(2.0 * charge)
+    return replace(tape, r=r, known=tape.known + len(rows) * charge + known)
+
+
+def _charge(tape: Tape, output: int, span: float) -> float:
+    """What a reading that may be off by anything within `span` costs in likelihood."""
+    return 0.5 * float(np.log1p(span**2 / 12.0 / tape.variance(output)))
+
+
+def _once(tape: Tape, output: int, rows: NDArray[np.int64]) -> float:
+    """How many readings `rows` hold where the same count, read again and again, is one."""
+    return float(np.sum(tape.variance(output) / tape.r[rows, output]))
 
 
 def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:

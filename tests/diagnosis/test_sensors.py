@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.lattice import coarse_step, grid_evidence
-from diagnosis.sensors import standing_rows
+from diagnosis.sensors import behind_play, standing_rows
 from diagnosis.tape import Tape, late, tape_of
 from records.log import RunLog
 from records.plant import load_plant
@@ -49,7 +49,7 @@ def test_a_fine_encoder_has_no_coarse_grid() -> None:
     assert coarse_step(STEP * np.round(angle / STEP), STEP) is None
 
 
-def test_readings_that_turn_stand_for_nothing_behind_play() -> None:
+def test_readings_that_turn_are_unsure_behind_play() -> None:
     # Up, still, down: between the last step up and the first step down the axis crosses the play.
     up, still, down = np.arange(50) * STEP, np.full(30, 49 * STEP), (49 - np.arange(1, 50)) * STEP
     standing = standing_rows(tape(np.concatenate([up, still, down])), 0)
@@ -91,3 +91,24 @@ def test_rounding_alone_is_no_noise_and_noise_is_seen() -> None:
     assert readings(STEP * np.round(angle / STEP)).variance(0) == pytest.approx(STEP**2 / 12)
     noisy = angle + 2.0 * STEP * rng.standard_normal(6000)
     assert readings(STEP * np.round(noisy / STEP)).variance(0) == pytest.approx(4.0 * STEP**2, rel=0.1)
+
+
+def test_play_of_no_width_is_no_play() -> None:
+    # Readings, their variances and what they count go to those without play, linearly in the width or faster.
+    plain = readings(STEP * np.round(0.3 * np.sin(np.linspace(0.0, 12.0, 2000)) / STEP))
+    for width in (1e-6, 1e-9):
+        behind = behind_play(plain, 0, width)
+        assert np.allclose(behind.y, plain.y, rtol=0.0, atol=width)
+        assert np.allclose(behind.r, plain.r, rtol=width / STEP)
+        assert behind.known == pytest.approx(plain.known, abs=2000 * width / STEP)
+
+
+def test_play_charges_for_standing_once_a_reading() -> None:
+    # What an interval costs as a bell of the same variance, ln sqrt(12 / 2 pi) = 0.32, for each count on which the axis may rest.
+    up, still = STEP * np.arange(50), np.full(30, 49 * STEP)
+    plain = readings(np.concatenate([up, still, up[::-1][1:]]))
+    behind = behind_play(plain, 0, 20.0 * STEP)
+    widened = plain.r[:, 0] < 0.99 * behind.r[:, 0]
+    own = 0.5 * np.log(behind.r[widened, 0] / plain.r[widened, 0]).sum()
+    counts = len(np.unique(plain.y[widened, 0]))  # the first reading counts as standing too
+    assert behind.known - plain.known - own == pytest.approx(-0.32 * counts, abs=0.02)

@@ -1,0 +1,24 @@
+"""What each reading is worth under the nominal plant: what an effect makes meaningless counts as likely as that, and no more."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.case import Case
+from diagnosis.hypothesis import Supposed, passes
+
+
+def with_usual(case: Case, nominal: Supposed) -> Case:
+    """The case with each reading's log likelihood under the fitted nominal plant."""
+    runs = passes(case, nominal)
+    if runs is None:
+        return case
+    flights = []
+    for flight, run in zip(case.flights, runs, strict=True):
+        usual = flight.tape.usual.copy()
+        for place, slot in enumerate(case.slots):
+            if slot >= 0:
+                own = -0.5 * (run.w[:, slot] ** 2 + np.log(run.s[:, slot]))
+                usual[:, place] = np.where(np.isfinite(own), own, 0.0)
+        flights.append(replace(flight, tape=replace(flight.tape, usual=usual)))
+    return case.with_flights(flights)
