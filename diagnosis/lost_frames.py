@@ -17,14 +17,16 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case, Flight
 from diagnosis.fit import Fit, fit
-from diagnosis.ground import Ground
-from diagnosis.hypothesis import coefficients
+from diagnosis.ground import Ground, ground_of
+from diagnosis.hypothesis import Supposed, coefficients
 from diagnosis.inputs import LOST_FRAMES, lost_with
+from diagnosis.tape import Tape
 from diagnosis.unrest import with_unrest
 
 Array = NDArray[np.float64]
 APART = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 3, 0.1
+ROUNDS = 5  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
 WORTH = 10.0  # nats below which no frame counts as lost
 
@@ -40,15 +42,28 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
     found = _with_ratios(case, ground, answers, 0)
     if evidence(found, likely_share(found)) < WORTH:
         return case, None
-    found = _with_ratios(case, ground, answers, SWEEPS)
-    if evidence(found, likely_share(found)) < WORTH:
-        return case, None
-    supposed = ground.fit.supposed
-    start = supposed.with_effects({**supposed.effects, LOST_FRAMES: {"p": likely_share(found)}})
-    fitted = fit(found, with_unrest(found, start), rounds=4)
+    found, fitted = _fitted(case, ground, answers)
     if fitted is None or fitted.log_posterior < ground.fit.log_posterior + WORTH:
         return case, None
+    for _ in range(ROUNDS):
+        calmer = ground_of(found, fitted)
+        answers = [_unit_answers(found, calmer, index) for index in range(len(found.flights))]
+        again, better = _fitted(found, calmer, answers)
+        if better is None or better.log_posterior < fitted.log_posterior + WORTH:
+            break
+        found, fitted = again, better
     return found, fitted
+
+
+def _fitted(case: Case, ground: Ground, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+    """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
+    found = _with_ratios(case, ground, answers, SWEEPS)
+    share = likely_share(found)
+    if evidence(found, share) < WORTH:
+        return found, None
+    supposed = ground.fit.supposed
+    start = supposed.with_effects({**supposed.effects, LOST_FRAMES: {"p": share}})
+    return found, fit(found, with_unrest(found, start), rounds=4)
 
 
 def likely_share(case: Case) -> float:
@@ -83,7 +98,8 @@ def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: i
         rows = flight.tape.rows * (max(case.slots) + 1)
         w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
-        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, sweeps)
+        before = _supposed(flight.tape, ground.fit.supposed)
+        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, sweeps)
         flights.append(replace(flight, tape=replace(flight.tape, lost=ratios)))
     return case.with_flights(flights)
 
@@ -104,22 +120,34 @@ def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
     return np.stack(found, axis=2)
 
 
-def _ratios(u: Array, columns: Sequence[int], answers: Array, w: Array, sweeps: int) -> Array:
-    """L of every frame: first each for itself, then in `sweeps` with what is supposed of all others taken out of the innovations."""
-    rows, left = len(u), w.copy()
-    found, lost, arrived = np.zeros(rows), np.zeros(rows), u.copy()
+def _supposed(tape: Tape, supposed: Supposed) -> Array:
+    """The probability with which each frame's loss is supposed already."""
+    if LOST_FRAMES not in supposed.effects:
+        return np.zeros(tape.rows)
+    return lost_with(tape.lost, supposed.effects[LOST_FRAMES]["p"])
+
+
+def _ratios(u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, sweeps: int) -> Array:
+    """L of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of all
+    others taken out."""
+    rows, left, lost = len(u), w.copy(), before.copy()
+    found, arrived = np.zeros(rows), u.copy()
     taken = np.zeros((rows, len(columns)))
+    for row in range(1, rows):
+        taken[row] = lost[row] * (arrived[row - 1] - u[row])[columns]
+        arrived[row, columns] += taken[row]
+    fresh = not before.any()
     for sweep in range(sweeps + 1):
-        share = float(np.clip(np.mean(lost), 0.003, 0.8)) if sweep else 0.0
+        share = float(np.clip(np.mean(lost), 0.003, 0.8)) if sweep or not fresh else FIRST_SHARE
         for row in range(1, rows):
             unit = answers[row : row + APART, :, :, row % APART]
             held = (arrived[row - 1] - u[row])[columns]
             a = unit @ held
-            before = left[row : row + APART] + unit @ taken[row]
-            found[row] = np.sum(a * before) - 0.5 * np.sum(a * a) if held.any() else 0.0
+            free = left[row : row + APART] + unit @ taken[row]
+            found[row] = np.sum(a * free) - 0.5 * np.sum(a * a) if held.any() else 0.0
             if sweeps:
-                lost[row] = lost_with(found[row], share if sweep else FIRST_SHARE) if held.any() else share
+                lost[row] = lost_with(found[row], share) if held.any() else share
                 taken[row] = lost[row] * held
-                left[row : row + APART] = before - unit @ taken[row]
+                left[row : row + APART] = free - unit @ taken[row]
                 arrived[row, columns] = u[row, columns] + taken[row]
     return found

@@ -23,6 +23,7 @@ ONE_WAY = {
     "wind": "c",
     "load_friction": "c",
 }
+LONG_PULSE_S = 5.0  # a disturbance is a push; what lasts longer is rather something that changed
 # In units of the scale on which hypotheses are compared.
 RARE, WRONG_WAY = 2.0, 4.5
 PLAIN = 0.1  # by which a constant force goes before what fits as well
@@ -42,6 +43,8 @@ def _odds(name: str, tried: Tried) -> float:
     odds += 0.0 if common and not (kind == "offset" and place.endswith("_input")) else -RARE
     if kind in ONE_WAY and tried.fit.supposed.effects[name][ONE_WAY[kind]] < 0.0:
         odds -= WRONG_WAY
+    if kind == "disturbance" and tried.fit.supposed.effects[name]["duration"] > LONG_PULSE_S:
+        odds -= RARE
     if kind in SAME_AS_PARAMETERS:
         odds -= OWN_PARAMETERS
     return odds

@@ -21,6 +21,7 @@ from sim.effects.effect import Effect, Values
 Array = NDArray[np.float64]
 MOST_STARTS = 8
 SMALL = 0.05
+PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05)  # of the largest input, at which a limit may lie
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 
 
@@ -41,11 +42,12 @@ class Look:
 def look(case: Case, ground: Ground, names: Sequence[str], worth: Sequence[str] | None = None) -> list[Look]:
     """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
 
-    Effects on the way of the signals cost a pass for each start; `worth` restricts them.
+    Effects on the way of the signals cost a pass for each start; `worth` restricts them, but for limits, which often show only beside
+    another effect.
     """
     supposed = ground.fit.supposed
     wanted = [name for name in names if name not in supposed.effects]
-    costly = wanted if worth is None else [name for name in wanted if name in worth]
+    costly = [name for name in wanted if worth is None or name in worth or case.kit.effects[name].kind == "saturation"]
     others = [name for name in wanted if name in case.kit.wide_names]
     found = [
         *_smooth(case, ground, [name for name in wanted if name in case.kit.names]),
@@ -156,10 +158,14 @@ def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
 
 
 def _sizes(case: Case, ground: Ground, effect: Effect) -> list[float]:
-    """Sizes to try of an effect without first order; those of a sensor's steps are seen in the readings."""
+    """Sizes to try of an effect without first order; those of a limit and of a sensor's steps are seen in the log."""
+    kit = case.kit
+    if effect.kind == "saturation":
+        column = kit.bound.model.inputs.index(kit.bound.model.places.inputs[effect.place].variable)
+        peak = max(float(np.max(np.abs(flight.tape.u[:, column]))) for flight in case.flights)
+        return [share * peak for share in PEAK_SHARES if peak > 0.0]
     if effect.kind != "quantization":
         return list(effect.size.starts) or [effect.size.reference]
-    kit = case.kit
     sensor = kit.bound.model.places.sensors.get(effect.place)
     if sensor is None:
         return likely_steps(ground, effect.place)

@@ -23,7 +23,7 @@ SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of i
 LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 SETTLED = 5
-ASTRAY = 4.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
+ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 CERTAIN = 3.5  # standard deviations
 LEAST_SLIP = 1.5  # counts
 WORTH_REFINING = 0.2  # of the best first fit's gain
@@ -91,7 +91,7 @@ def search(
     _fit_all(case, jobs, found, first)
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
-        best = sorted((t for t in found.values() if len(t.effects) == size), key=lambda t: -t.evidence)[:beam]
+        best = _beam([entry for entry in found.values() if len(entry.effects) == size], beam)
         grown = _partners(case, best[0], names, worth) if best else []
         if not grown:
             break
@@ -102,6 +102,18 @@ def search(
     certain = [entry for entry in found.values() if _certain(entry.fit)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
+
+
+def _beam(tried: Sequence[Tried], count: int) -> list[Tried]:
+    """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's, whatever its strain.
+
+    Where a second effect is missing, parameters bend to take its part: then a right first effect shows in its likelihood alone.
+    """
+    ranked = sorted(tried, key=lambda entry: -entry.evidence)
+    likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
+    if likeliest is None or count < 2 or likeliest in ranked[:count]:
+        return ranked[:count]
+    return [*ranked[: count - 1], likeliest]
 
 
 def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
@@ -169,8 +181,9 @@ def _rough(case: Case, job: Job) -> Tried | None:
     found = fit(case, start, rounds=4)
     if found is not None and job.calm:
         found = awake(case, found)
-    if start.theta @ start.theta > ASTRAY * len(start.theta):
-        found = _likelier(found, _from_stated(case, start))
+    for astray in (start, None if found is None else found.supposed):
+        if astray is not None and astray.theta @ astray.theta > ASTRAY * len(astray.theta):
+            found = _likelier(found, _from_stated(case, astray))
     return None if found is None or not _whole_counts(case, found) else _tried(case, found)
 
 

@@ -1,14 +1,15 @@
 """Dead band of a driver: a small command moves nothing, and of a large one the band is missing.
 
-(1)  u -> sgn(u) max(|u| - d, 0)
+(1)  u -> sgn(u) max(|u| - d, 0), its corner rounded over d (1 -+ w)
 """
 
 from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import positive
+from sim.effects.edits import knee
 from sim.effects.effect import Effect, EffectParameter
+from sim.effects.saturation import ROUNDING, SHARP
 from sim.model import Model
 
 
@@ -21,11 +22,12 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"dead band of {u}",
             parameters=(
                 EffectParameter("d", entry.unit, 0.0, 0.4 * entry.size, 0.02 * entry.size, 0.0, _starts(entry.size)),
+                ROUNDING,
             ),
-            equation=f"{u} -> sgn({u}) max(|{u}| - d, 0)",
+            equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
             source="static driver nonlinearity (H bridge, dry motor)",
-            applied=lambda d, u=u: {u: sympy.sign(u) * positive(sympy.Abs(u) - d)},
+            applied=lambda d, w, u=u: {u: sympy.sign(u) * knee(sympy.Abs(u) - d, w * d + SHARP)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",
                 f"{place}.gain": "over a narrow range of inputs, a constant loss looks like a smaller gain",

@@ -93,6 +93,11 @@ def positive(expression: Expression) -> Expression:
     return expression * sympy.Heaviside(expression)
 
 
+def knee(expression: Expression, width: Expression) -> Expression:
+    """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there; the width must not be 0."""
+    return (positive(expression + width) ** 2 - positive(expression - width) ** 2) / (4 * width)
+
+
 def step(at_s: Expression) -> Expression:
     """0 before the time `at_s` and 1 after it, straight in between over EDGE_S, half way up at `at_s`."""
     way = (TIME - at_s) / EDGE_S + sympy.Rational(1, 2)

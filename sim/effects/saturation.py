@@ -1,15 +1,20 @@
 """A driver that cannot give what the controller believes it can.
 
-(1)  u -> max(-limit, min(limit, u))
+(1)  u -> max(-limit, min(limit, u)), its corner rounded over limit (1 -+ w)
 """
 
 from collections.abc import Iterator
 
-from sim.effects.edits import positive
+import sympy
+
+from sim.effects.edits import knee
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 
 NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent
+
+SHARP = 1e-6  # V: the least width of a corner
+ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,))  # of a corner, as a share of where it lies
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -20,10 +25,10 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.saturation",
             depends=f"limit of {u}",
-            parameters=(EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid),),
-            equation=f"{u} -> max(-limit, min(limit, {u}))",
+            parameters=(EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid), ROUNDING),
+            equation=f"{u} -> max(-limit, min(limit, {u})), its corner rounded over limit (1 -+ w)",
             story="The driver or its supply gives out before the controller's own limit is reached.",
             source="static driver nonlinearity",
-            applied=lambda limit, u=u: {u: positive(u + limit) - positive(u - limit) - limit},
+            applied=lambda limit, w, u=u: {u: u - sympy.sign(u) * knee(sympy.Abs(u) - limit, w * limit + SHARP)},
             smooth=False,
         )

@@ -1,6 +1,8 @@
 """Friction that is higher near rest than in motion.
 
-(1)  torque - b_s exp(-(v / v_s)^2) sgn(v), above the nominal Coulomb level
+(1)  torque - b_s exp(-x^2 / (1 + e x)) sgn(v) with x = |v| / v_s, above the nominal Coulomb level
+
+e = 0 is the bell of the literature, a large e its plain exponential: bearings are found with either.
 """
 
 from collections.abc import Iterator
@@ -29,15 +31,19 @@ def effects(model: Model) -> Iterator[Effect]:
                     0.08 * speed,
                     starts=(0.03 * speed, 0.1 * speed, 0.3 * speed),
                 ),
+                EffectParameter("e", "1", 0.0, 20.0, 0.0, starts=(0.0, 3.0)),
             ),
-            equation=f"- b_s exp(-({angle}'/v_s)^2) sgn({angle}')",
+            equation=f"- b_s exp(-x^2/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",
             source="Armstrong, Dupont and Canudas de Wit, Automatica 30(7), 1994",
-            edit=lambda model, b_s, v_s, axis=axis: with_friction(
-                model, axis, b_s * sympy.exp(-((axis_of(model, axis).velocity / v_s) ** 2))
-            ),
+            edit=lambda model, b_s, v_s, e, axis=axis: with_friction(model, axis, _level(model, axis, b_s, v_s, e)),
             twins={
                 f"{axis}.coulomb": "with little motion at the Stribeck speed only the level shows",
                 f"{axis}.presliding": "both hold the axis at a reversal",
             },
         )
+
+
+def _level(model: Model, axis: str, b_s: sympy.Symbol, v_s: sympy.Symbol, e: sympy.Symbol) -> sympy.Expr:
+    x = sympy.Abs(axis_of(model, axis).velocity) / v_s
+    return b_s * sympy.exp(-(x**2) / (1 + e * x))
