@@ -73,6 +73,8 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     ground = ground_of(case, nominal)
     case, lossy = with_losses(case, ground)
     ground = replace(ground, case=case)
+    if lossy is not None and checked is not None:
+        checked = with_losses(checked, ground_of(checked, nominal_fit(checked)))[0]
     looks = look(case, ground, kit.candidates)
     detection = detect(case, ground, looks, lossy)
     stated = Tried((), nominal, evidence(nominal))

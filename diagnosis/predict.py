@@ -25,6 +25,7 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
     kit = case.kit
     variant = kit.variant(supposed.effects)
     tape = tape_under(case, variant, flight, supposed.effects)
+    ahead_tape = tape_under(case, variant, _unforeseen(flight), supposed.effects)
     given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed, rub_s)
     chosen = variant.filter
     places = np.tile(np.arange(len(tape.t_s))[:, None], (1, tape.y.shape[1]))
@@ -42,7 +43,7 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
         end = int(np.searchsorted(tape.t_s, flight.log.t_s[last - 1] + 1e-9, side="right"))
         if begin < 0 or flight.log.t_s[first] < flight.log.t_s[0] + SETTLE_S:
             continue
-        part = _unseen(tape, begin, end, outputs)
+        part = _unseen(ahead_tape, begin, end, outputs)
         free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
         if free is None:
             continue
@@ -66,6 +67,12 @@ def windows(t_s: Array) -> list[tuple[int, int]]:
     number = np.floor((t_s - t_s[0]) / WINDOW_S + 1e-9).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(t_s)]
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
+
+
+def _unforeseen(flight: Flight) -> Flight:
+    """The flight without what its own readings say of lost frames: a prediction knows only how many are lost."""
+    tape = flight.tape
+    return replace(flight, tape=replace(tape, lost=np.zeros_like(tape.lost))) if tape.lost.any() else flight
 
 
 def _lateness(case: Case, variant: Variant, effects: Mapping[str, Values]) -> list[float]:
