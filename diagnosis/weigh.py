@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 # the library may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
 ALIKE, OFF_FORM, OFF_POWER, OFF_SHARE, FURTHER = 10.0, 1.0, 0.35, 4e-4, 2.5
 LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
+FARTHEST = 3e4  # nats beyond which a gap only says that the nominal plant had lost its way
 RETUNE_COST = 10.0
 # Of what first answers stated, 0.8 came true on development cases (seeds 21, 22) with older weights, and 0.85 of what was stated above
 # 0.9 on those of seed 900001: a further effect too small to see, or one outside the library that looks like one in it, is always possible.
@@ -43,7 +44,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
         return _nameless(nominal, left, retune)
     best = max(entry.evidence for entry in named)
     whole = max(best - nominal.evidence, 0.0)
-    scale = ALIKE + OFF_FORM * whole**OFF_POWER + OFF_SHARE * whole
+    scale = ALIKE + OFF_FORM * whole**OFF_POWER + OFF_SHARE * min(whole, FARTHEST)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
     scores += [prior_odds(entry) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
