@@ -54,12 +54,21 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
-    weights[:-1] *= CANDOUR
-    weights[-1] = 1.0 - weights[:-1].sum()
+    weights = _candid(weights)
     order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
     chosen = tuple(named[index] for index in order)
     return Weighed(
         chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
+    )
+
+
+def _candid(weights: Array) -> Array:
+    """The weights, the unknown's last, with a seventh of what is named kept back for the unknown and a seventh of that for what is named."""
+    known, unknown = float(weights[:-1].sum()), float(weights[-1])
+    if known <= 0.0:
+        return weights
+    return np.append(
+        weights[:-1] * (CANDOUR + (1.0 - CANDOUR) * unknown / known), CANDOUR * unknown + (1.0 - CANDOUR) * known
     )
 
 

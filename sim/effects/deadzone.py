@@ -9,7 +9,7 @@ import sympy
 
 from sim.effects.edits import knee
 from sim.effects.effect import Effect, EffectParameter
-from sim.effects.saturation import ROUNDING, SHARP
+from sim.effects.saturation import SHARP
 from sim.model import Model
 
 
@@ -22,17 +22,22 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"dead band of {u}",
             parameters=(
                 EffectParameter("d", entry.unit, 0.0, 0.4 * entry.size, 0.02 * entry.size, 0.0, _starts(entry.size)),
-                ROUNDING,
+                EffectParameter("w", "1", 0.0, 3.0, 0.0, None, (0.5,)),
             ),
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
             source="static driver nonlinearity (H bridge, dry motor)",
-            applied=lambda d, w, u=u: {u: sympy.sign(u) * knee(sympy.Abs(u) - d, w * d + SHARP)},
+            applied=lambda d, w, u=u: {u: sympy.sign(u) * _passed(sympy.Abs(u), d, w * d + SHARP)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",
                 f"{place}.gain": "over a narrow range of inputs, a constant loss looks like a smaller gain",
             },
         )
+
+
+def _passed(size: sympy.Expr, d: sympy.Symbol, width: sympy.Expr) -> sympy.Expr:
+    """What is left of an input's size; nothing of 0, however round the corner is."""
+    return knee(size - d, width) - knee(-d, width)
 
 
 def _starts(size: float) -> tuple[float, ...]:

@@ -95,7 +95,8 @@ def positive(expression: Expression) -> Expression:
 
 def knee(expression: Expression, width: Expression) -> Expression:
     """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there; the width must not be 0."""
-    return (positive(expression + width) ** 2 - positive(expression - width) ** 2) / (4 * width)
+    beyond = positive(expression - width)
+    return beyond + (positive(expression + width) - beyond) ** 2 / (4 * width)
 
 
 def step(at_s: Expression) -> Expression:

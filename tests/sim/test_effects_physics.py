@@ -124,9 +124,21 @@ def test_an_effect_of_no_size_changes_nothing(everything: BoundPlant, name: str)
     np.testing.assert_allclose(outputs(placed(everything, none), start), outputs(BOUND, start), rtol=0, atol=1e-8)
 
 
+def _off_its_bounds(chosen: Case) -> Case:
+    """The case with shapes that lie on their lower bound moved to where a fit would start."""
+    parameters = LIBRARY[chosen.name].parameter
+    values = {
+        symbol: parameters[symbol].starts[-1]
+        if value == parameters[symbol].lower and parameters[symbol].starts
+        else value
+        for symbol, value in chosen.values.items()
+    }
+    return Case(chosen.name, values, chosen.start)
+
+
 @pytest.mark.parametrize("name", [name for name, effect in LIBRARY.items() if effect.on_equations])
 def test_derivatives_by_an_effect_s_parameters_are_those_of_runs(everything: BoundPlant, name: str) -> None:
-    chosen = case(name)
+    chosen = _off_its_bounds(case(name))
     bound = placed(everything, chosen)
     columns = tuple(coefficient(name, symbol) for symbol in chosen.values)
     found = sensitivities(bound, T_S, U, ordered(chosen.start), columns).dy
