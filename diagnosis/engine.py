@@ -13,6 +13,7 @@ from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.improved import estimates, improved_plant
+from diagnosis.inputs import LOST_FRAMES
 from diagnosis.kit import make_kit
 from diagnosis.lost_frames import with_losses
 from diagnosis.maps import band_map, region_map, removed_energy, time_map
@@ -73,8 +74,6 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     ground = ground_of(case, nominal)
     case, lossy = with_losses(case, ground)
     ground = replace(ground, case=case)
-    if lossy is not None and checked is not None:
-        checked = with_losses(checked, ground_of(checked, nominal_fit(checked)))[0]
     looks = look(case, ground, kit.candidates)
     detection = detect(case, ground, looks, lossy)
     stated = Tried((), nominal, evidence(nominal))
@@ -90,6 +89,8 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
     weighed = weigh(found.tried, stated, left, None if beyond is None else beyond.score)
     blamed = suspects(detection)
+    if checked is not None and weighed.tried and LOST_FRAMES in weighed.tried[0].effects:
+        checked = with_losses(checked, ground_of(checked, nominal_fit(checked)))[0]
     weighed = _checked(checked, material, weighed, stated, left)
     doubts = doubt(case, found, weighed, material.names, _worse(checked, material, weighed, stated))
     weighed, material = doubts.applied(weighed), replace(material, notes=(*material.notes, *doubts.sentences))

@@ -30,6 +30,11 @@ def instants(ground: Ground, effect: Effect) -> list[dict[str, float]]:
     return [{symbol: instant} for instant in found]
 
 
+def is_event(effect: Effect) -> bool:
+    """Whether an effect happens at an instant."""
+    return any(parameter.symbol in TIMES for parameter in effect.parameters)
+
+
 def _jumps(ground: Ground, target: int) -> list[float]:
     """Just before the reading of an output that is farthest from what was predicted: a jump falls between two rows, not on a grid."""
     output = target - len(ground.case.kit.states)

@@ -26,6 +26,7 @@ from diagnosis.unrest import with_unrest
 Array = NDArray[np.float64]
 APART = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 3, 0.1
+LITTLE = 0.02  # of what losses gain, below which another round is not worth its time
 ROUNDS = 5  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
 WORTH = 10.0  # nats below which no frame counts as lost
@@ -51,7 +52,10 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         again, better = _fitted(found, calmer, answers)
         if better is None or better.log_posterior < fitted.log_posterior + WORTH:
             break
+        more = better.log_posterior - fitted.log_posterior
         found, fitted = again, better
+        if more < LITTLE * (fitted.log_posterior - ground.fit.log_posterior):
+            break
     return found, fitted
 
 

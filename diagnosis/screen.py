@@ -1,6 +1,6 @@
 """A first look at every effect: how much of what is left its signature explains once the plant's own coefficients have had their share."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import product
 
@@ -12,7 +12,7 @@ from diagnosis.filter import Pass
 from diagnosis.fit import likelihood, size_scale, stacked
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
-from diagnosis.instants import instants
+from diagnosis.instants import instants, is_event
 from diagnosis.kit import is_lag
 from diagnosis.lattice import coarse_step
 from diagnosis.quantised import likely_steps
@@ -39,18 +39,22 @@ class Look:
     power: float
 
 
-def look(case: Case, ground: Ground, names: Sequence[str], worth: Sequence[str] | None = None) -> list[Look]:
+def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | None = None) -> list[Look]:
     """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
 
-    Effects on the way of the signals cost a pass for each start; `worth` restricts them, but for limits, which often show only beside
-    another effect.
+    Effects on the way of the signals cost a pass for each start, events a grid of instants; `worth` restricts these, but for limits,
+    which often show only beside another effect.
     """
     supposed = ground.fit.supposed
     wanted = [name for name in names if name not in supposed.effects]
     costly = [name for name in wanted if worth is None or name in worth or case.kit.effects[name].kind == "saturation"]
     others = [name for name in wanted if name in case.kit.wide_names]
     found = [
-        *_smooth(case, ground, [name for name in wanted if name in case.kit.names]),
+        *_smooth(
+            case,
+            ground,
+            [n for n in wanted if n in case.kit.names and (n in costly or not is_event(case.kit.effects[n]))],
+        ),
         *_smooth(case, ground, others),
     ]
     found += [*_first_order(case, ground, costly), *_finite(case, ground, costly)]

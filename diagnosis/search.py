@@ -1,6 +1,6 @@
 """The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from diagnosis.unrest import FIRST_UNREST, with_unrest
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
+CLOSE, CLOSE_SHARE = 60.0, 0.05  # nats, and share of the gap, within which another pair is worth a third effect
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
 FURTHER_GAIN = 10.0  # that a further effect must promise
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
@@ -81,18 +82,19 @@ def search(
 ) -> Search:
     """Fit the nominal plant with single effects, pairs and triples of `names`; `nominal` is its fit without any, `looks` those from it,
     `lossy` its fit with lost frames."""
-    worth = [entry.effect for entry in looks if entry.gain > LEAST_GAIN][:WORTH]
+    worth = _worth(looks)
     found = {} if lossy is None else {frozenset((LOST_FRAMES,)): _tried(case, lossy)}
     first = Tried((), nominal, evidence(nominal))
     calm = calmed(case, nominal)
     jobs = _promising(nominal, looks, False)[:SINGLES]
     if calm is not None:
-        calm_jobs = _promising(calm, look(case, ground_of(case, calm), names), True)
-        jobs = [*calm_jobs[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
+        calm_looks = look(case, ground_of(case, calm), names)
+        worth |= _worth(calm_looks)
+        jobs = [*_promising(calm, calm_looks, True)[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
     _fit_all(case, jobs, found, first)
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
-        best = _beam([entry for entry in found.values() if len(entry.effects) == size], beam)
+        best = _beam([entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown = _partners(case, best[0], names, worth) if best else []
         if not grown:
             break
@@ -105,16 +107,23 @@ def search(
     return Search(tuple(tried), first, ground, tuple(looks))
 
 
-def _beam(tried: Sequence[Tried], count: int) -> list[Tried]:
+def _worth(looks: Sequence[Look]) -> set[str]:
+    """Effects that are worth a costly look beside others."""
+    return {entry.effect for entry in looks[:WORTH] if entry.gain > LEAST_GAIN}
+
+
+def _beam(tried: Sequence[Tried], nominal: Tried, count: int) -> list[Tried]:
     """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's, whatever its strain.
 
     Where a second effect is missing, parameters bend to take its part: then a right first effect shows in its likelihood alone.
     """
     ranked = sorted(tried, key=lambda entry: -entry.evidence)
     likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
-    if likeliest is None or count < 2 or likeliest in ranked[:count]:
-        return ranked[:count]
-    return [*ranked[: count - 1], likeliest]
+    if likeliest is None:
+        return []
+    near = ranked[0].evidence - max(CLOSE, CLOSE_SHARE * (ranked[0].evidence - nominal.evidence))
+    kept = [entry for entry in ranked[:count] if len(entry.effects) == 1 or entry.evidence > near]
+    return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
 def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
@@ -144,7 +153,7 @@ def _certain(fit: Fit) -> bool:
     return all(certainty > CERTAIN for certainty in sizes.values())
 
 
-def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Sequence[str]) -> list[Job]:
+def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Set[str]) -> list[Job]:
     """Further effects that promise most beside those tried."""
     calm = calmed(case, tried.fit)
     start = calm or tried.fit
@@ -184,9 +193,9 @@ def _rough(case: Case, job: Job) -> Tried | None:
         found = awake(case, found)
     elif found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
-    for astray in (start, None if found is None else found.supposed):
-        if astray is not None and astray.theta @ astray.theta > ASTRAY * len(astray.theta):
-            found = _likelier(found, _from_stated(case, astray))
+    astray = start if found is None else found.supposed
+    if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
+        found = _likelier(found, _from_stated(case, astray))
     return None if found is None or not _whole_counts(case, found) else _tried(case, found)
 
 

@@ -63,7 +63,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
 
 
 def _candid(weights: Array) -> Array:
-    """The weights, the unknown's last, with a seventh of what is named kept back for the unknown and a seventh of that for what is named."""
+    """The weights, the unknown's last, a seventh of what is named kept back for it, and a seventh of it for what is named."""
     known, unknown = float(weights[:-1].sum()), float(weights[-1])
     if known <= 0.0:
         return weights
