@@ -44,6 +44,6 @@ def run_flash(command: Sequence[str]) -> str:
             where=" ".join(command),
             got=last or f"exit status {done.returncode}",
             expected="the image written and verified",
-            remedy="check cable and supply; for the serial boot loader hold BOOT0 high while pressing reset",
+            remedy="check cable and supply; how the chip starts its serial boot loader is in docs/hardware.md",
         )
     return said

@@ -1,7 +1,7 @@
 """Write the firmware image into a board: through an ST-LINK (OpenOCD), or through the chip's serial boot loader.
 
-Without --port the ST-LINK is used and DIR/firmware.elf written; with --port the boot loader and DIR/firmware.bin (hold BOOT0 high
-while the board is reset). Both verify what they wrote and start it.
+Without --port the ST-LINK is used and DIR/firmware.elf written; with --port the boot loader and DIR/firmware.bin, which
+the chip must have started (docs/hardware.md). Both verify what they wrote and start it.
 """
 
 import argparse
