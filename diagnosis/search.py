@@ -94,7 +94,7 @@ def search(
     _fit_all(case, jobs, found, first)
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
-        best = _beam([entry for entry in found.values() if len(entry.effects) == size], first, beam)
+        best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown = _partners(case, best[0], names, worth) if best else []
         if not grown:
             break
@@ -112,7 +112,7 @@ def _worth(looks: Sequence[Look]) -> set[str]:
     return {entry.effect for entry in looks[:WORTH] if entry.gain > LEAST_GAIN}
 
 
-def _beam(tried: Sequence[Tried], nominal: Tried, count: int) -> list[Tried]:
+def beam_of(tried: Sequence[Tried], nominal: Tried, count: int) -> list[Tried]:
     """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's, whatever its strain.
 
     Where a second effect is missing, parameters bend to take its part: then a right first effect shows in its likelihood alone.

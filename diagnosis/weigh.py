@@ -54,7 +54,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
-    weights = _candid(weights)
+    weights = candid(weights)
     order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
     chosen = tuple(named[index] for index in order)
     return Weighed(
@@ -62,7 +62,7 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     )
 
 
-def _candid(weights: Array) -> Array:
+def candid(weights: Array) -> Array:
     """The weights, the unknown's last, a seventh of what is named kept back for it, and a seventh of it for what is named."""
     known, unknown = float(weights[:-1].sum()), float(weights[-1])
     if known <= 0.0:

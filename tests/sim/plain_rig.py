@@ -43,18 +43,35 @@ def bristle(v: float, z: float, z_0: float) -> float:
     return (v - abs(v) * z / z_0) / (1 + (0.008 * abs(v) / z_0) ** 2) ** 0.5
 
 
+def corner(x: float, width: float) -> float:
+    """0 below -width, x above width, a parabola between."""
+    return max(x, 0.0) if abs(x) >= width else (x + width) ** 2 / (4 * width)
+
+
+def dead(u: float, d: float, w: float) -> float:
+    return sgn(u) * (corner(abs(u) - d, w * d) - corner(-d, w * d))
+
+
+def limited(u: float, limit: float, w: float) -> float:
+    return u - sgn(u) * corner(abs(u) - limit, w * limit)
+
+
+def grip(v: float, v_s: float, e: float) -> float:
+    return exp(-((v / v_s) ** 2) / (1 + e * abs(v) / v_s))
+
+
 # What each effect does, by where it enters: s holds t, the states, the inputs, the rotors' accelerations and the effect's values.
 INPUT_M: dict[str, Callable[[Any], float]] = {
-    "main_input.deadzone": lambda s: sgn(s.u_M) * max(abs(s.u_M) - s.d, 0.0),
-    "main_input.saturation": lambda s: min(max(s.u_M, -s.limit), s.limit),
+    "main_input.deadzone": lambda s: dead(s.u_M, s.d, s.w),
+    "main_input.saturation": lambda s: limited(s.u_M, s.limit, s.w),
     "main_input.supply_sag": lambda s: s.u_M * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "main_input.gain": lambda s: s.gain * s.u_M,
     "main_input.offset": lambda s: s.u_M + s.offset,
     "main_input.quantization": lambda s: s.q * floor(s.u_M / s.q + 0.5),
 }
 INPUT_T: dict[str, Callable[[Any], float]] = {
-    "tail_input.deadzone": lambda s: sgn(s.u_T) * max(abs(s.u_T) - s.d, 0.0),
-    "tail_input.saturation": lambda s: min(max(s.u_T, -s.limit), s.limit),
+    "tail_input.deadzone": lambda s: dead(s.u_T, s.d, s.w),
+    "tail_input.saturation": lambda s: limited(s.u_T, s.limit, s.w),
     "tail_input.supply_sag": lambda s: s.u_T * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "tail_input.gain": lambda s: s.gain * s.u_T,
     "tail_input.offset": lambda s: s.u_T + s.offset,
@@ -72,7 +89,7 @@ THRUST_T = {
 }
 TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.coulomb": lambda s: -s.b * sgn(s.v_psi),
-    "elevation.stribeck": lambda s: -s.b_s * exp(-((s.v_psi / s.v_s) ** 2)) * sgn(s.v_psi),
+    "elevation.stribeck": lambda s: -s.b_s * grip(s.v_psi, s.v_s, s.e) * sgn(s.v_psi),
     "elevation.load_friction": lambda s: -s.c * abs(s.w_M) * sgn(s.v_psi),
     "elevation.friction_asymmetry": lambda s: -s.difference / 2,
     "elevation.quadratic_drag": lambda s: -s.c * abs(s.v_psi) * s.v_psi,
@@ -93,7 +110,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
 }
 TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.coulomb": lambda s: -s.b * sgn(s.v_phi),
-    "azimuth.stribeck": lambda s: -s.b_s * exp(-((s.v_phi / s.v_s) ** 2)) * sgn(s.v_phi),
+    "azimuth.stribeck": lambda s: -s.b_s * grip(s.v_phi, s.v_s, s.e) * sgn(s.v_phi),
     "azimuth.load_friction": lambda s: -s.c * abs(s.w_T) * sgn(s.v_phi),
     "azimuth.friction_asymmetry": lambda s: -s.difference / 2,
     "azimuth.quadratic_drag": lambda s: -s.c * abs(s.v_phi) * s.v_phi,
