@@ -46,7 +46,7 @@ def test_the_plot_is_labelled_as_the_run_s(run: tuple[Path, str]) -> None:
 
 def test_every_verb_has_a_row() -> None:
     table = PAGE[PAGE.index("## The verbs") :]
-    assert set(re.findall(r"`([a-z]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, flags=re.MULTILINE)))) == set(
+    assert set(re.findall(r"`([a-z-]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, flags=re.MULTILINE)))) == set(
         VERBS
     )
 
