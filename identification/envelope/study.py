@@ -93,28 +93,36 @@ def _silent(_: str) -> AbstractContextManager[None]:
     return nullcontext()
 
 
+def _unsaved(_: Study) -> None:
+    pass
+
+
 def study(
     flights: Sequence[Flight],
     forgetting: float = 1.0,
     stage: Callable[[str], AbstractContextManager[None]] = _silent,
+    save: Callable[[Study], None] = _unsaved,
 ) -> Study:
     """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each.
 
+    `save` is told what is known after each, so that an interrupted study leaves what it has.
     Raises BadInput for flights that cannot be joined, and for a condition left out without neighbours on both sides.
     """
-    found, known = [], _conditions(flights, "identification")
+    found, left_out = list[ConditionResult](), list[Interpolated]()
+    known = _conditions(flights, "identification")
     for condition in _conditions(flights, "interpolation"):
         neighbours(known, condition)
     for condition in known:
         with stage(condition.name):
             mine = [entry for entry in flights if entry.condition == condition]
             found.append(identify(condition, mine, forgetting))
+        save(Study(tuple(found), (), len(flights)))
     models = {entry.condition: entry.model for entry in found}
-    left_out = []
     for condition in _conditions(flights, "interpolation"):
         with stage(f"{condition.name}, left out"):
             mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
             left_out.append(_interpolated(condition, models, mine))
+        save(Study(tuple(found), tuple(left_out), len(flights)))
     return Study(tuple(found), tuple(left_out), len(flights))
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from identification.envelope import study
 from identification.envelope.conditions import Condition
 from identification.envelope.flight_file import load_flight, load_flights, save_flight
 from identification.envelope.truth.figures import drawn
@@ -68,3 +69,19 @@ def test_what_is_wrong_with_a_flight_is_said(folder: Path, tmp_path: Path, capsy
 def test_an_empty_folder_is_refused(tmp_path: Path, capsys) -> None:
     assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
     assert "flight tests" in capsys.readouterr().err
+
+
+def test_an_interrupted_study_leaves_the_conditions_that_were_done(monkeypatch, folder: Path, tmp_path: Path) -> None:
+    original, calls = study.identify, []
+
+    def stops_at_the_second(*given):
+        calls.append(given)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return original(*given)
+
+    monkeypatch.setattr(study, "identify", stops_at_the_second)
+    assert main(["envelope", "--out", str(tmp_path), str(folder)]) == 130
+    told = json.loads((tmp_path / "envelope.json").read_text())
+    assert [entry["condition"] for entry in told["conditions"]] == [ENDS[0].name]
+    assert np.array(told["conditions"][0]["A"]).shape == (8, 8)

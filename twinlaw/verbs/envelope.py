@@ -2,7 +2,7 @@
 
 Without FLIGHTS the tests are flown on a simulated helicopter: 22 conditions to identify, each with three flights to validate it, and nine
 between them that are only predicted. FLIGHTS is a folder of sidecars NAME.toml with their NAME.csv, as --keep-flights writes them. Writes
-DIR/envelope.json and DIR/report.html; models are judged by the FAA's margins and the three-second rule.
+DIR/envelope.json, after each condition, and DIR/report.html; models are judged by the FAA's margins and the three-second rule.
 """
 
 import argparse
@@ -12,7 +12,7 @@ from pathlib import Path
 from identification.envelope.flight import Flight
 from identification.envelope.flight_file import load_flights, save_flight
 from identification.envelope.record import facts, summary
-from identification.envelope.study import study
+from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
@@ -48,9 +48,11 @@ def run(chosen: argparse.Namespace) -> int:
     flights, origin = _flights(chosen)
     if not any(flight.use == "identification" for flight in flights):
         raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
-    found = study(flights, chosen.forgetting, console.stage)
-    told = facts(found)
-    write_atomic(chosen.out / "envelope.json", json.dumps(told, indent=1) + "\n")
+
+    def save(so_far: Study) -> None:
+        write_atomic(chosen.out / "envelope.json", json.dumps(facts(so_far), indent=1) + "\n")
+
+    found = study(flights, chosen.forgetting, console.stage, save)
     with console.stage("drawing the report"):
         write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin)))
     if chosen.json:
