@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+import sympy
 from numpy.typing import NDArray
 
 from diagnosis.kit import Kit
@@ -16,6 +17,7 @@ from sim.simulate import simulate
 
 Array = NDArray[np.float64]
 START_S = 0.1
+UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
 RUN_UP_S = 4.0
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
@@ -25,13 +27,14 @@ START_SHARE = 0.6  # how far from its rest under the first inputs another state 
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One log as the filter takes it: tape, start x0 and its variances p0 (states,), axes held."""
+    """One log as the filter takes it: tape, start x0 and its variances p0 (states,), axes held; `drive` (states,) as in filter.Noise."""
 
     log: RunLog
     tape: Tape
     x0: Array
     p0: Array
     locked: tuple[str, ...]
+    drive: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +115,29 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
 def _flight(kit: Kit, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:
     tape = tape_of(log, kit.bound.plant, kit.outputs, used)
     x0, p0 = start_of(kit, tape, log.locked)
-    return Flight(log, tape, x0, p0, log.locked)
+    return Flight(log, _found_its_state(tape), x0, p0, log.locked, _drive(kit, tape))
+
+
+def _drive(kit: Kit, tape: Tape) -> Array:
+    """What an unknown command, as far from the last as commands are from row to row, does to the state that it drives."""
+    model = kit.bound.model
+    found = np.zeros(len(kit.states))
+    known = dict(zip(model.parameter_symbols, kit.bound.p.tolist(), strict=True))
+    for rotor in model.places.rotors.values():
+        if rotor.drive is None or str(rotor.speed) not in kit.states:
+            continue
+        gain = float(sympy.sympify(sympy.diff(rotor.drive, rotor.variable)).subs(known))
+        moves = np.diff(tape.u[:, model.inputs.index(rotor.variable)])
+        found[kit.states.index(str(rotor.speed))] = gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
+    return found
+
+
+def _found_its_state(tape: Tape) -> Tape:
+    """The tape whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
+    since = tape.t_s - tape.t_s[0]
+    place = tape.place.copy()
+    place[since < min(UNTOLD_S, UNTOLD_SHARE * since[-1])] = -1
+    return replace(tape, place=place)
 
 
 def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Array]:

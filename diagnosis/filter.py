@@ -26,11 +26,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances."""
+    """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances.
+
+    `drive` (states,) is the variance that a command which nobody knows gives each state in a second, by the second squared.
+    """
 
     q: Array
     rub: Array
     p0: Array
+    drive: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +96,7 @@ class Filter:
             "x0": _double(x0),
             "p0": _double(noise.p0),
             "q": _double(noise.q),
+            "stir": _double(np.outer(tape.untold_s**2, noise.drive)) if tape.untold_s.any() else None,
             "rub": _double(noise.rub) if self.axes else np.zeros(1),
             "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
             "column": np.array(columns, dtype=np.int32),

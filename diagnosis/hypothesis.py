@@ -77,7 +77,8 @@ def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed, r
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     for axis, unrest in zip(kit.bound.model.axes, supposed.unrest, strict=True):
         q[kit.states.index(str(axis.velocity))] = 10.0 ** (2.0 * unrest)
-    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0)
+    drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
+    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive)
 
 
 def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:

@@ -24,6 +24,7 @@ from diagnosis.tape import Tape
 from diagnosis.unrest import with_unrest
 
 Array = NDArray[np.float64]
+NEAR = range(-2, 4)  # rows about one behind which others are missing
 APART = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 3, 0.1
 LITTLE = 0.02  # of what losses gain, below which another round is not worth its time
@@ -103,7 +104,7 @@ def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: i
         w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
         before = _supposed(flight.tape, ground.fit.supposed)
-        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, sweeps)
+        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, _judged(flight.tape), sweeps)
         flights.append(replace(flight, tape=replace(flight.tape, lost=ratios)))
     return case.with_flights(flights)
 
@@ -131,9 +132,17 @@ def _supposed(tape: Tape, supposed: Supposed) -> Array:
     return lost_with(tape.lost, supposed.effects[LOST_FRAMES]["p"])
 
 
-def _ratios(u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, sweeps: int) -> Array:
+def _judged(tape: Tape) -> list[int]:
+    """Rows of frames that can be judged: not about rows that the log lacks, as nobody knows what was commanded there."""
+    beside = {int(row) + near for row in np.flatnonzero(tape.untold_s) for near in NEAR}
+    return [row for row in range(1, tape.rows) if row not in beside]
+
+
+def _ratios(
+    u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: Sequence[int], sweeps: int
+) -> Array:
     """L of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of all
-    others taken out."""
+    others taken out. Frames that are not `judged` count as arrived."""
     rows, left, lost = len(u), w.copy(), before.copy()
     found, arrived = np.zeros(rows), u.copy()
     taken = np.zeros((rows, len(columns)))
@@ -143,7 +152,7 @@ def _ratios(u: Array, columns: Sequence[int], answers: Array, w: Array, before: 
     fresh = not before.any()
     for sweep in range(sweeps + 1):
         share = float(np.clip(np.mean(lost), 0.003, 0.8)) if sweep or not fresh else FIRST_SHARE
-        for row in range(1, rows):
+        for row in judged:
             unit = answers[row : row + APART, :, :, row % APART]
             held = (arrived[row - 1] - u[row])[columns]
             a = unit @ held

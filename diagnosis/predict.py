@@ -36,7 +36,7 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
     if run is None:
         return found
     lateness = _lateness(case, variant, supposed.effects)
-    ahead = Noise(np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0))
+    ahead = Noise(np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0), np.zeros_like(noise.q))
     slots = [place if place < outputs else -1 for place in range(len(kit.outputs))]
     for first, last in windows(flight.log.t_s):
         begin = int(np.searchsorted(tape.t_s, flight.log.t_s[first] - max(lateness) + 1e-9, side="right")) - 1
@@ -94,7 +94,16 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     r = np.full_like(y, UNSEEN)
     places = np.tile(np.arange(count)[:, None], (1, tape.y.shape[1]))
     return Tape(
-        tape.t_s[begin:end], tape.u[begin:end], y, r, np.arange(count), places, count, np.zeros_like(y), np.zeros(count)
+        tape.t_s[begin:end],
+        tape.u[begin:end],
+        y,
+        r,
+        np.arange(count),
+        places,
+        count,
+        usual=np.zeros_like(y),
+        lost=np.zeros(count),
+        untold_s=np.zeros(count),
     )
 
 

@@ -58,7 +58,12 @@ def _less_sure(tape: Tape, output: int, rows: NDArray[np.int64], span: float, kn
     """The tape where the readings of `rows` may be off by anything within `span`, which is charged with `known` instead of by each row."""
     r, charge = tape.r.copy(), _charge(tape, output, span)
     r[rows, output] *= np.exp(2.0 * charge)
-    return replace(tape, r=r, known=tape.known + len(rows) * charge + known)
+    return replace(tape, r=r, known=tape.known + len(_counted(tape, output, rows)) * charge + known)
+
+
+def _counted(tape: Tape, output: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Those rows whose readings count in the likelihood."""
+    return np.asarray(rows[tape.place[rows, output] >= 0])
 
 
 def _charge(tape: Tape, output: int, span: float) -> float:
@@ -68,7 +73,7 @@ def _charge(tape: Tape, output: int, span: float) -> float:
 
 def _once(tape: Tape, output: int, rows: NDArray[np.int64]) -> float:
     """How many readings `rows` hold where the same count, read again and again, is one."""
-    return float(np.sum(tape.variance(output) / tape.r[rows, output]))
+    return float(np.sum(tape.variance(output) / tape.r[_counted(tape, output, rows), output]))
 
 
 def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:

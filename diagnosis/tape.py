@@ -13,6 +13,7 @@ from sim.paths import Held, InputStage, pass_inputs
 Array = NDArray[np.float64]
 BEYOND_USUAL = 3.0
 CLEARLY = 2.0
+MISSING = 1.5  # times the usual step from row to row
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,8 @@ class Tape:
 
     `row` (m,) is the log's row that an instant is, -1 for none, `place` (m, outputs) the row of each reading; `rows` in all. `usual`
     (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
-    meaningless. `lost` (m,) is the log of how much likelier each instant's command was lost than not, 0 where nothing is known.
+    meaningless. `lost` (m,) is the log of how much likelier each instant's command was lost than not, 0 where nothing is known;
+    `untold_s` (m,) for how long until the next instant nobody knows what was commanded, as the log lacks rows there.
     """
 
     t_s: Array
@@ -34,6 +36,7 @@ class Tape:
     rows: int
     usual: Array
     lost: Array
+    untold_s: Array
     known: float = 0.0
 
     def variance(self, output: int) -> float:
@@ -55,7 +58,25 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
     if used is not None:
         y[~used] = np.nan
     places = np.tile(np.arange(rows)[:, None], (1, len(outputs)))
-    return Tape(log.t_s, log.u, y, r, np.arange(rows), places, rows, -0.5 * (1.0 + np.log(r)), np.zeros(rows))
+    return Tape(
+        log.t_s,
+        log.u,
+        y,
+        r,
+        np.arange(rows),
+        places,
+        rows,
+        usual=-0.5 * (1.0 + np.log(r)),
+        lost=np.zeros(rows),
+        untold_s=_untold(log.t_s),
+    )
+
+
+def _untold(t_s: Array) -> Array:
+    """How long a command is unknown behind each row (n,): rows that are missing had commands of their own."""
+    step = np.append(np.diff(t_s), 0.0)
+    usual = float(np.median(step[:-1])) if len(step) > 1 else 0.0
+    return np.where(step > MISSING * usual, step - usual, 0.0)
 
 
 def _standing(y: Array) -> Array:
@@ -106,9 +127,9 @@ def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     row, place = np.full(len(t_s), -1, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
     where = np.searchsorted(t_s, tape.t_s)
     y[where], r[where], row[where], usual[where], place[where] = tape.y, tape.r, tape.row, tape.usual, tape.place
-    lost = np.zeros(len(t_s))
-    lost[where] = tape.lost
-    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place, lost=lost)
+    lost, untold_s = np.zeros(len(t_s)), np.zeros(len(t_s))
+    lost[where], untold_s[where] = tape.lost, tape.untold_s
+    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place, lost=lost, untold_s=untold_s)
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:

@@ -114,7 +114,9 @@ def _begin(flight: Flight) -> Flight:
     """The first LOOKED_AT_S of a flight."""
     tape = flight.tape
     kept = tape.t_s - tape.t_s[0] <= LOOKED_AT_S
-    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", "y", "r", "row", "place", "usual", "lost")}
+    arrays = {
+        name: getattr(tape, name)[kept] for name in ("t_s", "u", "y", "r", "row", "place", "usual", "lost", "untold_s")
+    }
     return replace(flight, tape=Tape(rows=int(kept.sum()), **arrays))
 
 

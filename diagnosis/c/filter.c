@@ -85,8 +85,9 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         }
     const int slot = r->slot[output];
     const int64_t row = r->place[step * N_OUTPUTS + output];
-    r->log_likelihood -= 0.5 * (nu * nu / s + log(s));
-    if (row >= 0 && slot >= 0) {
+    const bool counts = row >= 0 && slot >= 0;
+    if (counts) {
+        r->log_likelihood -= 0.5 * (nu * nu / s + log(s));
         r->w[row * r->slots + slot] = nu * scale;
         r->s[row * r->slots + slot] = s;
     }
@@ -102,10 +103,10 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
     for (int i = 0; i < N; i++)
         for (int k = 0; k < r->columns; k++)
             at->S[i][k] += K[i] * slope[k];
-    if (row >= 0 && slot >= 0 && r->dw)
+    if (counts && r->dw)
         for (int k = 0; k < r->columns; k++)
             r->dw[(row * r->slots + slot) * r->columns + k] = slope[k] * scale;
-    if (!r->gram)
+    if (!counts || !r->gram)
         return;
     for (int k = 0; k < r->columns; k++) {
         const double part = slope[k] / s;
@@ -253,7 +254,7 @@ static void advance(filter_state *at, int64_t step)
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
-        noise[i] = r->q[i] * h_s;
+        noise[i] = r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0);
     doubt(at, t_s, h_s, noise);
     rk4_step(t_s, h_s, &at->body, at->u, at->c, x, &seen);
     const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, h_s, at->c, &seen));

@@ -6,13 +6,15 @@
 
 /* A tape of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
- * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots; a slot below 0 keeps nothing. */
+ * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots. A measurement whose place or slot
+ * is below 0 moves the state, but nothing is kept of it and it does not count in the likelihood. */
 typedef struct {
     int64_t steps;
     int32_t columns, slots;
     const double *t_s, *u, *y, *r;           /* [steps], [steps][N_INPUTS], [steps][N_OUTPUTS] measured, their variances */
     const int64_t *row, *place;              /* [steps]: where the states go, [steps][N_OUTPUTS]: where the results go; or -1 */
     const double *p, *x0, *p0, *q;           /* [N_PARAMETERS]; [N_STATES]: start, its variance, noise intensity */
+    const double *stir;                      /* [steps][N_STATES] further variance over each step, or NULL */
     const double *rub;                       /* [AXES]: how long, in s, the friction of an axis about its rest is in doubt */
     const uint8_t *locked;                   /* [AXES] */
     const int32_t *column, *slot;            /* [columns] parameters to differentiate by; [N_OUTPUTS] */

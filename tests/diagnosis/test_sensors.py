@@ -31,6 +31,7 @@ def tape(y: np.ndarray) -> Tape:
         rows=rows,
         usual=np.zeros(values.shape),
         lost=np.zeros(rows),
+        untold_s=np.zeros(rows),
     )
 
 
