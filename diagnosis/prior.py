@@ -23,6 +23,7 @@ ONE_WAY = {
     "wind": "c",
     "load_friction": "c",
 }
+MANY_SHAPES = 0.8  # by which friction that falls with speed goes behind dry friction, which is among its forms
 LONG_PULSE_S = 5.0  # a disturbance is a push; what lasts longer is rather something that changed
 # In units of the scale on which hypotheses are compared.
 RARE, WRONG_WAY = 2.0, 4.5
@@ -45,6 +46,8 @@ def _odds(name: str, tried: Tried) -> float:
         odds -= WRONG_WAY
     if kind == "disturbance" and tried.fit.supposed.effects[name]["duration"] > LONG_PULSE_S:
         odds -= RARE
+    if kind == "stribeck":
+        odds -= MANY_SHAPES
     if kind in SAME_AS_PARAMETERS:
         odds -= OWN_PARAMETERS
     return odds
