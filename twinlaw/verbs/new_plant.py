@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Write both files, or neither, and say which row is missing."""
+    """Write both files unless either is there, and say which row is missing."""
     files = {chosen.project / path: text for path, text in plant_files(chosen.name).items()}
     if not (chosen.project / REGISTER).is_file():
         raise BadInput(
