@@ -17,7 +17,7 @@ def instants(ground: Ground, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect whose shapes are instants: the best of a grid; empty for effects without instants."""
     names = [parameter.symbol for parameter in effect.parameters if not parameter.is_size]
     target = target_of(ground.case, effect)
-    if target is None or not set(names) & set(TIMES):
+    if target is None or not is_event(effect):
         return []
     times_s, scores = ground.steps(target)
     gram, score = scores.gram, scores.score

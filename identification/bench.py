@@ -1,10 +1,8 @@
 """How fast ten parameters come back from a minute of flight, next to the usual tools on the same data. Time is measured only here."""
 
-import importlib
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +16,7 @@ from identification.ranges import ranges_of
 from identification.run import coefficient_names
 from identification.solve import solve
 from records.log import RunLog
+from sim.bench_peers import module
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.equilibrium import equilibrium
@@ -115,9 +114,8 @@ def _scipy(work: Task) -> Array:
 
 
 def _lmfit(work: Task) -> Fitted | None:
-    try:
-        lmfit: Any = importlib.import_module("lmfit")
-    except ImportError:
+    lmfit = module("lmfit")
+    if lmfit is None:
         return None
     parameters = lmfit.Parameters()
     for name in NAMES:

@@ -3,7 +3,6 @@
 Dry friction is b_c tanh(v / SLIP_RAD_S) in both, as neither has events; one RK4 step a sample, slopes by the tool's forward mode.
 """
 
-import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +12,7 @@ import sympy
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from sim.bench_peers import symbolic_rates
+from sim.bench_peers import module, symbolic_rates
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
@@ -24,7 +23,7 @@ FAR, STEEP = 1e3, 1e6  # residuals and slopes of a run that leaves all bounds, a
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """What is fitted: y (n, outputs) under u (n, inputs) held from row to row of `period_s`, from x0.
+    """What is fitted: y (n, outputs) under u (n, inputs) held from row to row of `period_s`, from x0 (states,), all in SI.
 
     The coefficients `places` of p begin at `start`; all others are known.
     """
@@ -59,8 +58,8 @@ Slopes = tuple[
 
 
 def jax_fit(flight: Flight) -> Fitted | None:
-    """A compiled scan over the samples and its forward-mode Jacobian."""
-    jax = _module("jax")
+    """A compiled scan over the samples and its forward-mode Jacobian; None where JAX is not installed."""
+    jax = module("jax")
     if jax is None:
         return None
     jax.config.update("jax_enable_x64", True)
@@ -80,8 +79,11 @@ def jax_fit(flight: Flight) -> Fitted | None:
 
 
 def casadi_fit(flight: Flight) -> Fitted | None:
-    """The sample as a CasADi function, accumulated over the run, with its forward sensitivities, on CasADi's virtual machine."""
-    casadi = _module("casadi")
+    """The sample as a CasADi function, accumulated over the run, with its forward sensitivities, on CasADi's virtual machine.
+
+    None where CasADi is not installed.
+    """
+    casadi = module("casadi")
     if casadi is None:
         return None
     names = {name: getattr(casadi, name) for name in ("sin", "cos", "tanh", "sign")} | {"Abs": casadi.fabs}
@@ -142,10 +144,3 @@ def _rk4(rates: Callable[[Any], Any], x: Any, h: float) -> Any:
     k3 = rates(x + 0.5 * h * k2)
     k4 = rates(x + h * k3)
     return x + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
-
-
-def _module(name: str) -> Any:
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        return None

@@ -1,6 +1,5 @@
 """The closed loop in tools that compile plant and law together: CasADi, numba and diffrax, each where it is installed."""
 
-import importlib
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -8,16 +7,8 @@ import numpy as np
 import sympy
 
 from sim.bench_law import LAW_STATES, law_start, law_step
-from sim.bench_peers import Peer, Task, Work, smooth_rates, symbolic_rates
+from sim.bench_peers import Peer, Task, Work, module, smooth_rates, symbolic_rates
 from toolchain.host import FAST_FLAGS, CText, build_shared
-
-
-def _module(name: str) -> Any:
-    """A tool's module, or None where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        return None
 
 
 def _measured(task: Task, floor: Callable[[Any], Any], x: Any) -> list[Any]:
@@ -46,7 +37,7 @@ def _sample(task: Task, ops: Any, rates: Callable[..., Any]) -> Callable[..., An
 
 def _casadi(task: Task) -> Work | None:
     """The sample as a CasADi function, accumulated over the run, as the C that CasADi generates."""
-    casadi = _module("casadi")
+    casadi = module("casadi")
     if casadi is None:
         return None
 
@@ -77,7 +68,7 @@ def _casadi(task: Task) -> Work | None:
 
 def _numba(task: Task) -> Work | None:
     """Plant and law as scalar functions that numba compiles; states travel as tuples."""
-    numba = _module("numba")
+    numba = module("numba")
     if numba is None:
         return None
 
@@ -125,7 +116,7 @@ def _diffrax(task: Task) -> Work | None:
 
 def _diffrax_batch(task: Task) -> Work | None:
     """The same for all parameter sets at once, by JAX's vectorising map."""
-    jax, fly = _module("jax"), _diffrax_flight(task)
+    jax, fly = module("jax"), _diffrax_flight(task)
     if fly is None:
         return None
     together = jax.jit(jax.vmap(fly))
@@ -134,7 +125,7 @@ def _diffrax_batch(task: Task) -> Work | None:
 
 def _diffrax_flight(task: Task) -> Callable[[Any], Any] | None:
     """The outputs at the end of the task as a compiled function of the parameters."""
-    jax, diffrax = _module("jax"), _module("diffrax")
+    jax, diffrax = module("jax"), module("diffrax")
     if jax is None or diffrax is None:
         return None
     jax.config.update("jax_enable_x64", True)

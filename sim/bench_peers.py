@@ -1,5 +1,6 @@
 """The closed loop in tools that call Python for the plant or the law: python-control and SciPy."""
 
+import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -59,6 +60,14 @@ class Peer:
     prepare: Callable[[Task], Work | None]
     note: str
     batched: bool = False
+
+
+def module(name: str) -> Any:
+    """A tool's module, or None where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
 
 
 def symbolic_rates(model: Model) -> list[sympy.Expr]:

@@ -68,7 +68,7 @@ def test_every_tool_has_a_row_and_those_not_installed_say_so(bound, table, monke
 
 @pytest.mark.parametrize("peer", bench_compiled.PEERS)
 def test_a_tool_that_is_not_installed_is_left_out(bound, table, monkeypatch, peer):
-    monkeypatch.setattr(bench_compiled, "_module", lambda name: None)
+    monkeypatch.setattr(bench_compiled, "module", lambda name: None)
     task = bench_peers.Task(bound, table, lambda: FloatLaw(table), hop(bound), bound.p[np.newaxis])
     assert bench_compiled.PEERS[peer].prepare(task) is None
 

@@ -16,7 +16,7 @@ def quick(monkeypatch):
         monkeypatch.setattr(bench, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)
     monkeypatch.setattr(fit_bench, "DURATION_S", 6.0)
-    monkeypatch.setattr(bench_compiled, "_module", lambda name: None)  # as where no optional tool is installed
+    monkeypatch.setattr(bench_compiled, "module", lambda name: None)  # as where no optional tool is installed
 
 
 def test_it_tells_ratios_errors_the_board_s_speed_and_how_to_install_what_is_absent(capsys):
