@@ -38,7 +38,7 @@ def _calm(case: Case) -> list[float]:
     for axis in model.axes:
         read = [name for name, output in model.outputs.items() if output == axis.position]
         r = min(
-            (flight.tape.variance(case.kit.outputs.index(name)) for name in read for flight in case.flights),
+            (flight.tape.single[case.kit.outputs.index(name)] for name in read for flight in case.flights),
             default=np.inf,
         )
         levels.append(0.5 * float(np.log10(12.0 * r)))

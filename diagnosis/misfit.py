@@ -21,7 +21,7 @@ def ignorance(case: Case, supposed: Supposed) -> dict[str, float]:
     own, still = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
     found = {}
     for place, name in enumerate(outputs):
-        floor = case.flights[0].tape.variance(case.kit.outputs.index(name))
+        floor = case.flights[0].tape.single[case.kit.outputs.index(name)]
         known = np.isfinite(own[:, place])
         if known.any() and (change := float(np.mean(still[known, place]))) > MOVES**2 * floor:
             found[name] = float(np.sqrt(np.mean(own[known, place]) / change))

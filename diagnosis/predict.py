@@ -91,16 +91,17 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     count = end - begin
     y = np.full((count, tape.y.shape[1]), np.nan)
     y[:, :outputs] = 0.0
-    r = np.full_like(y, UNSEEN)
-    places = np.tile(np.arange(count)[:, None], (1, tape.y.shape[1]))
     return Tape(
         tape.t_s[begin:end],
         tape.u[begin:end],
         y,
-        r,
-        np.arange(count),
-        places,
-        count,
+        r=np.full_like(y, UNSEEN),
+        read=y,
+        standing=np.ones_like(y),
+        single=tape.single,
+        row=np.arange(count),
+        place=np.tile(np.arange(count)[:, None], (1, y.shape[1])),
+        rows=count,
         usual=np.zeros_like(y),
         lost=np.zeros(count),
         untold_s=np.zeros(count),

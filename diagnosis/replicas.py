@@ -64,11 +64,11 @@ def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) ->
 
 
 def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Generator) -> Array:
-    """Errors of readings (steps, count): rounding along the log's own way, moved at random, and noise beyond it."""
+    """Errors of readings (steps, count): rounding along the log's own way, moved at random, noise beyond it; and of edges their own."""
     kit, tape = ground.case.kit, ground.tapes[index]
     name = kit.outputs[place]
     step = kit.bound.plant.sensors.get(name, 0.0)
-    beyond = tape.variance(place) - step**2 / 12.0
+    beyond = tape.single[place] - step**2 / 12.0
     error = rng.standard_normal((len(tape.t_s), count)) * np.sqrt(beyond if beyond > 1e-3 * step**2 else 0.0)
     if step <= 0.0 or name not in kit.bound.model.outputs:
         return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
@@ -77,6 +77,8 @@ def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Gen
     way = tape.y[:, place] if column < 0 else ground.runs[index].filtered[np.maximum(tape.row, 0), column]
     exact = np.nan_to_num(way)[:, None] + rng.uniform(0.0, step, count) + 0.3 * step * _wander(len(way), count, rng)
     error += np.round(exact / step) * step - exact
+    sharp = tape.r[:, place] < tape.single[place]
+    error[sharp] = rng.uniform(-0.5, 0.5, (int(sharp.sum()), count)) * np.sqrt(12.0 * tape.r[sharp, place, None])
     return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
 
 

@@ -174,7 +174,7 @@ def _sizes(case: Case, ground: Ground, effect: Effect) -> list[float]:
     if sensor is None:
         return likely_steps(ground, effect.place)
     place = kit.outputs.index(sensor.output)
-    read = np.concatenate([flight.tape.y[:, place] for flight in case.flights])
+    read = np.concatenate([flight.tape.read[:, place] for flight in case.flights])
     step = coarse_step(read, kit.bound.plant.sensors[sensor.output])
     return [] if step is None else [step]
 

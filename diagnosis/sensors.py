@@ -38,15 +38,21 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
 
 
 def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:
-    seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
-    evidence = grid_evidence(tape.y[:, output], grid, step)
-    return _less_sure(tape, output, seen, grid, evidence - _once(tape, output, seen) * _charge(tape, output, grid))
+    """The tape where an output lies on a coarser grid: what readings say is read anew, and its evidence is that of the grid."""
+    seen = np.flatnonzero(np.isfinite(tape.read[:, output]))
+    y, r = tape.y.copy(), tape.r.copy()
+    y[:, output] = tape.read[:, output]
+    r[seen, output] = tape.standing[seen, output] * tape.single[output]
+    evidence = grid_evidence(tape.read[:, output], grid, step)
+    plain = replace(tape, y=y, r=r)
+    return _less_sure(plain, output, seen, grid, evidence - _once(tape, output, seen) * _charge(tape, output, grid))
 
 
 def behind_play(tape: Tape, output: int, width: float) -> Tape:
+    """The tape where an output's readings follow it behind play of that width."""
     y = tape.y.copy()
     seen = np.flatnonzero(np.isfinite(y[:, output]))
-    moved = np.append(0.0, np.diff(y[seen, output]))
+    moved = np.append(0.0, np.diff(tape.read[seen, output]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
     unsure = standing_rows(tape, output)
     y[seen, output] += np.where(np.isin(seen, unsure), 0.0, 0.5 * width * np.sign(moved[last]))
@@ -56,9 +62,11 @@ def behind_play(tape: Tape, output: int, width: float) -> Tape:
 
 def _less_sure(tape: Tape, output: int, rows: NDArray[np.int64], span: float, known: float) -> Tape:
     """The tape where the readings of `rows` may be off by anything within `span`, which is charged with `known` instead of by each row."""
-    r, charge = tape.r.copy(), _charge(tape, output, span)
-    r[rows, output] *= np.exp(2.0 * charge)
-    return replace(tape, r=r, known=tape.known + len(_counted(tape, output, rows)) * charge + known)
+    r = tape.r.copy()
+    r[rows, output] += tape.standing[rows, output] * span**2 / 12.0
+    counted = _counted(tape, output, rows)
+    each = 0.5 * float(np.sum(np.log(r[counted, output] / tape.r[counted, output])))
+    return replace(tape, r=r, known=tape.known + each + known)
 
 
 def _counted(tape: Tape, output: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -68,12 +76,12 @@ def _counted(tape: Tape, output: int, rows: NDArray[np.int64]) -> NDArray[np.int
 
 def _charge(tape: Tape, output: int, span: float) -> float:
     """What a reading that may be off by anything within `span` costs in likelihood."""
-    return 0.5 * float(np.log1p(span**2 / 12.0 / tape.variance(output)))
+    return 0.5 * float(np.log1p(span**2 / 12.0 / tape.single[output]))
 
 
 def _once(tape: Tape, output: int, rows: NDArray[np.int64]) -> float:
     """How many readings `rows` hold where the same count, read again and again, is one."""
-    return float(np.sum(tape.variance(output) / tape.r[_counted(tape, output, rows), output]))
+    return float(np.sum(1.0 / tape.standing[_counted(tape, output, rows), output]))
 
 
 def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:
@@ -81,7 +89,7 @@ def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:
     changes back next.
     """
     seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
-    moved = np.append(0.0, np.diff(tape.y[seen, output]))
+    moved = np.append(0.0, np.diff(tape.read[seen, output]))
     changes = np.flatnonzero(moved != 0.0)
     if len(changes) < 3:
         return seen

@@ -54,7 +54,7 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     """
     outputs = list(case.kit.bound.model.outputs)
     squares = {bar: _squares(predicted, bar) for bar in BARS}
-    floor = np.sqrt([case.flights[0].tape.variance(case.kit.outputs.index(name)) for name in outputs])
+    floor = np.sqrt([case.flights[0].tape.single[case.kit.outputs.index(name)] for name in outputs])
     bars = {bar: _named(outputs, np.sqrt(_means(squares[bar]))) for bar in BARS}
     whole = np.arange(len(squares["after"]))
     fraction = _fraction(squares, floor, whole)
@@ -77,7 +77,7 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
 def error(case: Case, predicted: Sequence[Predicted], bar: str) -> float:
     """Mean square error of a bar, each output in units of its floor."""
     outputs = list(case.kit.bound.model.outputs)
-    floor = np.array([case.flights[0].tape.variance(case.kit.outputs.index(name)) for name in outputs])
+    floor = np.array([case.flights[0].tape.single[case.kit.outputs.index(name)] for name in outputs])
     return float(np.nansum(_means(_squares(predicted, bar)) / floor))
 
 

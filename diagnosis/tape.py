@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.edges import sharpened
 from records.log import RunLog
 from records.plant import Plant
 from sim.paths import Held, InputStage, pass_inputs
@@ -14,6 +16,15 @@ Array = NDArray[np.float64]
 BEYOND_USUAL = 3.0
 CLEARLY = 2.0
 MISSING = 1.5  # times the usual step from row to row
+MERELY_ROUNDED = 1.01  # times the variance of rounding: no noise that would carry readings over an edge and back
+READINGS = {
+    "y": np.nan,
+    "r": 1.0,
+    "read": np.nan,
+    "standing": 1.0,
+    "usual": 0.0,
+    "place": -1,
+}  # by reading, and what stands for none
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,16 +32,21 @@ class Tape:
     """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
     and their variances r (m, outputs).
 
-    `row` (m,) is the log's row that an instant is, -1 for none, `place` (m, outputs) the row of each reading; `rows` in all. `usual`
-    (m, outputs) is the log likelihood of each reading under the nominal plant, `known` the sum of those that an effect makes
-    meaningless. `lost` (m,) is the log of how much likelier each instant's command was lost than not, 0 where nothing is known;
-    `untold_s` (m,) for how long until the next instant nobody knows what was commanded, as the log lacks rows there.
+    `read` (m, outputs) are the readings as the log has them, `standing` (m, outputs) the rows that each count stands for, `single`
+    (outputs,) the variance of one reading by itself. `row` (m,) is the log's row that an instant is, -1 for none, `place`
+    (m, outputs) the row of each reading; `rows` in all. `usual` (m, outputs) is the log likelihood of each reading under the nominal
+    plant, `known` the sum of those that an effect makes meaningless. `lost` (m,) is the log of how much likelier each instant's
+    command was lost than not, 0 where nothing is known; `untold_s` (m,) for how long until the next instant nobody knows what was
+    commanded, as the log lacks rows there.
     """
 
     t_s: Array
     u: Array
     y: Array
     r: Array
+    read: Array
+    standing: Array
+    single: Array
     row: NDArray[np.int64]
     place: NDArray[np.int64]
     rows: int
@@ -39,33 +55,35 @@ class Tape:
     untold_s: Array
     known: float = 0.0
 
-    def variance(self, output: int) -> float:
-        """Variance of one reading of an output by itself."""
-        return float(np.min(self.r[np.isfinite(self.y[:, output]), output], initial=np.inf))
-
 
 def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None) -> Tape:
     """The tape of a log: `outputs` are the plant's own and then the states that the log may carry; rows not `used` have no measurement."""
     rows = len(log.t_s)
-    y = np.full((rows, len(outputs)), np.nan)
-    r = np.ones((rows, len(outputs)))
+    read = np.full((rows, len(outputs)), np.nan)
+    standing, single = np.ones_like(read), np.full(len(outputs), np.inf)
     for place, name in enumerate(outputs):
         if name in log.columns.outputs or name in log.extra:
-            y[:, place] = log.column(name)
-            r[:, place] = _standing(y[:, place]) * _variance(
-                y[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0)
-            )
+            read[:, place] = log.column(name)
+            standing[:, place] = _standing(read[:, place])
+            single[place] = _variance(read[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
     if used is not None:
-        y[~used] = np.nan
-    places = np.tile(np.arange(rows)[:, None], (1, len(outputs)))
+        read[~used] = np.nan
+    y, r = read.copy(), np.where(np.isfinite(single), standing * single, 1.0)
+    for place, name in enumerate(outputs):
+        step = plant.sensors.get(name, 0.0)
+        if single[place] < MERELY_ROUNDED * step**2 / 12.0:
+            y[:, place], r[:, place] = sharpened(log.t_s, read[:, place], r[:, place], step)
     return Tape(
         log.t_s,
         log.u,
         y,
         r,
-        np.arange(rows),
-        places,
-        rows,
+        read,
+        standing,
+        single,
+        row=np.arange(rows),
+        place=np.tile(np.arange(rows)[:, None], (1, len(outputs))),
+        rows=rows,
         usual=-0.5 * (1.0 + np.log(r)),
         lost=np.zeros(rows),
         untold_s=_untold(log.t_s),
@@ -122,14 +140,21 @@ def spread(tape: Tape, starts_s: Array, values: Array) -> Tape:
 
 def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     """Measurements put at their instants among `t_s`."""
-    shape = (len(t_s), tape.y.shape[1])
-    y, r, usual = np.full(shape, np.nan), np.ones(shape), np.zeros(shape)
-    row, place = np.full(len(t_s), -1, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
     where = np.searchsorted(t_s, tape.t_s)
-    y[where], r[where], row[where], usual[where], place[where] = tape.y, tape.r, tape.row, tape.usual, tape.place
+    row = np.full(len(t_s), -1, dtype=np.int64)
+    row[where] = tape.row
     lost, untold_s = np.zeros(len(t_s)), np.zeros(len(t_s))
     lost[where], untold_s[where] = tape.lost, tape.untold_s
-    return replace(tape, t_s=t_s, u=u, y=y, r=r, row=row, usual=usual, place=place, lost=lost, untold_s=untold_s)
+    readings: dict[str, Any] = {
+        name: _spread_out(getattr(tape, name), len(t_s), where, none) for name, none in READINGS.items()
+    }
+    return replace(tape, t_s=t_s, u=u, row=row, lost=lost, untold_s=untold_s, **readings)
+
+
+def _spread_out(values: NDArray[Any], count: int, where: NDArray[np.int64], none: float) -> NDArray[Any]:
+    found = np.full((count, *values.shape[1:]), none, dtype=values.dtype)
+    found[where] = values
+    return found
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
@@ -143,14 +168,12 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
     t_s = t_s[(t_s >= tape.t_s[0]) & (np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s))]
     held = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
     moved = _placed(tape, t_s, tape.u[held])
-    y, r, usual, place = moved.y.copy(), moved.r.copy(), moved.usual.copy(), moved.place.copy()
-    y[:, output], place[:, output] = np.nan, -1
     then = tape.t_s - tau_s
     seen = then >= t_s[0] - 1e-7
     where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)[seen]
-    y[where, output], r[where, output] = tape.y[seen, output], tape.r[seen, output]
-    usual[where, output], place[where, output] = tape.usual[seen, output], tape.place[seen, output]
+    readings: dict[str, Any] = {}
+    for name, none in READINGS.items():
+        readings[name] = getattr(moved, name).copy()
+        readings[name][:, output] = _spread_out(getattr(tape, name)[seen, output], len(t_s), where, none)
     early = ~seen & np.isfinite(tape.y[:, output])
-    return replace(
-        moved, y=y, r=r, usual=usual, place=place, known=tape.known + float(np.sum(tape.usual[early, output]))
-    )
+    return replace(moved, **readings, known=tape.known + float(np.sum(tape.usual[early, output])))

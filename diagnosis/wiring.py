@@ -3,12 +3,13 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
 from diagnosis.case import Case, Flight, start_of
 from diagnosis.fit import Fit
-from diagnosis.tape import Tape
+from diagnosis.tape import READINGS
 from records.errors import BadInput
 
 LOOKED_AT_S = 20.0  # of each log
@@ -114,10 +115,8 @@ def _begin(flight: Flight) -> Flight:
     """The first LOOKED_AT_S of a flight."""
     tape = flight.tape
     kept = tape.t_s - tape.t_s[0] <= LOOKED_AT_S
-    arrays = {
-        name: getattr(tape, name)[kept] for name in ("t_s", "u", "y", "r", "row", "place", "usual", "lost", "untold_s")
-    }
-    return replace(flight, tape=Tape(rows=int(kept.sum()), **arrays))
+    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "untold_s", *READINGS)}
+    return replace(flight, tape=replace(tape, rows=int(kept.sum()), **arrays))
 
 
 def _rewired(case: Case, wiring: Wiring) -> Case:
@@ -128,9 +127,17 @@ def _rewired(case: Case, wiring: Wiring) -> Case:
 def _read_otherwise(case: Case, flight: Flight, wiring: Wiring) -> Flight:
     tape, count = flight.tape, len(wiring.outputs)
     places = [*wiring.outputs, *range(count, tape.y.shape[1])]
-    y = tape.y[:, places] * np.array([*wiring.output_signs, *_rate_signs(case, wiring)])
+    signs = np.array([*wiring.output_signs, *_rate_signs(case, wiring)])
+    readings: dict[str, Any] = {name: getattr(tape, name)[:, places] for name in ("r", "standing", "usual")}
     u = tape.u[:, list(wiring.inputs)] * np.array(wiring.input_signs)
-    tape = replace(tape, u=u, y=y, r=tape.r[:, places], usual=tape.usual[:, places])
+    tape = replace(
+        tape,
+        u=u,
+        y=tape.y[:, places] * signs,
+        read=tape.read[:, places] * signs,
+        single=tape.single[places],
+        **readings,
+    )
     x0, p0 = start_of(case.kit, tape, flight.locked)
     return replace(flight, tape=tape, x0=x0, p0=p0)
 

@@ -34,7 +34,7 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
     assert run is not None
     (flight,) = case.flights
     for place, w in enumerate(run.w[200:].T):
-        moving = flight.tape.r[200:, place] < 1.01 * flight.tape.variance(place)
+        moving = flight.tape.r[200:, place] < 1.01 * flight.tape.single[place]
         assert moving.sum() > 1500
         assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25

@@ -26,6 +26,9 @@ def tape(y: np.ndarray) -> Tape:
         u=np.zeros((rows, 1)),
         y=values,
         r=np.full(values.shape, STEP**2 / 12),
+        read=values,
+        standing=np.ones(values.shape),
+        single=np.array([STEP**2 / 12]),
         row=np.arange(rows),
         place=places,
         rows=rows,
@@ -78,20 +81,20 @@ def readings(y: np.ndarray) -> Tape:
 
 
 def test_the_same_count_read_again_says_no_more_than_once() -> None:
-    # n equal readings in a row are worth one reading: their weights 1/r add up to 12 / STEP^2, however many they are.
-    y = STEP * np.repeat([0, 1, 5, 6], [1, 7, 30, 2]).astype(float)
-    r = readings(y).r[:, 0]
+    # n equal readings in a row are worth one reading: their weights 1/r add up to that of one, however many they are.
+    y = STEP * np.repeat([0, 2, 6, 9], [1, 7, 30, 2]).astype(float)
+    found = readings(y)
     for first, last in ((0, 1), (1, 8), (8, 38), (38, 40)):
-        assert np.sum(1.0 / r[first:last]) == pytest.approx(12.0 / STEP**2)
+        assert np.sum(1.0 / found.r[first:last, 0]) == pytest.approx(1.0 / found.single[0])
 
 
 def test_rounding_alone_is_no_noise_and_noise_is_seen() -> None:
     # Rounding has STEP^2 / 12; white noise of two steps on top of it is seen to a tenth.
     rng = np.random.default_rng(3)
     angle = 0.3 * np.sin(np.linspace(0.0, 12.0, 6000))
-    assert readings(STEP * np.round(angle / STEP)).variance(0) == pytest.approx(STEP**2 / 12)
+    assert readings(STEP * np.round(angle / STEP)).single[0] == pytest.approx(STEP**2 / 12)
     noisy = angle + 2.0 * STEP * rng.standard_normal(6000)
-    assert readings(STEP * np.round(noisy / STEP)).variance(0) == pytest.approx(4.0 * STEP**2, rel=0.1)
+    assert readings(STEP * np.round(noisy / STEP)).single[0] == pytest.approx(4.0 * STEP**2, rel=0.1)
 
 
 def test_play_of_no_width_is_no_play() -> None:
