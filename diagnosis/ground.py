@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.filter import Filter, Pass
 from diagnosis.fit import Fit, flat_slopes, stacked
-from diagnosis.hypothesis import passes, tape_under
+from diagnosis.hypothesis import FLIGHTS, passes, tape_under
 from diagnosis.tape import Tape
 
 Array = NDArray[np.float64]
@@ -65,11 +65,12 @@ class Ground:
         own = len(self.case.kit.states)
         if target >= own:
             target += self.filter.states - own
-        parts = []
-        for tape, run, value in zip(self.tapes, self.runs, values, strict=True):
+
+        def over(tape: Tape, run: Pass, value: Array) -> Array:
             dw = self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots)
-            parts.append(dw.reshape(-1, value.shape[1]))
-        return np.concatenate(parts)
+            return dw.reshape(-1, value.shape[1])
+
+        return np.concatenate(list(FLIGHTS.map(over, self.tapes, self.runs, values)))
 
     def steps(self, target: int) -> tuple[Array, Scores]:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""

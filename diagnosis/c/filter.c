@@ -318,8 +318,19 @@ int32_t filter_run(filter_request *request)
     return (int32_t)request->steps;
 }
 
+/* How many columns have been disturbed so far, at least `awake`; those after them are still 0. */
+static int disturbed(const response_request *r, const double *value, int awake)
+{
+    for (int k = r->columns; k > awake; k--)
+        for (int t = 0; t < r->targets; t++)
+            if (value[t * r->columns + k - 1] != 0.0)
+                return k;
+    return awake;
+}
+
 /* One output's part of the answer: the disturbance's own innovation, taken up by the gain. */
-static void respond_output(const response_request *r, int64_t step, int output, const double *added, double e[N][MAX_COLUMNS])
+static void respond_output(const response_request *r, int64_t step, int output, int awake, const double *added,
+                           double e[N][MAX_COLUMNS])
 {
     const double *const H = r->H + (step * N_OUTPUTS + output) * N, *const K = r->K + (step * N_OUTPUTS + output) * N;
     double nu[MAX_COLUMNS];
@@ -328,20 +339,20 @@ static void respond_output(const response_request *r, int64_t step, int output, 
         seen |= H[i] != 0.0;
     if (!seen)
         return;
-    for (int k = 0; k < r->columns; k++)
+    for (int k = 0; k < awake; k++)
         nu[k] = added ? added[k] : 0.0;
     for (int i = 0; i < N; i++)
         if (H[i] != 0.0)
-            for (int k = 0; k < r->columns; k++)
+            for (int k = 0; k < awake; k++)
                 nu[k] += H[i] * e[i][k];
     for (int i = 0; i < N; i++)
-        for (int k = 0; k < r->columns; k++)
+        for (int k = 0; k < awake; k++)
             e[i][k] -= K[i] * nu[k];
     const int64_t row = r->place[step * N_OUTPUTS + output], place = row * r->slots + r->slot[output];
     if (row < 0 || r->slot[output] < 0)
         return;
     const double scale = 1.0 / sqrt(r->s[place]);
-    for (int k = 0; k < r->columns; k++)
+    for (int k = 0; k < awake; k++)
         r->dw[place * r->columns + k] = nu[k] * scale;
 }
 
@@ -353,30 +364,32 @@ int32_t filter_respond(const response_request *r)
     for (int i = 0; i < N; i++)
         for (int k = 0; k < r->columns; k++)
             e[i][k] = 0.0;
+    int awake = 0;
     for (int64_t step = 0; step < r->steps; step++) {
         const double *const value = r->value + step * r->targets * r->columns;
+        awake = disturbed(r, value, awake);
         for (int o = 0; o < N_OUTPUTS; o++) {
             const double *added = 0;
             for (int t = 0; t < r->targets; t++)
                 if (r->target[t] == N + o)
                     added = value + t * r->columns;
-            respond_output(r, step, o, added, e);
+            respond_output(r, step, o, awake, added, e);
         }
         const double *const F = r->F + step * N * N;
         for (int i = 0; i < N; i++) {
-            for (int k = 0; k < r->columns; k++)
+            for (int k = 0; k < awake; k++)
                 next[i][k] = 0.0;
             for (int m = 0; m < N; m++)
                 if (F[i * N + m] != 0.0)
-                    for (int k = 0; k < r->columns; k++)
+                    for (int k = 0; k < awake; k++)
                         next[i][k] += F[i * N + m] * e[m][k];
         }
         for (int t = 0; t < r->targets; t++)
             if (r->target[t] < N)
-                for (int k = 0; k < r->columns; k++)
+                for (int k = 0; k < awake; k++)
                     next[r->target[t]][k] += value[t * r->columns + k];
         for (int i = 0; i < N; i++)
-            for (int k = 0; k < r->columns; k++)
+            for (int k = 0; k < awake; k++)
                 e[i][k] = next[i][k];
     }
     return 0;
