@@ -20,6 +20,7 @@ from records.units import unit_suffix
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.effects.api import library, without_effects
+from toolchain.memory import keep_freed_memory
 from twinlaw import diagnosis_page
 from twinlaw.console import stage
 from twinlaw.page import Page, page_text
@@ -30,6 +31,7 @@ BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with wha
 
 def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], out: Path) -> Result:
     """Diagnose log files against a plant file and write all results into `out`; raises BadInput."""
+    keep_freed_memory()
     with stage("reading the logs and looking at them"):
         bound = load_bound(plant)
         nominal = without_effects(bound) if bound.effects else bound
