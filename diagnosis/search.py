@@ -25,6 +25,7 @@ LEAST_SHARE = 0.01  # of the best first look
 WORTH = 14
 SETTLED = 5
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
+FAR, ONCE_MORE = 1.0, 3  # the same for the best of the fits that were refined
 CERTAIN = 3.5  # standard deviations
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
 LEAST_SLIP = 1.5  # counts
@@ -177,9 +178,20 @@ def _fit_all(
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
     good = [entry for entry in rough if entry.evidence - first >= WORTH_REFINING * (best - first)]
-    done = [refined(case, entry) for entry in good]
-    found.update({frozenset(entry.effects): entry for entry in (*rough, *done) if entry})
+    done = sorted((entry for tried in good if (entry := refined(case, tried))), key=lambda entry: -entry.evidence)
+    done[:ONCE_MORE] = [_once_more(case, entry) for entry in done[:ONCE_MORE]]
+    found.update({frozenset(entry.effects): entry for entry in (*rough, *done)})
     return True
+
+
+def _once_more(case: Case, tried: Tried) -> Tried:
+    """The same begun once more from the parameters as stated, where they have gone far and that ends better."""
+    theta = tried.fit.supposed.theta
+    if theta @ theta < FAR * len(theta):
+        return tried
+    start = _from_stated(case, tried.fit.supposed)
+    other = None if start is None else refined(case, _tried(case, start))
+    return tried if other is None or other.evidence < tried.evidence else other
 
 
 def _rough(case: Case, job: Job) -> Tried | None:
