@@ -16,10 +16,11 @@ TURNED = 2.0  # how much faster than on average over a count an output passes th
 def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array]:
     """Readings y (n,) on a grid of `step` and their variances r, as what they say of the output.
 
-    An output that lies within one count for the time T moves with step / T or less, so one that passed the edge e between two
-    counts during the last row, of length h, is found at
+    An output that passed the edge e between two counts within the last row, of length h, with speed v, is found at
 
-    (1)  y = e +- travel / 2,  variance travel^2 / 12,  travel = step h / T,  T the shorter of the counts before and after.
+    (1)  y = e + v h / 2,  variance travel^2 / 12,  travel = step h / T,
+
+    v that of the parabola through this edge and those passed before and after, T the shorter of the times since and until.
 
     Noise makes counts change to and fro beside an edge, so that none of them tells when it was passed: where more than UNDONE of all
     changes are undone within UNDONE_ROWS, readings stay what they were.
@@ -29,15 +30,16 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
     after = np.flatnonzero(moved) + 1
     if step <= 0.0 or len(after) < 2 or _undone(after, np.sign(moved[after - 1])) > UNDONE:
         return y, r
-    h = np.diff(t_s[seen])
-    travel = step * h[after - 1] / _shorter(t_s[seen[after]], np.sign(moved[after - 1]))
-    one = np.abs(moved[after - 1]) < ONE_COUNT * step
-    sharp = one & (travel < SLOW * step) & (h[after - 1] < ONE_COUNT * float(np.median(h)))
-    rows, before = seen[after[sharp]], seen[after[sharp] - 1]
-    edge = 0.5 * (y[rows] + y[before])
+    rows, before = seen[after], seen[after - 1]
+    edge, moved = 0.5 * (y[rows] + y[before]), moved[after - 1]
+    h, lasts = t_s[rows] - t_s[before], np.diff(t_s[rows])
+    travel = step * h / _shorter(lasts, np.sign(moved))
+    one_row = h < ONE_COUNT * float(np.median(np.diff(t_s[seen])))
+    sharp = (np.abs(moved) < ONE_COUNT * step) & one_row & (travel < SLOW * step)
+    forward = np.clip(_speed(lasts, np.diff(edge)) * h * np.sign(moved), 0.0, travel)
     found_y, found_r = y.copy(), r.copy()
-    found_y[rows] = edge + 0.5 * travel[sharp] * np.sign(y[rows] - y[before])
-    found_r[rows] = np.minimum(travel[sharp] ** 2 / 12.0, r[rows])
+    found_y[rows[sharp]] = (edge + 0.5 * forward * np.sign(moved))[sharp]
+    found_r[rows[sharp]] = np.minimum(travel[sharp] ** 2 / 12.0, r[rows[sharp]])
     return found_y, found_r
 
 
@@ -46,8 +48,14 @@ def _undone(after: NDArray[np.int64], signs: Array) -> float:
     return float(np.mean((np.diff(after) <= UNDONE_ROWS) & (signs[1:] != signs[:-1])))
 
 
-def _shorter(t_s: Array, signs: Array) -> Array:
-    """How long the shorter of the counts beside each change (k,) lasts; one that is left where it was entered counts as shorter."""
-    lasts = np.diff(t_s)
+def _shorter(lasts: Array, signs: Array) -> Array:
+    """The shorter of the times (k,) beside each change, `lasts` (k - 1,) between them; a count left where it was entered lasts less."""
     lasts = np.where(signs[1:] != signs[:-1], lasts / TURNED, lasts)
     return np.asarray(np.minimum(np.append(np.inf, lasts), np.append(lasts, np.inf)))
+
+
+def _speed(lasts: Array, ways: Array) -> Array:
+    """The speed (k,) at each of k points, `ways` and `lasts` (k - 1,) apart, of the parabola through it and its neighbours."""
+    mean: Array = np.asarray(ways / lasts)
+    inner = (mean[:-1] * lasts[1:] + mean[1:] * lasts[:-1]) / (lasts[:-1] + lasts[1:])
+    return np.asarray(np.concatenate([mean[:1], inner, mean[-1:]]))
