@@ -1,5 +1,6 @@
 """What one believes of effects before any log: the common ones come before the rare, a size of the wrong sign is no such effect."""
 
+from diagnosis.inputs import LOST_FRAMES
 from diagnosis.search import Tried
 
 # Effects that rigs of this kind are known for (docs/effects.md names the sources); what else the library holds is rarer.
@@ -25,8 +26,11 @@ ONE_WAY = {
 }
 MANY_SHAPES = 0.8  # by which friction that falls with speed goes behind dry friction, which is among its forms
 LONG_PULSE_S = 5.0  # a disturbance is a push; what lasts longer is rather something that changed
+UNSEEN_LOSSES_S = (
+    2e-3  # a delay of inputs up to this beside lost frames is what those losses leave that nobody could see
+)
 # In units of the scale on which hypotheses are compared.
-RARE, WRONG_WAY = 2.0, 4.5
+RARE, WRONG_WAY, NOTHING_NEW = 2.0, 4.5, 9.0
 PLAIN = 0.1  # by which a constant force goes before what fits as well
 OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another name
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
@@ -48,6 +52,15 @@ def _odds(name: str, tried: Tried) -> float:
         odds -= RARE
     if kind == "stribeck":
         odds -= MANY_SHAPES
+    if _left_by_losses(name, tried):
+        odds -= NOTHING_NEW
     if kind in SAME_AS_PARAMETERS:
         odds -= OWN_PARAMETERS
     return odds
+
+
+def _left_by_losses(name: str, tried: Tried) -> bool:
+    """Whether an effect is no more than a lossy line's own: a command that is lost arrives one frame late."""
+    place, kind = name.split(".")
+    late = kind in ("delay", "lag") and (place == "loop" or place.endswith("input"))
+    return late and LOST_FRAMES in tried.effects and tried.fit.supposed.effects[name]["tau"] <= UNSEEN_LOSSES_S

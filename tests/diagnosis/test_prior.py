@@ -35,6 +35,17 @@ def test_a_constant_force_belongs_to_joints_that_gravity_pushes() -> None:
     assert prior_odds(carriage) > prior_odds(turntable)
 
 
+def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
+    # Losses that nobody sees make commands late by a share of a frame; beside lost frames only a longer delay is one of its own.
+    def odds(tau_s: float) -> float:
+        return prior_odds(tried(loop__dropped_frames={"p": 0.2}, loop__delay={"tau": tau_s}))
+
+    assert odds(0.0005) < odds(0.02) - 5.0
+    assert odds(0.02) == prior_odds(tried(loop__delay={"tau": 0.0005})) + prior_odds(
+        tried(loop__dropped_frames={"p": 0.2})
+    )
+
+
 @pytest.mark.parametrize(("largest", "evidence", "gap"), [(20.0, 3.0, False), (20.0, 12.0, True), (200.0, 3.0, True)])
 def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, gap: bool) -> None:
     # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6.
