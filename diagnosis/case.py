@@ -135,9 +135,10 @@ def _drive(kit: Kit, tape: Tape) -> Array:
 def _found_its_state(tape: Tape) -> Tape:
     """The tape whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
     since = tape.t_s - tape.t_s[0]
-    place = tape.place.copy()
-    place[since < min(UNTOLD_S, UNTOLD_SHARE * since[-1])] = -1
-    return replace(tape, place=place)
+    untold = since < min(UNTOLD_S, UNTOLD_SHARE * since[-1])
+    place, usual = tape.place.copy(), tape.usual.copy()
+    place[untold], usual[untold] = -1, 0.0
+    return replace(tape, place=place, usual=usual)
 
 
 def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Array]:

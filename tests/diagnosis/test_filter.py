@@ -5,6 +5,7 @@ import pytest
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
+from diagnosis.fit import fit
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.kit import Kit, make_kit
 from diagnosis.predict import predictions
@@ -39,6 +40,22 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
         assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25
         assert abs(np.mean(w[1:] * w[:-1])) < 0.2
+
+
+@pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
+def test_further_instants_change_nothing(kit: Kit, fly: Fly, sensor: str) -> None:
+    # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
+    sticky = {"azimuth.coulomb": {"b": 2e-3}}
+    case = make_case(kit, [fly(1, sticky)])
+    fitted = fit(case, nothing_supposed(case, -3.0).with_effects(sticky))
+    assert fitted is not None
+    supposed = fitted.supposed
+    (plain,) = passes(case, supposed) or [None]
+    (late,) = passes(case, supposed.with_effects({**supposed.effects, f"{sensor}.delay": {"tau": 1e-5}})) or [None]
+    assert plain is not None
+    assert late is not None
+    assert np.mean(np.abs(np.diff(case.flights[0].log.y[:, 1])) == 0.0) > 0.15
+    assert late.log_likelihood == pytest.approx(plain.log_likelihood, abs=0.5)
 
 
 def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> None:
