@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case, make_case
+from diagnosis.curve import shape_of
 from diagnosis.detect import Detection, detect
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
@@ -26,6 +27,7 @@ from diagnosis.reveal import revealing_experiment
 from diagnosis.screen import Look, look
 from diagnosis.search import Search, Tried, evidence, search
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.sparse import suggestion
 from diagnosis.unknown import Suspect, left_beside, suspects
 from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, with_unrest
 from diagnosis.usual import with_usual
@@ -106,6 +108,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         suspects=tuple(blamed),
         chosen=chosen,
         predicted=predicted,
+        shape=shape_of(found.ground, detection, blamed[0]) if blamed and weighed.nameless else None,
     )
 
 
@@ -219,12 +222,20 @@ def _gap(
             _hypothesis(case, weighed, tried, probability)
             for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True)
         ),
-        unknown=Unknown(weighed.unknown, first.place if first else None, first.class_text if first else None),
+        unknown=_unknown(found, detection, weighed, first),
         found=chosen.effects,
         shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
         next_experiment=next_experiment(case, weighed),
         notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
     )
+
+
+def _unknown(found: Search, detection: Detection, weighed: Weighed, first: Suspect | None) -> Unknown:
+    """The effect that no candidate explains; its form is asked for where nothing else is likelier."""
+    if first is None:
+        return Unknown(weighed.unknown)
+    form = suggestion(found.ground, detection, first.place) if weighed.nameless else None
+    return Unknown(weighed.unknown, first.place, first.class_text, form)
 
 
 def _best(found: Search) -> Tried:

@@ -18,10 +18,12 @@ REST = 0.02  # of a speed's typical size: below it the sign of the speed fades
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """One form: where it acts, its class ("torque(phi) on azimuth"), its target (see filter.py) and its values by flight (steps,)."""
+    """One form: where it acts, its class ("torque(phi) on azimuth"), its shape ("sin(phi)", see sparse.py), its target (see filter.py)
+    and its values by flight (steps,)."""
 
     place: str
     class_text: str
+    shape: str
     target: int
     values: tuple[Array, ...]
 
@@ -93,12 +95,15 @@ def forms(ground: Ground) -> list[Form]:
     }
     each = [list(_forms(case, signals(ground, flight, waves))) for flight in range(len(case.flights))]
     return [
-        Form(place, text, target, tuple(flight[index][3] for flight in each))
-        for index, (place, text, target, _) in enumerate(each[0])
+        Form(place, text, _plain(shape), target, tuple(flight[index][-1] for flight in each))
+        for index, (place, text, shape, target, _) in enumerate(each[0])
     ]
 
 
-Row = tuple[str, str, int, Array]
+Row = tuple[str, str, str, int, Array]
+Shapes = Mapping[str, Callable[[Array], Array]]
+SQUARE = "{x} |{x}|"
+COUNTS = {"sin({count} {x})": 0.0, "cos({count} {x})": np.pi / 2}
 
 
 def _forms(case: Case, s: Signals) -> Iterator[Row]:
@@ -114,55 +119,70 @@ def _axis_forms(case: Case, s: Signals) -> Iterator[Row]:
             continue
         target = kit.states.index(str(axis.velocity))
         scale = s.h / s.inertia[axis.name]
-        for depends, value in _torques(case, axis.name, s):
-            yield axis.name, f"torque({depends}) on {axis.name}", target, value * scale
-        for depends, value in _inertias(case, axis.name, s):
-            yield axis.name, f"inertia({depends}) of {axis.name}", target, value * s.h
+        for depends, shape, value in _torques(case, axis.name, s):
+            yield axis.name, f"torque({depends}) on {axis.name}", shape, target, value * scale
+        for depends, shape, value in _inertias(case, axis.name, s):
+            yield axis.name, f"inertia({depends}) of {axis.name}", shape, target, value * s.h
 
 
-def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, Array]]:
-    """What a torque may depend on, with up to four shapes for each."""
+def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Array]]:
+    """What a torque may depend on, with some shapes for each."""
     names = angle_names(case)
     a, v = s.angle[axis], s.speed[axis]
     q, w, sign = names[axis], f"{names[axis]}_dot", np.tanh(v / REST)
-    yield from _shapes(q, a, (np.sin, lambda x: x, np.square, lambda x: np.sin(2 * x), lambda x: x**3))
-    yield from _shapes(q, a, tuple(_wave(k, shift) for k in range(3, 17) for shift in (0.0, np.pi / 2)))
-    yield from _shapes(w, v, (lambda x: x * np.abs(x), lambda x: x**3))
-    yield from _shapes(f"sgn {w}", v, (lambda x: sign, lambda x: sign * np.exp(-np.abs(x) / 0.1), np.abs))
-    yield f"{q}, sgn {w}", a * sign
-    yield f"{q}, sgn {w}", _follower(a, 0.2)
-    yield from ((f"{q}, {w}", shape * v) for shape in (a, a**2, np.sin(a), np.cos(a)))
+    unit = in_units(w, case.kit.bound.model.places.axes[axis].speed_size)
+    angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
+    doubled = _waves((2,), ("sin({count} {x})",))
+    yield from _shapes(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **_waves(range(3, 17))})
+    yield from _shapes(w, unit, v, {SQUARE: lambda x: x * np.abs(x), "{x}^3": lambda x: x**3})
+    rubs: Shapes = {"sgn({x})": lambda _: sign, "sgn({x}) exp(-|{x}| / 0.1)": lambda x: sign * np.exp(-np.abs(x) / 0.1)}
+    yield from _shapes(f"sgn {w}", unit, v, {**rubs, "|{x}|": np.abs})
+    yield f"{q}, sgn {w}", f"{q} sgn({unit})", a * sign
+    yield f"{q}, sgn {w}", f"bristles of 0.2 under {q}", _follower(a, 0.2)
+    for text, shape in ((q, a), (f"{q}^2", a**2), (f"sin({q})", np.sin(a)), (f"cos({q})", np.cos(a))):
+        yield f"{q}, {w}", f"{text} {unit}", shape * v
     time = s.t / s.t[-1]
-    yield from (("t", shape) for shape in (time, time**2))
+    yield from _shapes("t", in_units("t", s.t[-1]), time, {"{x}": lambda x: x, "{x}^2": np.square})
     for rate in s.waves.get(axis, ()):
-        yield from (("t", wave(rate * s.t)) for wave in (np.sin, np.cos))
-    yield f"t, {w}", time * v
-    for rotor, speed in s.rotor.items():
-        o = rotor_name(case, rotor)
-        yield from _shapes(o, speed, (lambda x: x * np.abs(x), lambda x: x))
-        yield f"{o}, {w}", np.abs(speed) * v
-        yield f"{o}, sgn {w}", np.abs(speed) * sign
-        yield f"d{o}/dt", np.gradient(speed, s.t)
+        for text, wave in (("sin", np.sin), ("cos", np.cos)):
+            yield "t", f"{text}({rate:.3g} t)", wave(rate * s.t)
+    yield f"t, {w}", f"{in_units('t', s.t[-1])} {unit}", time * v
+    yield from _from_rotors(case, s, w, unit, v, sign)
     for other in s.angle:
         if other != axis:
-            yield from _between(names[other], s.angle[other], s.speed[other], w, v)
+            yield from _between(names[other], s.angle[other], s.speed[other], unit, v)
 
 
-def _between(q: str, angle: Array, speed: Array, own: str, v: Array) -> Iterator[tuple[str, Array]]:
-    yield from _shapes(q, angle, (lambda x: x, np.square))
-    yield f"{q}_dot", speed
-    yield f"{q}, {q}_dot, {own}", np.sin(2.0 * angle) * speed * v
-    yield f"{q}, {own}", v * angle
+def _from_rotors(case: Case, s: Signals, w: str, unit: str, v: Array, sign: Array) -> Iterator[tuple[str, str, Array]]:
+    """What of a torque may come from a rotor, alone or with the axis' own speed."""
+    for rotor, speed in s.rotor.items():
+        o = rotor_name(case, rotor)
+        x = rotor_unit(case, rotor)
+        yield from _shapes(o, x, speed, {SQUARE: lambda x: x * np.abs(x), "{x}": lambda x: x})
+        yield f"{o}, {w}", f"|{x}| {unit}", np.abs(speed) * v
+        yield f"{o}, sgn {w}", f"|{x}| sgn({unit})", np.abs(speed) * sign
+        yield f"d{o}/dt", f"d{x}/dt", np.gradient(speed, s.t)
 
 
-def _inertias(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, Array]]:
+def _between(q: str, angle: Array, speed: Array, own: str, v: Array) -> Iterator[tuple[str, str, Array]]:
+    yield from _shapes(q, q, angle, {"{x}": lambda x: x, "{x}^2": np.square})
+    yield f"{q}_dot", f"{q}_dot", speed
+    yield f"{q}, {q}_dot, {own}", f"sin(2 {q}) {q}_dot {own}", np.sin(2.0 * angle) * speed * v
+    yield f"{q}, {own}", f"{q} {own}", v * angle
+
+
+def _inertias(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Array]]:
     """An inertia that another angle changes: its share of the acceleration."""
     names = angle_names(case)
     acceleration = np.gradient(s.speed[axis], s.t)
     for other in s.angle:
         if other != axis:
-            yield names[other], acceleration * np.cos(s.angle[other])
-            yield names[other], acceleration * np.sin(s.angle[other]) ** 2
+            q, own = (
+                names[other],
+                f"d{in_units(f'{names[axis]}_dot', case.kit.bound.model.places.axes[axis].speed_size)}/dt",
+            )
+            yield q, f"cos({q}) {own}", acceleration * np.cos(s.angle[other])
+            yield q, f"sin({q})^2 {own}", acceleration * np.sin(s.angle[other]) ** 2
 
 
 def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
@@ -171,23 +191,35 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
         place = next((key for key, entry in places.inputs.items() if entry.variable == rotor.variable), "")
         u, time = s.u[place], s.t / s.t[-1]
         text = str(rotor.variable).rsplit("_", 1)[0]
+        x = in_units(text, places.inputs[place].size)
+        speed, o, over = s.rotor[name], rotor_name(case, name), rotor_unit(case, name)
+        changes = np.append(0.0, np.diff(u))
         through = list(_through(case, name, s))
         for target, gain in through:
-            for shape in (np.tanh(u / 0.03), np.abs(u), u * np.abs(u), np.append(0.0, np.diff(u)), _jitter(u)):
-                yield place, f"{text}", target, shape * gain
-            pull = u - s.rotor[name]
-            yield from ((place, f"limit({text})", target, shape * gain) for shape in _beyond(u))
+            known: Shapes = {"sgn({x})": lambda x: np.tanh(x / 0.03), "|{x}|": np.abs, SQUARE: lambda x: x * np.abs(x)}
+            for _, shape, value in _shapes(text, x, u, known):
+                yield place, text, shape, target, value * gain
+            yield place, text, f"change of {x} from row to row", target, changes * gain
+            yield place, text, f"size of the change of {x} from row to row", target, _jitter(u) * gain
+            for shape, value in _beyond(x, u):
+                yield place, f"limit({text})", shape, target, value * gain
             if rotor.drive is not None:
-                limit = f"limit({text}, {rotor_name(case, name)})"
-                yield from ((place, limit, target, shape * gain) for shape in _beyond(pull))
+                for shape, value in _beyond(f"{x} - {over}", u - speed):
+                    yield place, f"limit({text}, {o})", shape, target, value * gain
             for other, value in s.u.items():
                 if other != place:
-                    yield place, f"{text}, {other}", target, u * np.abs(value) * gain
-            yield name, f"gain(t) of {text}", target, u * time * gain
-        speed, o = s.rotor[name], rotor_name(case, name)
+                    beside = str(places.inputs[other].variable).rsplit("_", 1)[0]
+                    size = f"|{in_units(beside, places.inputs[other].size)}|"
+                    yield place, f"{text}, {other}", f"{x} {size}", target, u * np.abs(value) * gain
+            yield name, f"gain(t) of {text}", f"{in_units('t', s.t[-1])} {x}", target, u * time * gain
+        rubs: Shapes = {
+            "sgn({x})": lambda x: np.tanh(x / 0.02),
+            SQUARE: lambda x: x * np.abs(x),
+            "{x}^3": lambda x: x**3,
+        }
         for target, gain in through[: 1 if rotor.drive is not None else 0]:
-            for shape in (np.tanh(speed / 0.02), speed * np.abs(speed), speed**3):
-                yield name, f"torque({o}) on rotor", target, shape * gain
+            for _, shape, value in _shapes(o, over, speed, rubs):
+                yield name, f"torque({o}) on rotor", shape, target, value * gain
         for axis in rotor.thrusts:
             yield from _thrust_forms(case, name, axis, s)
 
@@ -196,18 +228,27 @@ def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row
     kit = case.kit
     velocity = next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis)
     target, thrust = kit.states.index(velocity), s.thrust[rotor, axis] * s.h
-    names, o = angle_names(case), rotor_name(case, rotor)
-    speed = s.rotor[rotor]
-    for shape in (np.abs(speed), speed**2, np.tanh(speed / 0.02), speed**4):
-        yield rotor, f"thrust({o})", target, shape * thrust
+    names, o, x = angle_names(case), rotor_name(case, rotor), rotor_unit(case, rotor)
+    speed, own = s.rotor[rotor], f"thrust of the {rotor}".replace("_", " ")
+    shapes: Shapes = {
+        "|{x}|": np.abs,
+        "{x}^2": np.square,
+        "sgn({x})": lambda x: np.tanh(x / 0.02),
+        "{x}^4": lambda x: x**4,
+    }
+    for _, shape, value in _shapes(o, x, speed, shapes):
+        yield rotor, f"thrust({o})", f"{shape} {own}", target, value * thrust
     for name, angle in s.angle.items():
+        q = names[name]
         if name == axis:
-            yield rotor, f"thrust({names[name]})", target, np.exp(-(angle - angle.min()) / 0.3) * thrust
-        if name == axis:
-            yield rotor, f"thrust({o}, {names[name]}_dot)", target, np.abs(speed) * s.speed[name] * s.h
+            near = np.exp(-(angle - angle.min()) / 0.3)
+            yield rotor, f"thrust({q})", f"exp(-{q} / 0.3) {own}", target, near * thrust
+            w = in_units(f"{q}_dot", kit.bound.model.places.axes[name].speed_size)
+            yield rotor, f"thrust({o}, {q}_dot)", f"|{x}| {w}", target, np.abs(speed) * s.speed[name] * s.h
     for other, value in s.rotor.items():
         if other != rotor:
-            yield rotor, f"thrust({rotor_name(case, other)})", target, np.abs(value) * thrust
+            shape = f"|{rotor_unit(case, other)}| {own}"
+            yield rotor, f"thrust({rotor_name(case, other)})", shape, target, np.abs(value) * thrust
 
 
 def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
@@ -218,14 +259,15 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
         if axis not in s.angle:
             continue
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
+        w = in_units(f"{q}_dot", model.places.axes[axis].speed_size)
         target = len(kit.states) + kit.outputs.index(sensor.output)
-        for shape in (a, np.square(a), *(_wave(k, shift)(a) for k in range(3, 33) for shift in (0.0, np.pi / 2))):
-            yield place, f"output({q}) of {q}", target, shape
-        yield place, f"output({q}_dot) of {q}", target, v
-        yield place, f"output(sgn {q}_dot) of {q}", target, np.tanh(v / REST)
+        for _, shape, value in _shapes(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **_waves(range(3, 33))}):
+            yield place, f"output({q}) of {q}", shape, target, value
+        yield place, f"output({q}_dot) of {q}", w, target, v
+        yield place, f"output(sgn {q}_dot) of {q}", f"sgn({w})", target, np.tanh(v / REST)
         for other in s.angle:
             if other != axis:
-                yield place, f"output({names[other]}) of {q}", target, s.angle[other]
+                yield place, f"output({names[other]}) of {q}", names[other], target, s.angle[other]
 
 
 def _through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
@@ -239,19 +281,26 @@ def _through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
     yield kit.states.index(velocity), s.h / s.inertia[axis]
 
 
-def _shapes(depends: str, x: Array, shapes: Sequence[Callable[[Array], Array]]) -> Iterator[tuple[str, Array]]:
-    return ((depends, np.asarray(shape(x), float)) for shape in shapes)
+def _shapes(depends: str, name: str, x: Array, shapes: Shapes) -> Iterator[tuple[str, str, Array]]:
+    return ((depends, text.format(x=name), np.asarray(shape(x), float)) for text, shape in shapes.items())
+
+
+def _waves(counts: Sequence[int], texts: Sequence[str] = tuple(COUNTS)) -> Shapes:
+    """Sines and cosines of so many waves a turn."""
+    return {text.format(count=count, x="{x}"): _wave(count, COUNTS[text]) for count in counts for text in texts}
 
 
 def _wave(count: int, shift: float) -> Callable[[Array], Array]:
     return lambda x: np.asarray(np.sin(count * x + shift))
 
 
-def _beyond(x: Array) -> Iterator[Array]:
+def _beyond(name: str, x: Array) -> Iterator[tuple[str, Array]]:
     """What of x lies beyond its rare values on either side."""
     for share in (2.0, 5.0, 15.0, 85.0, 95.0, 98.0):
         edge = float(np.percentile(x, share))
-        yield np.maximum(x - edge, 0.0) if share > 50.0 else np.minimum(x - edge, 0.0)
+        above = share > 50.0
+        text = f"what of {name} lies {'above' if above else 'below'} {edge:.3g}"
+        yield text, np.maximum(x - edge, 0.0) if above else np.minimum(x - edge, 0.0)
 
 
 def _follower(x: Array, width: float) -> Array:
@@ -265,6 +314,23 @@ def _follower(x: Array, width: float) -> Array:
 
 def _jitter(u: Array) -> Array:
     return np.append(0.0, np.abs(np.diff(u)))
+
+
+def _plain(shape: str) -> str:
+    """Without brackets that a sign or bars around them make idle."""
+    for twice, once in (("((", "("), ("))", ")"), ("|(", "|"), (")|", "|")):
+        shape = shape.replace(twice, once)
+    return shape
+
+
+def in_units(name: str, size: float) -> str:
+    """A signal in units of its size, as text."""
+    return name if size == 1.0 else f"({name} / {size:.4g})"
+
+
+def rotor_unit(case: Case, rotor: str) -> str:
+    """A rotor's speed in units of its size, as text."""
+    return in_units(rotor_name(case, rotor), case.kit.bound.model.places.rotors[rotor].speed_size)
 
 
 def angle_names(case: Case) -> dict[str, str]:

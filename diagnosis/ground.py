@@ -76,7 +76,7 @@ class Ground:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""
         if target not in self.kept:
             answers = self.answers_to_steps(target)
-            self.kept[target] = self._instants(), self.scores_of(answers)
+            self.kept[target] = self.instants(), self.scores_of(answers)
         return self.kept[target]
 
     def answers_to_steps(self, target: int) -> Array:
@@ -84,13 +84,14 @@ class Ground:
         if target not in self.answers:
             values = []
             for tape in self.tapes:
-                on = (tape.t_s[:, None] >= self._instants()[None, :] - 1e-9).astype(float)
+                on = (tape.t_s[:, None] >= self.instants()[None, :] - 1e-9).astype(float)
                 moves = target < len(self.case.kit.states)
                 values.append(on * np.append(np.diff(tape.t_s), 0.0)[:, None] if moves else on)
             self.answers[target] = self.answer(values, target)
         return self.answers[target]
 
-    def _instants(self) -> Array:
+    def instants(self) -> Array:
+        """The grid of instants of steps (k,), in s."""
         end = max(tape.t_s[-1] for tape in self.tapes)
         return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from diagnosis.case import Case
+from diagnosis.curve import Shape
 from diagnosis.detect import Detection
 from diagnosis.search import Search, Tried
 from diagnosis.shrinkage import Predicted
@@ -15,7 +16,7 @@ from records.plant import Plant
 @dataclass(frozen=True, eq=False)
 class Result:
     """`left` nats are what forms still gain beside the best hypothesis; `chosen` is the hypothesis whose effects were added (the nominal
-    plant re-tuned where none was), `predicted` by hold-out log."""
+    plant re-tuned where none was), `predicted` by hold-out log, `shape` that of an effect without a name."""
 
     diagnosis: Diagnosis
     plant: Plant
@@ -27,3 +28,4 @@ class Result:
     suspects: tuple[Suspect, ...]
     chosen: Tried
     predicted: tuple[Predicted, ...]
+    shape: Shape | None = None

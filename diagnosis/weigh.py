@@ -35,6 +35,11 @@ class Weighed:
     retune: float
     scale: float
 
+    @property
+    def nameless(self) -> bool:
+        """Whether nothing that has a name is as probable as an unknown effect."""
+        return self.unknown > max(self.retune, *self.probabilities, 0.0)
+
 
 def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | None = None) -> Weighed:
     """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them, `retune`

@@ -85,11 +85,15 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Unknown:
-    """The chance that no candidate explains the gap; where it acts and on what it depends, None where there is nothing to place."""
+    """The chance that no candidate explains the gap; where it acts and on what it depends, None where there is nothing to place.
+
+    `form` are the terms that sparse regression suggests ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"), where nothing else is likelier.
+    """
 
     probability: float
     place: str | None = None
     class_: str | None = None
+    form: str | None = None
 
 
 @dataclass(frozen=True)

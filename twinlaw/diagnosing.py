@@ -100,7 +100,10 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
         for flight in result.predicted
     ]
     stories = {name: effect.story for name, effect in library(bound).items()}
-    return diagnosis_page.diagnosis_page(bound.plant.name, result.diagnosis, bound.model.places, stories, curves, logs)
+    places = bound.model.places
+    return diagnosis_page.diagnosis_page(
+        bound.plant.name, result.diagnosis, places, stories, curves, logs, result.shape
+    )
 
 
 def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 
+from diagnosis.curve import Shape
 from diagnosis.notes import HIDDEN, UNSEEN
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.block_diagram import block_diagram
-from twinlaw.diagnosis_pictures import Predicted, curves, maps
+from twinlaw.diagnosis_pictures import Predicted, curves, maps, shape_section
 from twinlaw.diagnosis_shrinkage import shrinkage_sections
 from twinlaw.diagnosis_words import chance, listed, percent, plain_text, words
 from twinlaw.page import Page, Section, Table
@@ -25,9 +26,14 @@ def diagnosis_page(
     stories: Mapping[str, str],
     predicted: Sequence[Predicted],
     logs: Sequence[str],
+    shape: Shape | None = None,
 ) -> Page:
-    """The whole page; `stories` gives one plain sentence for each effect, `logs` the names of the files that were diagnosed."""
-    sections: list[Section | None] = [_place(diagnosis, places), _causes(diagnosis, stories), _next(diagnosis)]
+    """The whole page; `stories` gives one plain sentence for each effect, `logs` the names of the files that were diagnosed, `shape` the
+    curve of an effect without a name."""
+    sections: list[Section | None] = [_place(diagnosis, places), _causes(diagnosis, stories)]
+    if shape is not None:
+        sections.append(shape_section(shape, words(diagnosis.unknown.place or "rig"), diagnosis.unknown.form))
+    sections.append(_next(diagnosis))
     if diagnosis.shrinkage is not None:
         sections += shrinkage_sections(diagnosis.shrinkage, bool(diagnosis.found))
     sections += [curves(log) for log in predicted]

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.curve import Shape
 from records.diagnosis import Diagnosis
 from twinlaw.diagnosis_words import shown
 from twinlaw.page import Section
-from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Bars, Curve, Panel, bars, stack
+from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Bars, Curve, Panel, bars, row, stack
 
 Array = NDArray[np.float64]
 _ZOOM_S = 8.0
+BAND = ((1.0, "two standard deviations"), (-1.0, ""))
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,23 @@ def curves(log: Predicted) -> Section:
             "Each curve starts afresh every second from what was measured until then.",
         ),
         plots=(stack(panels, "time [s]"),),
+    )
+
+
+def shape_section(shape: Shape, place: str, form: str | None) -> Section:
+    """The curve of an effect without a name, with a band of two standard deviations."""
+    by = f" / ({shape.times.name} in {shape.times.unit})" if shape.times else ""
+    limits = [Curve(shape.x, shape.value + sign * 2.0 * shape.sd, label, GREY, ":") for sign, label in BAND]
+    panel = Panel(
+        f"{shape.target.name} [{shape.target.unit}]{by}", [Curve(shape.x, shape.value, "missing", BLUE), *limits]
+    )
+    told = [
+        f"What seems to be missing at {place}, estimated from all logs against {shape.depends.name}, about its mean: "
+        "a level would be imitated by the plant's own parameters.",
+    ]
+    told += [f"Sparse regression over all forms suggests: {form}."] if form else []
+    return Section(
+        "The shape of what is missing", told, plots=(row([panel], [f"{shape.depends.name} [{shape.depends.unit}]"]),)
     )
 
 

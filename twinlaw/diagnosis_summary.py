@@ -28,6 +28,8 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
         yield console.table(
             [*rows, ("unknown", f"{diagnosis.unknown.probability:.3f}", diagnosis.unknown.class_ or "")]
         )
+    if diagnosis.unknown.form:
+        yield f"sparse regression suggests: {diagnosis.unknown.form}"
     if diagnosis.places and diagnosis.verdict == "gap":
         yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
     yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")

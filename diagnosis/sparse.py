@@ -1,0 +1,106 @@
+"""The form that sparse regression suggests for what no effect of the library explains: few terms, each with its number."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.curve import target_of
+from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection
+from diagnosis.generic import Form
+from diagnosis.ground import Ground
+
+Array = NDArray[np.float64]
+MOST_TERMS = 3
+NATS_PER_TERM = 6.0  # a number, and the choice of its form among some three hundred
+CLEARLY = 0.1  # of the gain so far that a further term must add
+OWN = 1e-3  # share of a form that must not be a mixture of those taken already
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term: `shape` and `target` as in generic.py, with its coefficient and standard deviation in the unit of what it adds to."""
+
+    shape: str
+    target: int
+    coefficient: float
+    sd: float
+
+
+def sparse_form(detection: Detection, place: str) -> tuple[Term, ...]:
+    """The terms at a place, by orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993) on the whitened innovations.
+
+    In each turn the form joins that gains most beside those chosen, and all coefficients are solved anew:
+
+    (1)  c = G^-1 s,  cov c = G^-1,
+
+    with G and s the products of the forms with one another and with the innovations, what the plant's parameters imitate taken out. It ends
+    where a term gains less than NATS_PER_TERM or adds less than CLEARLY. All terms act on the target of the first.
+    """
+    chosen: list[int] = []
+    total = 0.0
+    while len(chosen) < MOST_TERMS:
+        members = _members(detection, place, chosen)
+        gains = _gains(detection, chosen, members)
+        if not len(gains) or np.max(gains) < max(NATS_PER_TERM, CLEARLY * total):
+            break
+        total += float(np.max(gains))
+        chosen.append(members[int(np.argmax(gains))])
+    if not chosen:
+        return ()
+    gram = detection.scores.gram[np.ix_(chosen, chosen)]
+    cov = np.linalg.inv(gram)
+    values = (
+        -cov @ detection.scores.score[chosen]
+    )  # a score is minus the product with w, which what the rig has moves as answered
+    forms = [detection.forms[index] for index in chosen]
+    return tuple(
+        Term(form.shape, form.target, float(value), float(np.sqrt(variance)))
+        for form, value, variance in zip(forms, values, np.diag(cov), strict=True)
+    )
+
+
+def suggestion(ground: Ground, detection: Detection, place: str) -> str | None:
+    """What sparse regression suggests for a place, as a sentence ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"); None for no form."""
+    terms = sparse_form(detection, place)
+    if not terms:
+        return None
+    target = target_of(ground, terms[0].target)
+    return f"{target.name} gains {form_text(terms)} {target.unit}"
+
+
+def form_text(terms: Sequence[Term]) -> str:
+    """The terms as a sum ("-0.31 sgn(phi_dot) + 0.05 phi"), coefficients to two or three digits; empty where there are none."""
+    found = ""
+    for term in terms:
+        sign = "-" if term.coefficient < 0.0 else "+"
+        number = f"{abs(term.coefficient):.3g} {term.shape}"
+        found += f" {sign} {number}" if found else f"{sign if sign == '-' else ''}{number}"
+    return found
+
+
+def _members(detection: Detection, place: str, chosen: Sequence[int]) -> list[int]:
+    """Forms that may join: of this place and target, and with a signature that the plant's parameters do not imitate."""
+    norm, raw = np.diag(detection.scores.gram), detection.scores.raw
+
+    def may(index: int, form: Form) -> bool:
+        alike = not chosen or form.target == detection.forms[chosen[0]].target
+        return (
+            form.place == place and alike and norm[index] > LEAST_LEFT * max(raw[index], 1e-12) and index not in chosen
+        )
+
+    return [index for index, form in enumerate(detection.forms) if may(index, form)]
+
+
+def _gains(detection: Detection, chosen: Sequence[int], members: Sequence[int]) -> Array:
+    """What each member adds to the log likelihood beside those chosen, in units of what it usually gains without a gap."""
+    gram, score = detection.scores.gram, detection.scores.score
+    norm = np.diag(gram)[list(members)]
+    left, pull = norm.copy(), score[list(members)].copy()
+    if chosen:
+        cross = gram[np.ix_(chosen, members)]
+        share = np.linalg.solve(gram[np.ix_(chosen, chosen)], cross)
+        left, pull = norm - np.sum(cross * share, axis=0), pull - share.T @ score[list(chosen)]
+    usual = np.maximum(1.0, detection.null_gain[list(members)] / MEAN_GAIN)
+    return np.where(left > OWN * norm, 0.5 * pull**2 / np.maximum(left, OWN * norm), 0.0) / usual
