@@ -75,6 +75,12 @@ def share_of_windows_outside(
     return float(np.mean(np.any(error > margin, axis=1)))
 
 
+def rms_error(measured: Array, estimated: Array) -> float:
+    """Root mean square of estimated - measured; NaN where no sample is left."""
+    y, found = _both(measured, estimated)
+    return _rms(found - y) if y.size else math.nan
+
+
 def correlation(measured: Array, estimated: Array) -> float:
     """Correlation coefficient (1.2), -1 to 1: the trend alone; NaN where either signal does not vary."""
     y, found = _both(measured, estimated)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from identification.envelope.criteria import WEIGHTS, Match, outside_percent, passed, score_percent
+from identification.envelope.criteria import WEIGHTS, Match, error_margins, outside_percent, passed, score_percent
 from identification.envelope.flight import OUTPUTS, STATES
 from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.outputs import METHODS
@@ -17,6 +17,7 @@ THESIS_FIT = (99.21, 99.51, 97.17, 99.42, 99.19, 99.55, 99.49, 99.38)
 THESIS_CORRELATION = (99.99, 100.0, 99.84, 99.99, 99.99, 100.0, 100.0, 99.99)
 
 INPUTS = {"2-3-1-1": STEPS_2311, "3-2-1-1": STEPS_3211, "doublet": DOUBLET, "pulse": PULSE}
+UNFITTED = {name: weight for name, weight in WEIGHTS.items() if name != "fit"}
 Ways = Callable[[Check], Mapping[str, Sequence[Match]]]
 
 
@@ -125,6 +126,25 @@ def averages(found: Study, ways: Ways) -> Table:
     return Table(rows, ("equation [%]", *_by_group(("identification", "validation"), symbols(OUTPUTS))))
 
 
+def errors(found: Study, ways: Ways) -> Table:
+    """What no weight and no criterion of taste enters: the rms error in margins, mean over signals, and how often each way's is least."""
+    rows, groups = [], _groups(found)
+    for way in METHODS:
+        cells = []
+        for checks in groups:
+            if not checks:
+                cells += ["", ""]
+                continue
+            mean = np.mean([error_margins(ways(check)[way]) for check in checks])
+            cells += [f"{mean:.3f}", f"{sum(_least(ways(check)) == way for check in checks)} of {len(checks)}"]
+        rows.append((way, *cells))
+    return Table(rows, ("rms error [margins]", "identification", "least in", "validation", "least in"))
+
+
+def _least(by_way: Mapping[str, Sequence[Match]]) -> str:
+    return min(by_way, key=lambda way: error_margins(by_way[way]))
+
+
 def weights() -> Table:
     """Table 3.5: criteria and their weights; ours, as the thesis' are not in the text."""
     return Table([(name, f"{weight:g}") for name, weight in WEIGHTS.items()], ("criterion", "weight"))
@@ -137,18 +157,19 @@ def scores(checks: Sequence[Check], ways: Ways) -> Table:
 
 
 def goodness(found: Study, ways: Ways) -> Table:
-    """Tables 3.10 and 4.8: mean score over all conditions, and the share of checks whose accelerations all hold three seconds."""
+    """Tables 3.10 and 4.8: mean score over all conditions, the same without Theil's fit, and how many checks hold three seconds."""
     rows = []
     for way in METHODS:
         cells = []
         for checks in _groups(found):
             if not checks:
-                cells += ["", ""]
+                cells += ["", "", ""]
                 continue
-            mean = np.mean([score_percent(ways(check)[way]) for check in checks])
-            cells += [f"{mean:.2f}", f"{sum(passed(ways(check)[way]) for check in checks)} of {len(checks)}"]
+            means = [np.mean([score_percent(ways(check)[way], by) for check in checks]) for by in (WEIGHTS, UNFITTED)]
+            held = sum(passed(ways(check)[way]) for check in checks)
+            cells += [*(f"{mean:.2f}" for mean in means), f"{held} of {len(checks)}"]
         rows.append((way, *cells))
-    return Table(rows, ("equation", "score, identification", "held 3 s", "score, validation", "held 3 s"))
+    return Table(rows, ("equation", *_by_group(("identification", "validation"), ("score", "without fit", "held 3 s"))))
 
 
 def interpolation(found: Study) -> tuple[Table, Table]:

@@ -100,6 +100,7 @@ def _matches(found: Sequence[Match]) -> dict[str, Any]:
         match.signal: {
             "outside_percent": match.outside_percent,
             "held_s": match.held_s,
+            "error_rms_margins": match.error_margins,
             "fit_percent": match.fit_percent,
             "correlation": None if np.isnan(match.correlation) else match.correlation,
         }

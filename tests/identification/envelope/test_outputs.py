@@ -108,9 +108,9 @@ def test_a_linear_output_equation_comes_back():
 
 def test_the_score_weighs_by_hand():
     """10 % outside, 1.5 of 3 s held, fit 80 %, correlation -0.5: (4 * 90 + 3 * 50 + 2 * 80 + 1 * 0) / 10."""
-    poor = Match("a", 10.0, 1.5, 80.0, -0.5)
+    poor = Match("a", 10.0, 1.5, 80.0, -0.5, 0.3)
     assert score_percent([poor]) == pytest.approx(67.0)
-    assert score_percent([Match("a", 0.0, 24.0, 100.0, 1.0)]) == pytest.approx(100.0)
+    assert score_percent([Match("a", 0.0, 24.0, 100.0, 1.0, 0.0)]) == pytest.approx(100.0)
     assert not passed([poor])
 
 
@@ -121,3 +121,16 @@ def test_the_rule_holds_for_each_flight_by_itself():
     (found,) = matches(("a",), measured, estimated, np.ones(1), 0.1)
     assert found.held_s == pytest.approx(2.0)
     assert found.outside_percent == pytest.approx(40.0)
+    assert found.error_margins == pytest.approx(np.sqrt(0.4 * 4.0))
+
+
+def test_theils_fit_rewards_noise_and_the_error_does_not():
+    """Noise of unit size: beside it an estimate of other unit noise fits by 1 - 1 / sqrt(2), zero by 0; their errors are sqrt(2) and 1."""
+    noise, other = np.random.default_rng(5).standard_normal((2, 1, 20000, 1))
+    (moving,) = matches(("a",), noise, other, np.ones(1), 0.1)
+    (still,) = matches(("a",), noise, np.zeros_like(noise), np.ones(1), 0.1)
+    assert (moving.fit_percent, still.fit_percent) == (pytest.approx(100 * (1 - np.sqrt(0.5)), abs=1.0), 0.0)
+    assert (moving.error_margins, still.error_margins) == (
+        pytest.approx(np.sqrt(2), rel=0.02),
+        pytest.approx(1, rel=0.02),
+    )
