@@ -12,6 +12,7 @@ from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
 from identification.search import Search, Searched, search, started
 from identification.solve import Point, Problem, Watch, solve
+from identification.steps import MOST, SHIFT_SD, finer, shift_sd
 from identification.uncertainty import Direction, inflations, pieces, unseen
 
 Array = NDArray[np.float64]
@@ -82,10 +83,7 @@ def estimate(
     searched = () if wanted is None else search(problem, places, wanted)
     if searched:
         problem = started(problem, places, searched[0])
-    point = solve(problem, watch)
-    for weigh in (_by_channel, _by_correlation):
-        problem = _weighed(problem, point, weigh)
-        point = solve(problem, watch)
+    problem, point = _fitted(problem, watch)
     H = point.H
     covariance = _inverse(H + problem.prior.information)
     after = Belief(problem.names, point.theta, covariance)
@@ -109,6 +107,25 @@ def estimate(
         runs=point.runs,
         searched=searched,
     )
+
+
+def _fitted(problem: Problem, watch: Watch | None) -> tuple[Problem, Point]:
+    """Fit, weigh, fit again; the same in half the steps while those move the estimates, and less each time."""
+    before = np.inf
+    while True:
+        weighed, point = _weighed_fit(problem, watch)
+        now = shift_sd(weighed, point)
+        if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST:
+            return weighed, point
+        problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
+
+
+def _weighed_fit(problem: Problem, watch: Watch | None) -> tuple[Problem, Point]:
+    point = solve(problem, watch)
+    for weigh in (_by_channel, _by_correlation):
+        problem = _weighed(problem, point, weigh)
+        point = solve(problem, watch)
+    return problem, point
 
 
 def problem_of(runs: tuple[Run, ...], own: tuple[str, ...], ranges: Mapping[str, Range], before: Belief) -> Problem:

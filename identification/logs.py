@@ -15,6 +15,7 @@ from identification.run import Run, coefficient_names, offset_names
 from identification.search import Search, search, started
 from identification.sizes import with_sizes
 from identification.solve import Prior, Problem, Watch, solve
+from identification.steps import followed
 from identification.subsystem import subsystem
 from records.errors import BadInput
 from records.log import RunLog
@@ -64,7 +65,10 @@ def identify_logs(
     found: list[Estimate] = []
     for length in [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]:
         closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
-        runs = [run_of(bound, log, name, length) for name, log in logs.items()]
+        runs = [
+            replace(run_of(bound, log, name, length), substeps=short.substeps)
+            for short, (name, log) in zip(coarse, logs.items(), strict=True)
+        ]
         found.append(estimate(runs, names, closer, before, watch))
         start = {name: found[-1].belief.value(name) for name in names}
     return _best(found)
@@ -144,7 +148,7 @@ def prediction_tests(
     """
     added = np.array([(offsets or {}).get(name, 0.0) for name in offset_names(bound.model)])
     shifted = {name: replace(log, u=log.u + added) for name, log in logs.items()}
-    runs = tuple(run_of(bound, log, name, HOLDOUT_S) for name, log in shifted.items())
+    runs = tuple(followed(run_of(bound, log, name, HOLDOUT_S)) for name, log in shifted.items())
     point = solve(problem_of(runs, (), {}, NOTHING))
     return tuple(test for run, own in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, own))
 
@@ -153,7 +157,8 @@ def _short_windows(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Run, 
     """Short windows spread over each log."""
     counts = {name: (log.t_s[-1] - log.t_s[0]) / COARSE_S for name, log in logs.items()}
     return tuple(
-        run_of(bound, log, name, COARSE_S, max(1, int(counts[name] // COARSE_WINDOWS))) for name, log in logs.items()
+        followed(run_of(bound, log, name, COARSE_S, max(1, int(counts[name] // COARSE_WINDOWS))))
+        for name, log in logs.items()
     )
 
 

@@ -32,9 +32,16 @@ def _column_places(model: Model) -> Mapping[str, int]:
 
 
 def move(
-    model: Model, t_s: Array, u: Array, p: Array, windows: Sequence[slice], x0: Array, columns: tuple[str, ...]
+    model: Model,
+    t_s: Array,
+    u: Array,
+    p: Array,
+    windows: Sequence[slice],
+    x0: Array,
+    columns: tuple[str, ...],
+    substeps: int = 1,
 ) -> Motion:
-    """What sim.sensitivities gives, for windows of rows, each from its own x0 (windows, states).
+    """What sim.sensitivities gives, for windows of rows, each from its own x0 (windows, states), in `substeps` steps per sample.
 
     t_s (n,), u (n, inputs), p (parameters,). Rows in no window are left unset; raises KeyError for a column that the model does not
     know.
@@ -54,7 +61,7 @@ def move(
     request = compiled.ffi.new("sensitivity_request *")
     for name, array in kept.items():
         setattr(request, name, compiled.pointer(array))
-    request.substeps, request.columns = 1, len(columns)
+    request.substeps, request.columns = substeps, len(columns)
     moving = {"t_s": t_s, "input": np.ascontiguousarray(u), "y": y, "dy": dy, "x": x}
     starts = np.ascontiguousarray(x0)
     bases = {

@@ -49,7 +49,7 @@ def _readings(run: Run, p: Array, u: Array, columns: tuple[str, ...]) -> tuple[A
     """Readings (m,) and their slopes (m, columns + free)."""
     starts = tuple(f"x0.{state}" for state in run.free)
     if run.carried is None:
-        motion = move(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts)
+        motion = move(run.bound.model, run.t_s, u, p, run.windows, run.x0, columns + starts, run.substeps)
     else:
         motion = _with_carried(run, p, u, columns, starts)
     y, slopes = (motion.y, motion.dy) if run.observed is None else _observed(run, p, u, motion)
@@ -69,11 +69,11 @@ def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts
     values = np.ascontiguousarray(p[[known.index(name) for name in own]])
     whole = (slice(0, run.t_s.size),)
     wanted = tuple(name for name in columns if name in own or name in offset_names(part))
-    carried = move(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted)
+    carried = move(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted, run.substeps)
     x0 = run.x0.copy()
     x0[:, [model.states.index(state) for state in part.states]] = carried.x[run.begins]
     through = tuple(f"x0.{state}" for state in part.states)
-    motion = move(model, run.t_s, u, p, run.windows, x0, columns + starts + through)
+    motion = move(model, run.t_s, u, p, run.windows, x0, columns + starts + through, run.substeps)
     kept = len(columns) + len(starts)
     slopes = motion.dy[:, :, :kept].copy()
     places = [columns.index(name) for name in wanted]

@@ -35,6 +35,7 @@ class Run:
     `observed` replaces the model's outputs; `alias` renames parameters to those of the model. `step` (channels,) is the resolution
     of each channel, 0 where its readings are not rounded. `first` keeps the starts' first guess once x0 has moved. Readings of a channel
     whose errors cancel from one to the next may count for more than independent ones, down to `least_inflation` (by default 1).
+    A sample is integrated in `substeps` steps of Runge and Kutta.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Run:
     step: Array = field(default_factory=lambda: np.zeros(0))
     first: Array | None = None
     least_inflation: tuple[float, ...] = ()
+    substeps: int = 1
 
     @property
     def guess(self) -> Array:

@@ -7,7 +7,7 @@ xi appears in its own residuals alone and is eliminated from each step's normal 
 of theta, however many windows there are.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -144,6 +144,20 @@ def _reduced(point: Point, damping: float) -> tuple[Array, Array, tuple[tuple[Ar
         g -= np.einsum("wpf,wf->p", starts.B, own)
         back.append((own, follow))
     return H, g, tuple(back)
+
+
+def leaned(problem: Problem, point: Point, apart: Sequence[Array]) -> tuple[Array, Array]:
+    """The information A (parameters, parameters) and J' d, by which readings of each run that differ by d (m,) sd would move theta.
+
+    The windows' starts are eliminated: to first order theta moves by A^-1 J' d.
+    """
+    g, starts = np.zeros(len(problem.names)), []
+    for d, own, known in zip(apart, point.blocks, point.starts, strict=True):
+        for block in own:
+            g += block.by_parameter.T @ d[block.place]
+        starts.append(replace(known, c=np.stack([block.by_start.T @ d[block.place] for block in own])))
+    H, reduced, _ = _reduced(replace(point, Jtr=g, starts=tuple(starts)), 0.0)
+    return H + problem.prior.information + 1e-12 * np.diag(1.0 / problem.scale**2), reduced
 
 
 def _step(problem: Problem, point: Point, damping: float) -> tuple[Array, tuple[Run, ...], float]:
