@@ -21,7 +21,7 @@ from records.log import LogColumns, RunLog, load_log
 from records.plant import Plant, load_plant, plant_text
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
-from twinlaw import console
+from twinlaw import console, options
 from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows, pictures
 from twinlaw.identify_summary import HEADING, estimate_rows
 from twinlaw.identifying import free_names, read_limits
@@ -30,8 +30,8 @@ from twinlaw.page import page_text
 OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
 
 
-def identify_by_frequency(chosen: argparse.Namespace) -> int:
-    """Read logs, match, write, tell; raises BadInput."""
+def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -> int:
+    """Read logs and those held out, match, write, tell; raises BadInput."""
     for option in OTHER_METHODS:
         if getattr(chosen, option):
             raise BadInput(
@@ -43,7 +43,11 @@ def identify_by_frequency(chosen: argparse.Namespace) -> int:
             )
     plant = load_plant(chosen.plant)
     with console.stage("frequency responses, secant search, intervals"):
-        found = _lateral(chosen, plant) if plant.model == LATERAL else _operating_point(chosen, bind(plant))
+        found = (
+            _lateral(chosen, holdout, plant)
+            if plant.model == LATERAL
+            else _operating_point(chosen, holdout, bind(plant))
+        )
     write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
     write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
     page = frequency_page(found)
@@ -54,10 +58,10 @@ def identify_by_frequency(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _lateral(chosen: argparse.Namespace, plant: Plant) -> FrequencyIdentification:
+def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant) -> FrequencyIdentification:
     check_plant(plant)
     model = lateral_model(plant, _lateral_names(chosen.free, plant))
-    logs, held = _read(chosen, log_columns())
+    logs, held = _read(chosen, holdout, log_columns())
     return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant))
 
 
@@ -74,13 +78,13 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
     return names
 
 
-def _operating_point(chosen: argparse.Namespace, bound: BoundPlant) -> FrequencyIdentification:
+def _operating_point(chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant) -> FrequencyIdentification:
     if bound.input_path or bound.output_path:
         raise BadInput(
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
             "identify from the plant without them",
         )  # fmt: skip
-    logs, held = _read(chosen, plant_columns(bound.model))
+    logs, held = _read(chosen, holdout, plant_columns(bound.model))
     outputs = tuple(bound.model.outputs)
     records, others = ([record_of(log, name, outputs) for name, log in some.items()] for some in (logs, held))
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
@@ -95,8 +99,11 @@ def _matched(
     return frequency_identification(plant, match(model, records, band, seed=chosen.seed), held)
 
 
-def _read(chosen: argparse.Namespace, columns: LogColumns) -> tuple[Mapping[str, RunLog], Mapping[str, RunLog]]:
+def _read(
+    chosen: argparse.Namespace, holdout: Sequence[Path], columns: LogColumns
+) -> tuple[Mapping[str, RunLog], Mapping[str, RunLog]]:
     """Logs to match and logs to check on, by name."""
+    options.differing((*chosen.files, *holdout))
     logs = {path.stem: _log(path, columns) for path in chosen.files}
     if chosen.trim is not None:
         logs = {name: trimmed(log, *chosen.trim) for name, log in logs.items()}
@@ -104,7 +111,7 @@ def _read(chosen: argparse.Namespace, columns: LogColumns) -> tuple[Mapping[str,
     if len(periods) > 1:
         got = " and ".join(f"{period:g} s" for period in sorted(periods))
         raise BadInput("sample_period_s", "run logs", got, "one for all", "match logs of one rate at a time")
-    return logs, {path.stem: _log(path, columns) for path in chosen.holdout}
+    return logs, {path.stem: _log(path, columns) for path in holdout}
 
 
 def _log(path: Path, columns: LogColumns) -> RunLog:

@@ -22,7 +22,7 @@ from records.plant import coefficient_names, plant_text
 from records.reading import read_toml
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
-from twinlaw import console
+from twinlaw import console, options
 
 Limits = Mapping[str, tuple[float, float]]
 Save = Callable[[Identification], None]
@@ -61,18 +61,20 @@ class Wishes:
 
 def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlant) -> Inputs:
     """Read experiments and run logs, told apart by the schema of their TOML; a folder stands for the experiments in it."""
-    experiments, logs = [], {}
+    experiments, logs = [], []
     for path in _files(paths):
         sidecar = path.with_suffix(".toml")
         if read_toml(sidecar, "experiment or sidecar of a run log").get("schema") == EXPERIMENT_SCHEMA:
             experiments.append(load_experiment(sidecar))
         else:
-            logs[path.stem] = _log(path, bound)
+            logs.append(path)
+    options.differing((*logs, *holdout))
     kinds = [entry.kind for entry in experiments]
     for kind in kinds:
         if kinds.count(kind) > 1:
             raise BadInput("experiments", kind, "given twice", "each once", "leave one of them out")
-    return Inputs(in_order(experiments), logs, {path.stem: _log(path, bound) for path in holdout})
+    fitted, kept = ({path.stem: _log(path, bound) for path in each} for each in (logs, holdout))
+    return Inputs(in_order(experiments), fitted, kept)
 
 
 def _log(path: Path, bound: BoundPlant) -> RunLog:

@@ -1,8 +1,10 @@
 """Options that several verbs share, so that the same thing has the same name everywhere."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
+from records.errors import BadInput
 from twinlaw.arithmetics import ARITHMETICS
 
 
@@ -30,6 +32,39 @@ def out(parser: argparse.ArgumentParser) -> None:
 def as_json(parser: argparse.ArgumentParser) -> None:
     """--json."""
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of tables")
+
+
+def logs(parser: argparse.ArgumentParser, dest: str, metavar: str, text: str) -> None:
+    """--holdout LOG.csv ..., and what is not held out."""
+    parser.add_argument(
+        "--holdout",
+        type=Path,
+        action="append",
+        nargs="+",
+        default=[],
+        metavar="LOG.csv",
+        help="logs kept for checking, all up to the next option; may be repeated",
+    )
+    parser.add_argument(dest, type=Path, nargs="*", metavar=metavar, help=text)
+
+
+def held_out(chosen: argparse.Namespace, dest: str) -> list[Path]:
+    """The logs of every --holdout; raises BadInput where nothing besides is left, as where the option was given right before the rest."""
+    held = [path for group in chosen.holdout for path in group]
+    if getattr(chosen, dest):
+        return held
+    if held:
+        got, remedy = f"all {len(held)} logs held out", "give --holdout behind the others, or put `--` before them"
+        raise BadInput("logs", "command line", got, "at least one that is not held out", remedy)
+    raise BadInput(dest, "command line", "none", "at least one", "name it behind the options")
+
+
+def differing(paths: Sequence[Path]) -> None:
+    """Raises BadInput where two logs have one name, by which all that is found is told."""
+    names = [path.stem for path in paths]
+    for name in names:
+        if names.count(name) > 1:
+            raise BadInput("logs", name, "two of this name", "names that differ", "leave one of them out, or rename it")
 
 
 def arithmetic(parser: argparse.ArgumentParser) -> None:

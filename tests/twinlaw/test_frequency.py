@@ -26,7 +26,7 @@ def swept(folder):
 
 def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
     held = ["--holdout", str(flown / "doublets.csv")]
-    assert main([*FREQUENCY, "--out", str(tmp_path), "--json", "--band-rad-s", "0.4", "12", *held, *swept(flown)]) == 0
+    assert main([*FREQUENCY, *held, "--out", str(tmp_path), "--json", "--band-rad-s", "0.4", "12", *swept(flown)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads((tmp_path / "identification.json").read_text())
     assert told["schema"] == "identification/1"

@@ -81,22 +81,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--prior", action="store_true", help="what the plant file knows (values, sd, correlation) counts as data"
     )
-    parser.add_argument(
-        "--holdout",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="LOG.csv",
-        help="predict it, do not fit it; may be repeated",
-    )
     options.as_json(parser)
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILES", help="experiments, folders of them, run logs")
+    options.logs(parser, "files", "FILES", "experiments, folders of them, run logs")
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Read everything, estimate, write, tell."""
+    holdout = options.held_out(chosen, "files")
     if chosen.method == "frequency":
-        return identify_by_frequency(chosen)
+        return identify_by_frequency(chosen, holdout)
     if chosen.band_rad_s is not None:
         raise BadInput("--band-rad-s", "command line", "given without its method", "--method frequency", "add that")
     if chosen.window is not None and not chosen.window > 0.0:
@@ -108,7 +101,7 @@ def run(chosen: argparse.Namespace) -> int:
     search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
     only = None if chosen.free is None else names
     wishes = Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
-    inputs = read_inputs(chosen.files, chosen.holdout, bound)
+    inputs = read_inputs(chosen.files, holdout, bound)
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
     result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
