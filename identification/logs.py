@@ -80,6 +80,8 @@ def _best(found: Sequence[Estimate]) -> Estimate:
     Over long windows a fit may have caught a wrong phase, or nothing at all: one that predicts the shortest windows clearly worse than
     the best does not count, nor one that leaves more than `MOST_LEFT` of what its own readings do.
     """
+    if len(found) == 1:
+        return found[0]
     costs = [_cost(found[0].runs, entry) for entry in found]
     sound = [
         entry

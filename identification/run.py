@@ -96,9 +96,16 @@ def _places(model: Model) -> Mapping[str, int]:
     return {name: place for place, name in enumerate(coefficient_names(model))}
 
 
+@lru_cache(maxsize=64)
 def offset_names(model: Model) -> tuple[str, ...]:
     """Names of constants added to the inputs, "offset.u_V": the trim of a real rig, estimated like a parameter where asked for."""
     return tuple(f"offset.{variable}" for variable in model.inputs)
+
+
+@lru_cache(maxsize=64)
+def state_places(model: Model) -> Mapping[str, int]:
+    """Where each state stands, by its name."""
+    return {str(state): place for place, state in enumerate(model.states)}
 
 
 def known_names(run: Run, names: Sequence[str]) -> tuple[tuple[int, str], ...]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.prediction import Block, blocks
-from identification.run import Run, with_starts
+from identification.run import Run, state_places, with_starts
 
 Array = NDArray[np.float64]
 MAX_STEPS = 60
@@ -129,7 +129,8 @@ def _off(run: Run) -> Array:
 
 
 def _free_places(run: Run) -> list[int]:
-    return [[str(state) for state in run.bound.model.states].index(name) for name in run.free]
+    places = state_places(run.bound.model)
+    return [places[name] for name in run.free]
 
 
 def _reduced(point: Point, damping: float) -> tuple[Array, Array, tuple[tuple[Array, Array], ...]]:
