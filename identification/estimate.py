@@ -83,7 +83,7 @@ def estimate(
     searched = () if wanted is None else search(problem, places, wanted)
     if searched:
         problem = started(problem, places, searched[0])
-    problem, point = _fitted(problem, watch)
+    problem, point = _fitted(problem, len(before.names), watch)
     H = point.H
     covariance = _inverse(H + problem.prior.information)
     after = Belief(problem.names, point.theta, covariance)
@@ -109,21 +109,22 @@ def estimate(
     )
 
 
-def _fitted(problem: Problem, watch: Watch | None) -> tuple[Problem, Point]:
+def _fitted(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem, Point]:
     """Fit, weigh, fit again; the same in half the steps while those move the estimates, and less each time."""
     before = np.inf
     while True:
-        weighed, point = _weighed_fit(problem, watch)
+        weighed, point = _weighed_fit(problem, known, watch)
         now = shift_sd(weighed, point)
         if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST:
             return weighed, point
         problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
 
 
-def _weighed_fit(problem: Problem, watch: Watch | None) -> tuple[Problem, Point]:
+def _weighed_fit(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem, Point]:
+    """Fit, weigh by channel, fit, weigh by correlation, fit; the first `known` parameters are held by what is known of them."""
     point = solve(problem, watch)
     for weigh in (_by_channel, _by_correlation):
-        problem = _weighed(problem, point, weigh)
+        problem = _recentred(_weighed(problem, point, weigh), known)
         point = solve(problem, watch)
     return problem, point
 
@@ -153,6 +154,12 @@ def _weak(problem: Problem, before: Belief) -> Array:
 def _weighed(problem: Problem, point: Point, weigh: Callable[[Problem, Point], tuple[Run, ...]]) -> Problem:
     """The problem from its optimum with other weights."""
     return replace(problem, start=point.theta, runs=weigh(problem, point))
+
+
+def _recentred(problem: Problem, known: int) -> Problem:
+    """What merely gives a new parameter a size holds it where it is by now: weights that fell must not let it pull back to a far start."""
+    mean = np.concatenate([problem.prior.mean[:known], problem.start[known:]])
+    return replace(problem, prior=replace(problem.prior, mean=mean))
 
 
 def _by_channel(_: Problem, point: Point) -> tuple[Run, ...]:

@@ -81,6 +81,9 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
     return (*blind, *bound, *pulled, *coloured)
 
 
+AID_UNITS = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}
+
+
 def _direction(entry: Direction) -> str:
     parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
     return f"not identifiable alone: the direction {parts} (each relative to its size)"
@@ -103,9 +106,16 @@ def identification(
         for name in belief.names
     )
     found = tuple(
-        _estimated(name, "", 0.0, part, interval_factor(dof), np.inf) for part, dof in aids for name in part.names
+        _estimated(name, _aid_unit(name), 0.0, part, interval_factor(dof), np.inf)
+        for part, dof in aids
+        for name in part.names
     )
     return Identification(_with_belief(plant, estimates, belief), estimates, belief, tuple(stages), found)
+
+
+def _aid_unit(name: str) -> str:
+    """An input's offset bears the unit of its input, "offset.u_T_V"."""
+    return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")
 
 
 def _estimated(name: str, unit: str, start: float, belief: Belief, factor: float, most_sd: float) -> Estimated:

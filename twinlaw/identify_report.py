@@ -11,7 +11,7 @@ from identification.result import Identification
 from identification.validation import Comparison
 from records.experiment import Experiment
 from sim.bind import BoundPlant
-from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, fit_rows, test_rows
+from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, fit_rows, test_rows
 from twinlaw.page import Page, Section, Table
 from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
 
@@ -41,7 +41,7 @@ def identify_page(
 def _estimates(result: Identification) -> Section:
     tables = [Table(estimate_rows(result.estimates), HEADING)]
     if result.aids:
-        tables.append(Table(estimate_rows(result.aids), HEADING))
+        tables.append(Table(aid_rows(result.aids), AID_HEADING))
     return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))
 
 
@@ -91,7 +91,7 @@ def _rotor_panel(stage: Estimate, linear: Estimate, number: int, label: str) -> 
     return Panel(
         label,
         (
-            Curve(t_s, run.y[mine], "measured", GREY),
+            Curve(t_s, run.y[mine], "measured", GREY, "", "o"),
             Curve(t_s, readings_by(linear)[mine], "linear", ORANGE, "--"),
             Curve(t_s, readings_by(stage)[mine], "polynomial", BLUE),
         ),
@@ -125,7 +125,9 @@ def flight_section(comparison: Comparison) -> Section:
     panels = []
     for name, label in names:
         scale = 180.0 / np.pi if name.endswith("_rad") else 1.0
+        wanted = name.replace("_rad", "_ref_rad")
         curves = [
+            *([Curve(real.t_s, scale * real.column(wanted), "reference", GREY, ":")] if wanted in real.extra else []),
             Curve(real.t_s, scale * real.column(name), "real plant", GREEN),
             Curve(here.t_s, scale * here.column(name), "identified", RED, "--"),
         ]

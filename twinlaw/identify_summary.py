@@ -7,6 +7,7 @@ from identification.residuals import ResidualTest
 from identification.result import Estimated
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
+AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
 FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
 
 
@@ -24,6 +25,11 @@ def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
         )
         for entry in estimates
     ]
+
+
+def aid_rows(aids: Sequence[Estimated]) -> list[tuple[str, ...]]:
+    """One row for each quantity that the data needed and the plant file does not have."""
+    return [row[:2] + row[3:6] for row in estimate_rows(aids)]
 
 
 def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:

@@ -26,7 +26,7 @@ from twinlaw import console, options
 from twinlaw.frequency_identifying import identify_by_frequency
 from twinlaw.identify_proof import proven
 from twinlaw.identify_report import identify_page
-from twinlaw.identify_summary import FIT_HEADING, HEADING, estimate_rows, test_rows
+from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
 from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits, save_result
 from twinlaw.page import page_text
 from twinlaw.stages import load_bound
@@ -113,6 +113,8 @@ def run(chosen: argparse.Namespace) -> int:
         print(json.dumps(facts(result)))
         return 0
     print(console.table(estimate_rows(result.estimates), HEADING))
+    if result.aids:
+        print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
     if result.holdout:
         print("\n" + console.table(test_rows("held out", result.holdout), FIT_HEADING))
     for note in result.notes:
