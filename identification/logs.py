@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from identification.belief import NOTHING, Belief
-from identification.estimate import Estimate, Range, estimate, problem_of
+from identification.estimate import CONTRADICTION_SD, Estimate, Range, estimate, problem_of
 from identification.locked import locked_model
 from identification.log_run import log_run
 from identification.ranges import ranges_of
@@ -77,8 +77,9 @@ def identify_logs(
 def _best(found: Sequence[Estimate]) -> Estimate:
     """Of fits over shorter and longer windows the one that leaves the least volume open.
 
-    Over long windows a fit may have caught a wrong phase, or nothing at all: one that predicts the shortest windows clearly worse than
-    the best does not count, nor one that leaves more than `MOST_LEFT` of what its own readings do.
+    Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
+    that predicts the shortest windows clearly worse than the best does not count, nor one that leaves more than `MOST_LEFT` of what its
+    own readings do, nor one that contradicts the shortest windows by more than both intervals allow.
     """
     if len(found) == 1:
         return found[0]
@@ -86,9 +87,16 @@ def _best(found: Sequence[Estimate]) -> Estimate:
     sound = [
         entry
         for entry, cost in zip(found, costs, strict=True)
-        if cost <= WORSE**2 * min(costs) and all(test.fit > 1.0 - MOST_LEFT for test in entry.residuals)
+        if cost <= WORSE**2 * min(costs)
+        and all(test.fit > 1.0 - MOST_LEFT for test in entry.residuals)
+        and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
     ]
     return min(sound or found[:1], key=_volume)
+
+
+def apart_sd(one: Belief, other: Belief) -> float:
+    """The largest difference of a parameter between two estimates of the same names, in standard deviations of both together."""
+    return float(np.max(np.abs(one.mean - other.mean) / np.hypot(one.sd, other.sd), initial=0.0))
 
 
 def _cost(runs: tuple[Run, ...], entry: Estimate) -> float:

@@ -16,6 +16,7 @@ from records.plant import Parameter, Plant, coefficient_names
 
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
+LEAST_CHANCE = 1e-300
 TOLD = 0.3  # a parameter known to less than so much of its size is not identified: what holds it is that it was given a size at all
 
 
@@ -69,7 +70,7 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for entry in stage.contradictions[:3]
     ]
     coloured = [
-        f"{title}: residuals of {test.channel} are correlated (p = {test.whiteness_p:.1g}, rms {test.rms:.2g}); "
+        f"{title}: residuals of {test.channel} are correlated ({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
         "its samples count for fewer"
         for test in stage.residuals
         if not test.white
@@ -79,6 +80,11 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for name in stage.at_bound
     ]
     return (*blind, *bound, *pulled, *coloured)
+
+
+def chance(p: float) -> str:
+    """A small probability as text; what a float64 cannot hold is not 0."""
+    return f"p = {p:.1g}" if p > LEAST_CHANCE else f"p < {LEAST_CHANCE:.0e}"
 
 
 AID_UNITS = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}

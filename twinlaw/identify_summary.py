@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from identification.estimate import Estimate
 from identification.residuals import ResidualTest
-from identification.result import Estimated
+from identification.result import Estimated, chance
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
@@ -48,7 +48,7 @@ def test_rows(title: str, tests: Sequence[ResidualTest]) -> list[tuple[str, ...]
             f"{test.rms:.3g}",
             f"{test.floor:.3g}" if test.floor else "",
             f"{100.0 * test.fit:.2f} %",
-            "" if test.white else f"p = {test.whiteness_p:.1g}",
+            "" if test.white else chance(test.whiteness_p),
         )
         for test in tests
     ]

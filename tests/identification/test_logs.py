@@ -8,8 +8,8 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from identification.belief import stated
-from identification.logs import identify_logs, run_of
+from identification.belief import Belief, stated
+from identification.logs import apart_sd, identify_logs, run_of
 from identification.search import Search
 from recordings.files import datasets_folder
 from recordings.library import import_record
@@ -124,3 +124,23 @@ def test_a_log_that_begins_in_flight_is_used_once_its_rotors_start_no_longer_sho
     assert 0.5 < begun_s < 5.0
     found = identify_logs(off(bound, {"J_A": 1.2}), {"log": log}, ("J_A",), window_s=1.0)
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.01)
+
+
+def test_estimates_are_apart_by_so_many_sd_of_both_together():
+    """1 and 2 with sd 0.3 and 0.4: two sd; 5 and 5: none."""
+    one = Belief(("a", "b"), np.array([1.0, 5.0]), np.diag([0.09, 1.0]))
+    other = Belief(("a", "b"), np.array([2.0, 5.0]), np.diag([0.16, 1.0]))
+    assert apart_sd(one, other) == pytest.approx(2.0)
+    assert apart_sd(one, one) == 0.0
+
+
+@real
+def test_long_windows_that_contradict_short_ones_do_not_count():
+    """Three impulses on a rig whose model lacks a lag: whole records give a gain of 9, thirteen sd from the windows' 86."""
+    impulses = bind(load_plant(PLANTS / "aeroshield_two_clocks.toml"))
+    records = [f"impulse_char_2026_01_24_{time}" for time in ("22_48_45", "22_49_36", "22_50_18")]
+    found = identify_logs(
+        impulses, {name: import_record("aeroshield_two_clocks", name) for name in records}, ("b", "w2", "d")
+    )
+    assert all(run.begins.size > 1 for run in found.runs)
+    assert found.belief.value("b") > 50.0
