@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from identification.belief import Belief, prior, widened
+from identification.discord import Discord, discords
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
 from identification.search import Search, Searched, search, started
@@ -44,6 +45,7 @@ class Estimate:
     """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
 
     `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
+    `discords` name those in which runs that were fitted together contradict one another.
     """
 
     belief: Belief
@@ -57,6 +59,7 @@ class Estimate:
     residuals: tuple[ResidualTest, ...]
     runs: tuple[Run, ...]
     searched: tuple[Searched, ...] = ()
+    discords: tuple[Discord, ...] = ()
 
 
 def interval_factor(dof: float) -> float:
@@ -106,6 +109,7 @@ def estimate(
         ),
         runs=point.runs,
         searched=searched,
+        discords=discords(problem, point),
     )
 
 

@@ -69,6 +69,11 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         f"{entry.sds:.0f} sd apart"
         for entry in stage.contradictions[:3]
     ]
+    against = [
+        f"{title}: {entry.run} contradicts the others in {entry.name}: {entry.own:.4g} by itself, {entry.others:.4g} by the others, "
+        f"{entry.sds:.0f} sd apart"
+        for entry in stage.discords[:3]
+    ]
     coloured = [
         f"{title}: residuals of {test.channel} are correlated ({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
         "its samples count for fewer"
@@ -79,7 +84,7 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         f"{title}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
         for name in stage.at_bound
     ]
-    return (*blind, *bound, *pulled, *coloured)
+    return (*blind, *bound, *pulled, *against, *coloured)
 
 
 def chance(p: float) -> str:
@@ -203,6 +208,7 @@ def _stage_facts(title: str, stage: Estimate) -> dict[str, Any]:
         ],
         "at_bound": list(stage.at_bound),
         "contradictions": [asdict(entry) for entry in stage.contradictions],
+        "discords": [asdict(entry) for entry in stage.discords],
         "searches": [_search_facts(entry) for entry in stage.searched],
     }
 

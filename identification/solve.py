@@ -147,6 +147,15 @@ def _reduced(point: Point, damping: float) -> tuple[Array, Array, tuple[tuple[Ar
     return H, g, tuple(back)
 
 
+def alone(point: Point, number: int) -> tuple[Array, Array]:
+    """What one run says at the point: its information (parameters, parameters) and gradient, its windows' starts eliminated."""
+    own = point.blocks[number]
+    JtJ = np.sum([block.by_parameter.T @ block.by_parameter for block in own], axis=0)
+    Jtr = np.sum([block.by_parameter.T @ block.residual for block in own], axis=0)
+    H, g, _ = _reduced(replace(point, JtJ=JtJ, Jtr=Jtr, starts=(point.starts[number],)), 0.0)
+    return (H + H.T) / 2.0, g
+
+
 def leaned(problem: Problem, point: Point, apart: Sequence[Array]) -> tuple[Array, Array]:
     """The information A (parameters, parameters) and J' d, by which readings of each run that differ by d (m,) sd would move theta.
 

@@ -1,0 +1,58 @@
+"""Runs fitted together that do not agree: what each says by itself beside what the others say, parameter by parameter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.solve import Point, Problem, alone
+
+Array = NDArray[np.float64]
+DISCORD_SD = 5.0
+
+
+@dataclass(frozen=True)
+class Discord:
+    """A parameter that one run tells otherwise than all others do: its value by that run, by the others, and sd between them."""
+
+    run: str
+    name: str
+    sds: float
+    own: float
+    others: float
+
+
+def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
+    """The parameters in which a run is more than `DISCORD_SD` away from the others, the farthest first.
+
+    To first order about the common optimum theta: run i by itself would end at theta + A_i^-1 g_i, with its information A_i and its
+    gradient g_i, window starts eliminated; the others likewise with the sums of theirs and what was known before. The weights are those
+    of the common fit, whose residuals hold the disagreement already, so that it is told late rather than early.
+    """
+    if len(point.runs) < 2:
+        return ()
+    weak, prior = np.diag(1.0 / problem.scale**2), problem.prior
+    parts = [alone(point, number) for number in range(len(point.runs))]
+    H, g = sum(part[0] for part in parts), sum(part[1] for part in parts)
+    found: list[Discord] = []
+    told = (
+        point.runs if len(point.runs) > 2 else point.runs[:1]
+    )  # of two, one is against the other as the other is against it
+    for run, (own_H, own_g) in zip(told, parts, strict=False):
+        own, own_cov = _optimum(point.theta, own_H + weak, own_g)
+        pull = prior.information @ (prior.mean - point.theta)
+        others, others_cov = _optimum(point.theta, H - own_H + prior.information + weak, g - own_g + pull)
+        sds = np.abs(own - others) / np.sqrt(np.diag(own_cov) + np.diag(others_cov))
+        found += [
+            Discord(run.name, name, float(sds[place]), float(own[place]), float(others[place]))
+            for place, name in enumerate(problem.names)
+            if sds[place] > DISCORD_SD
+        ]
+    return tuple(sorted(found, key=lambda entry: -entry.sds))
+
+
+def _optimum(theta: Array, A: Array, g: Array) -> tuple[Array, Array]:
+    """theta + A^-1 g and A^-1, of a badly scaled positive definite A."""
+    size = np.sqrt(np.diag(A))
+    inverse = np.linalg.inv(A / np.outer(size, size)) / np.outer(size, size)
+    return theta + inverse @ g, inverse
