@@ -33,15 +33,16 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
         return ()
     weak, prior = np.diag(1.0 / problem.scale**2), problem.prior
     parts = [alone(point, number) for number in range(len(point.runs))]
-    H, g = sum(part[0] for part in parts), sum(part[1] for part in parts)
     found: list[Discord] = []
     told = (
         point.runs if len(point.runs) > 2 else point.runs[:1]
     )  # of two, one is against the other as the other is against it
-    for run, (own_H, own_g) in zip(told, parts, strict=False):
-        own, own_cov = _optimum(point.theta, own_H + weak, own_g)
-        pull = prior.information @ (prior.mean - point.theta)
-        others, others_cov = _optimum(point.theta, H - own_H + prior.information + weak, g - own_g + pull)
+    pull = prior.information @ (prior.mean - point.theta)
+    for number, run in enumerate(told):
+        own, own_cov = _optimum(point.theta, parts[number][0] + weak, parts[number][1])
+        rest = [part for place, part in enumerate(parts) if place != number]
+        H, g = np.sum([part[0] for part in rest], axis=0), np.sum([part[1] for part in rest], axis=0)
+        others, others_cov = _optimum(point.theta, H + prior.information + weak, g + pull)
         sds = np.abs(own - others) / np.sqrt(np.diag(own_cov) + np.diag(others_cov))
         found += [
             Discord(run.name, name, float(sds[place]), float(own[place]), float(others[place]))

@@ -153,7 +153,7 @@ def alone(point: Point, number: int) -> tuple[Array, Array]:
     JtJ = np.sum([block.by_parameter.T @ block.by_parameter for block in own], axis=0)
     Jtr = np.sum([block.by_parameter.T @ block.residual for block in own], axis=0)
     H, g, _ = _reduced(replace(point, JtJ=JtJ, Jtr=Jtr, starts=(point.starts[number],)), 0.0)
-    return (H + H.T) / 2.0, g
+    return (H + H.T) / 2.0 + ROUNDING * np.diag(np.diag(JtJ)), g
 
 
 def leaned(problem: Problem, point: Point, apart: Sequence[Array]) -> tuple[Array, Array]:
