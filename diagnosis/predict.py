@@ -1,7 +1,7 @@
 """Free runs over consecutive windows of a log, each from the state that the model's own filter had from data up to its first row."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,8 +20,22 @@ SETTLE_S = 2.0  # until then the filter cannot tell the speeds well enough
 UNSEEN = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
 
 
-def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0.02) -> Array:
-    """Predicted readings (rows, outputs) of a log by window; NaN where the filter fails or cannot yet tell."""
+@dataclass(frozen=True)
+class Span:
+    """A free run from the state estimated at row `start`; its rows from `first` to the one before `last` are wanted."""
+
+    start: int
+    first: int
+    last: int
+
+
+def predictions(
+    case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0.02, spans: Sequence[Span] | None = None
+) -> Array:
+    """Predicted readings (rows, outputs) of a log by free runs over `spans`, by default its windows of a second.
+
+    NaN in rows of no span, and where the filter fails or cannot yet tell.
+    """
     kit = case.kit
     variant = kit.variant(supposed.effects)
     tape = tape_under(case, variant, flight, supposed.effects)
@@ -38,27 +52,20 @@ def predictions(case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0
     lateness = _lateness(case, variant, supposed.effects)
     ahead = Noise(np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0), np.zeros_like(noise.q))
     slots = [place if place < outputs else -1 for place in range(len(kit.outputs))]
-    for first, last in windows(flight.log.t_s):
-        begin = int(np.searchsorted(tape.t_s, flight.log.t_s[first] - max(lateness) + 1e-9, side="right")) - 1
-        end = int(np.searchsorted(tape.t_s, flight.log.t_s[last - 1] + 1e-9, side="right"))
-        if begin < 0 or flight.log.t_s[first] < flight.log.t_s[0] + SETTLE_S:
+    t_s = flight.log.t_s
+    for span in [Span(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
+        begin = int(np.searchsorted(tape.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
+        end = int(np.searchsorted(tape.t_s, t_s[span.last - 1] + 1e-9, side="right"))
+        if begin < 0 or t_s[span.start] < t_s[0] + SETTLE_S:
             continue
         part = _unseen(ahead_tape, begin, end, outputs)
         free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
         if free is None:
             continue
-        y = -free.w * np.sqrt(free.s)
-        for output in range(outputs):
-            then = flight.log.t_s[first:last] - lateness[output]
-            found[first:last, output] = np.interp(then, part.t_s, y[:, output])
-    for name, values in supposed.effects.items():
-        place, kind = name.split(".")
-        if place in kit.bound.model.places.sensors and kind in ("backlash", "quantization"):
-            output = kit.outputs.index(kit.bound.model.places.sensors[place].output)
-            if kind == "backlash":
-                _behind_play(flight, found[:, output], flight.log.y[:, output], values["width"])
-            else:
-                found[:, output] = values["q"] * np.round(found[:, output] / values["q"])
+        y, then = -free.w * np.sqrt(free.s), t_s[span.start : span.last]
+        seen = np.column_stack([np.interp(then - lateness[k], part.t_s, y[:, k]) for k in range(outputs)])
+        _through_sensors(case, supposed.effects, flight.log.y[span.start], seen)
+        found[span.first : span.last] = seen[span.first - span.start :]
     return found
 
 
@@ -108,12 +115,24 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
     )
 
 
-def _behind_play(flight: Flight, predicted: Array, read: Array, width: float) -> None:
-    """What a reading behind play follows of the predicted angle, in place; each window starts from its own first reading."""
-    for first, last in windows(flight.log.t_s):
-        if not np.isfinite(predicted[first:last]).all():
-            continue
-        stands = read[first] if np.isfinite(read[first]) else predicted[first]
-        for row in range(first, last):
-            stands = min(max(stands, predicted[row] - 0.5 * width), predicted[row] + 0.5 * width)
-            predicted[row] = stands
+def _through_sensors(case: Case, effects: Mapping[str, Values], read: Array, predicted: Array) -> None:
+    """What play and coarse encoders make of the predicted readings (rows, outputs) of one free run, in place; `read` are its first."""
+    kit = case.kit
+    for name, values in effects.items():
+        place, kind = name.split(".")
+        if place in kit.bound.model.places.sensors and kind in ("backlash", "quantization"):
+            output = kit.outputs.index(kit.bound.model.places.sensors[place].output)
+            if kind == "backlash":
+                _behind_play(predicted[:, output], float(read[output]), values["width"])
+            else:
+                predicted[:, output] = values["q"] * np.round(predicted[:, output] / values["q"])
+
+
+def _behind_play(predicted: Array, read: float, width: float) -> None:
+    """What a reading behind play follows of the predicted angle, in place, from the first reading on."""
+    if not np.isfinite(predicted).all():
+        return
+    stands = read if np.isfinite(read) else float(predicted[0])
+    for row, angle in enumerate(predicted.tolist()):
+        stands = min(max(stands, angle - 0.5 * width), angle + 0.5 * width)
+        predicted[row] = stands

@@ -1,0 +1,102 @@
+"""A plant's prediction one second ahead, sample by sample beside a rig: what its equations expected of now, a second ago.
+
+At each answered instant t the plant's own filter has estimated the state from the readings up to t - 1 s; from there the equations run
+freely with the inputs that were commanded since. The running gap is the rms of reading minus prediction over the last seconds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import make_case
+from diagnosis.hypothesis import nothing_supposed
+from diagnosis.kit import make_kit
+from diagnosis.predict import SETTLE_S, WINDOW_S, Span, predictions
+from records.live import LiveRow
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.columns import log_columns
+from sim.effects.api import without_effects
+
+Array = NDArray[np.float64]
+EVERY_S = 0.05  # between two predictions
+MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
+GAP_S = 10.0
+UNREST = -2.0  # log10 of the noise on each axis' speed per square root of a second
+
+
+@dataclass(frozen=True)
+class Ahead:
+    """Reading `y` (outputs) at `t_s` and what was `predicted` of it a second before; NaN where nothing was read."""
+
+    t_s: float
+    y: tuple[float, ...]
+    predicted: tuple[float, ...]
+
+
+class Lookahead:
+    """The prediction beside a rig whose rows come one after the other; it remembers the last seconds, and nothing else.
+
+    `locked` are the axes that are held. Building it compiles the plant's filter once, which takes seconds the first time.
+    """
+
+    def __init__(self, bound: BoundPlant, locked: Sequence[str] = ()) -> None:
+        self._kit = make_kit(without_effects(bound) if bound.effects else bound)
+        self._bound = bound
+        self._locked = tuple(locked)
+        self._rows: list[LiveRow] = []
+        self._found: list[Ahead] = []
+        self._asked_s = -np.inf
+
+    def forget(self) -> None:
+        """Begin anew: the next row is none that follows the last."""
+        self._rows, self._found, self._asked_s = [], [], -np.inf
+
+    def take(self, rows: Sequence[LiveRow]) -> tuple[Ahead, ...]:
+        """Take the next rows; returns the predictions that are due with them, none in the first three seconds."""
+        if not rows:
+            return ()
+        self._rows.extend(rows)
+        due = self._due(len(self._rows) - len(rows))
+        found = self._predicted(due) if due else ()
+        newest_s = rows[-1].t_s
+        self._rows = [row for row in self._rows if row.t_s > newest_s - MEMORY_S]
+        self._found = [entry for entry in (*self._found, *found) if entry.t_s > newest_s - GAP_S]
+        return found
+
+    @property
+    def gap(self) -> tuple[float | None, ...]:
+        """Rms of reading minus prediction by output over the last GAP_S, in the outputs' units; None where nothing is known."""
+        outputs = len(self._bound.model.outputs)
+        error = np.array([np.subtract(entry.y, entry.predicted) for entry in self._found]).reshape(-1, outputs)
+        columns = [column[np.isfinite(column)] for column in error.T]
+        return tuple(float(np.sqrt(np.mean(column**2))) if column.size else None for column in columns)
+
+    def _due(self, first: int) -> list[Span]:
+        """Free runs to the rows from `first` on that are EVERY_S after the last one."""
+        t_s = np.array([row.t_s for row in self._rows])
+        spans = []
+        for row in range(first, len(t_s)):
+            begin = int(np.searchsorted(t_s, t_s[row] - WINDOW_S + 1e-9, side="right")) - 1
+            if t_s[row] >= self._asked_s + EVERY_S - 1e-9 and begin >= 0 and t_s[begin] - t_s[0] >= SETTLE_S:
+                spans.append(Span(begin, row, row + 1))
+                self._asked_s = float(t_s[row])
+        return spans
+
+    def _predicted(self, spans: Sequence[Span]) -> tuple[Ahead, ...]:
+        rows = self._rows
+        log = RunLog(
+            columns=log_columns(self._bound.model),
+            sample_period_s=EVERY_S,
+            loop="closed",
+            t_s=np.array([row.t_s for row in rows]),
+            u=np.array([row.u for row in rows]),
+            y=np.array([row.y for row in rows]),
+            locked=self._locked,
+        )
+        case = make_case(self._kit, [log], stated=self._bound)
+        supposed = nothing_supposed(case, UNREST)
+        found = predictions(case, case.flights[0], supposed, spans=spans)
+        return tuple(Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans)
