@@ -24,7 +24,9 @@ Array = NDArray[np.float64]
 EVERY_S = 0.05  # between two predictions
 MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
 GAP_S = 10.0
-UNREST = -2.0  # log10 of the noise on each axis' speed per square root of a second
+# Log10 of the noise on each axis' speed per square root of a second. Calmer air leaves less of an exact twin's gap, and lets a twin that
+# lacks something lose its state: from -1.5 to -2 the first falls by a third to a half, the second grows by a tenth.
+UNREST = -2.0
 
 
 @dataclass(frozen=True)
@@ -99,4 +101,6 @@ class Lookahead:
         case = make_case(self._kit, [log], stated=self._bound)
         supposed = nothing_supposed(case, UNREST)
         found = predictions(case, case.flights[0], supposed, spans=spans)
-        return tuple(Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans)
+        return tuple(
+            Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans
+        )

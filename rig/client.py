@@ -10,7 +10,7 @@ from rig.frames import Frame, FrameReceiver, Value
 from rig.line import Line
 from rig.numbers import Float32Numbers, Numbers
 from rig.port import open_port
-from rig.replies import Answer, Identity, Telemetry
+from rig.replies import Answer, Health, Identity, Telemetry
 
 DIGEST_HEAD_BYTES = 8
 DEFAULT_TIMEOUT_S = 0.25
@@ -100,7 +100,11 @@ class BoardClient:
 
     def counters(self) -> Mapping[str, int]:
         """The board's counters by name."""
-        return replies.counters(self._request("GET_COUNTERS", {}, "COUNTERS"))
+        return self.health().counters
+
+    def health(self) -> Health:
+        """The board's state and counters, and what this end of the line has received."""
+        return replies.health(self._request("GET_COUNTERS", {}, "COUNTERS"), self._line.receiver.received)
 
     def self_test(self) -> int:
         """Outputs of the law's self-test on the board that differ from the expected bits; 0 is a pass."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from records.protocol import PROTOCOL
-from rig.frames import Frame
+from rig.frames import Frame, Received
 from rig.numbers import Numbers
 
 
@@ -59,6 +59,15 @@ class Telemetry:
     tick_overruns: int
 
 
+@dataclass(frozen=True)
+class Health:
+    """State of the supervisor by name, the board's counters by name, and what the host received of it."""
+
+    state: str
+    counters: Mapping[str, int]
+    received: Received
+
+
 def identity(frame: Frame) -> Identity:
     """The record of an IDENTITY frame."""
     version = frame.number("firmware_version")
@@ -95,7 +104,13 @@ def telemetry(frame: Frame, numbers: Numbers) -> Telemetry:
     return Telemetry(**values, **counts)  # type: ignore[arg-type]
 
 
-def counters(frame: Frame) -> Mapping[str, int]:
-    """The counters of a COUNTERS frame by name, in their declared order."""
+def health(frame: Frame, received: Received) -> Health:
+    """The record of a COUNTERS frame, the counters in their declared order; `received` is the host's own side."""
     head = ("echo_sequence", "device_time_us", "state")
-    return {part.name: frame.number(part.name) for part in frame.message.fields if part.name not in head}
+    counters = {part.name: frame.number(part.name) for part in frame.message.fields if part.name not in head}
+    return Health(state_name(frame.number("state")), counters, received)
+
+
+def state_name(code: int) -> str:
+    """The supervisor's state as the protocol names it; its number where the protocol knows none."""
+    return next((choice.name for choice in PROTOCOL.enumeration("state").choices if choice.code == code), str(code))

@@ -1,11 +1,13 @@
 """The closed loop: a controller, whatever it is made of, flies the compiled plant."""
 
 import math
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
 from records.errors import VerificationFailed
+from records.live import LiveRow
 from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
@@ -78,6 +80,22 @@ def closed_loop_log(
         t_s=manoeuvre.t_s,
         u=u,
         y=y,
+        extra={reference_name(output): values for output, values in references},
+        table_digest=table_digest,
+    )
+
+
+def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | None) -> RunLog:
+    """The run log of a flight that was watched, its time counted from the first of `rows`, of which there are two at least."""
+    t_s = np.array([row.t_s for row in rows])
+    references = zip(bound.model.outputs, np.array([row.reference for row in rows]).T, strict=True)
+    return RunLog(
+        columns=log_columns(bound.model),
+        sample_period_s=float(np.median(np.diff(t_s))),
+        loop="closed",
+        t_s=t_s - t_s[0],
+        u=np.array([row.u for row in rows]),
+        y=np.array([row.y for row in rows]),
         extra={reference_name(output): values for output, values in references},
         table_digest=table_digest,
     )

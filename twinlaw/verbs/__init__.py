@@ -20,6 +20,7 @@ VERBS: Mapping[str, str] = {
     "simulate": "simulate",
     "flash": "flash",
     "validate": "validate",
+    "watch": "watch",
     "new-plant": "new_plant",
     "import": "import_record",
     "export": "export",

@@ -1,0 +1,143 @@
+"""A board that flies on its own encoders, watched sample by sample: references go to it, telemetry comes back. The rotors turn."""
+
+import math
+from typing import Protocol
+
+from codegen.twin import FULL_SCALE_V
+from records.errors import BadInput
+from records.live import LiveRow
+from rig.client import BoardClient
+from rig.emulator.board import EmulatedBoard
+from rig.emulator.serial_port import EmulatedSerial
+from rig.live import Angles, BoardTime
+from rig.replies import Health, Telemetry, state_name
+from sim.stepped import SteppedPlant
+
+UNKNOWN = (math.nan, math.nan)
+ELEVATION_TIMER, AZIMUTH_TIMER = 2, 3
+MAIN_DIRECTION_PIN, TAIL_DIRECTION_PIN = 0, 1
+OLD_FRAMES = 1000  # telemetry from before an ARM, at most
+
+
+class Rig(Protocol):
+    """What hangs on the board's pins."""
+
+    real: bool
+
+    def move(self, period_s: float) -> None:
+        """Let one sample period act."""
+        ...
+
+
+class RealRig:
+    """A rig that moves by itself."""
+
+    real = True
+
+    def move(self, period_s: float) -> None:
+        """Nothing to do."""
+
+
+class EmulatedRig:
+    """A simulated plant on the pins of an emulated board: the PWM drives it, it turns the encoders."""
+
+    real = False
+
+    def __init__(self, port: EmulatedSerial, plant: SteppedPlant, resolution_rad: Angles) -> None:
+        self._port, self._plant, self._resolution_rad = port, plant, resolution_rad
+        self._origin = self._counts()
+
+    def move(self, period_s: float) -> None:
+        """Advance the plant with the voltages that the pins give now."""
+        self._plant.advance(self._voltages(self._board), self._plant.t_s + period_s)
+        counts = self._counts()
+        self._board.set_encoder(ELEVATION_TIMER, counts[0] - self._origin[0])
+        self._board.set_encoder(AZIMUTH_TIMER, counts[1] - self._origin[1])
+
+    @property
+    def _board(self) -> EmulatedBoard:
+        assert self._port.board is not None
+        return self._port.board
+
+    def _counts(self) -> tuple[int, int]:
+        psi, phi = (round(y / step) for y, step in zip(self._plant.measured(), self._resolution_rad, strict=True))
+        return psi, phi
+
+    def _voltages(self, board: EmulatedBoard) -> Angles:
+        pwm, port = board.pwm(), board.gpio("B")
+        if not pwm.enabled:
+            return 0.0, 0.0
+        signs = [-1.0 if port.drives(pin) else 1.0 for pin in (MAIN_DIRECTION_PIN, TAIL_DIRECTION_PIN)]
+        scale = FULL_SCALE_V / pwm.period_ticks
+        return signs[0] * pwm.main_ticks * scale, signs[1] * pwm.tail_ticks * scale
+
+
+class FlyingFlight:
+    """Flying on the board's own encoders. Time is the board's tick since the first telemetry; a disarmed board tells nothing."""
+
+    mode = "FLYING"
+
+    def __init__(self, client: BoardClient, rig: Rig, board: BoardTime, period_s: float) -> None:
+        self.armed = False
+        self.round_trip_s: float | None = None
+        self.law_cycles: int | None = None
+        self._client, self._rig, self._board, self._period_s = client, rig, board, period_s
+        self._first_tick: int | None = None
+
+    @property
+    def own_pace(self) -> bool:
+        """A real board's telemetry is the clock."""
+        return self.armed and self._rig.real
+
+    def preset(self, psi_counts: int, phi_counts: int) -> None:
+        """Declare where the plant stands."""
+        self._client.preset(psi_counts, phi_counts)
+
+    def arm(self) -> Angles:
+        """Arm; the board holds the place where it stands, which its first telemetry names."""
+        self._client.arm("FLYING")
+        for _ in range(OLD_FRAMES):
+            told = self._next()
+            if state_name(told.state) == "FLYING":
+                self.armed = True
+                return told.psi_rad, told.phi_rad
+        raise self._silent("telemetry of an earlier flight alone")
+
+    def disarm(self) -> None:
+        """Power stage off at once."""
+        self.armed = False
+        self._client.disarm()
+
+    def sample(self, reference: Angles) -> LiveRow | None:
+        """Send the references and take the next telemetry."""
+        self._rig.move(self._period_s)
+        if not self.armed:
+            self._board.passed(self._period_s)
+            return None
+        self.armed = False  # until the telemetry is there
+        self._client.reference(*reference)
+        told = self._next()
+        self.armed = state_name(told.state) == "FLYING"
+        self.law_cycles = told.law_cycles
+        return self._row(told)
+
+    def health(self) -> Health:
+        """The board's state and counters, and the host's side of the line."""
+        return self._client.health()
+
+    def _row(self, told: Telemetry) -> LiveRow:
+        if self._first_tick is None:
+            self._first_tick = told.tick
+        t_s = (told.tick - self._first_tick) * self._period_s
+        flown = (told.u_M_V, told.u_T_V)
+        return LiveRow(t_s, flown, (told.psi_rad, told.phi_rad), (told.psi_ref_rad, told.phi_ref_rad))
+
+    def _next(self) -> Telemetry:
+        told = self._client.telemetry()
+        if told is None:
+            raise self._silent("silence")
+        return told
+
+    def _silent(self, got: str) -> BadInput:
+        remedy = "check the cable and the board's supply, then arm again"
+        return BadInput("telemetry", "flying board", got, "a frame each sample period", remedy)

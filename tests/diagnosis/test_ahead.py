@@ -1,0 +1,105 @@
+"""The prediction beside a rig: exact where the twin is, off where the rig has more than the twin, the same as over the whole log."""
+
+import numpy as np
+import pytest
+
+from diagnosis.ahead import EVERY_S, UNREST, Ahead, Lookahead
+from diagnosis.case import make_case
+from diagnosis.hypothesis import nothing_supposed
+from diagnosis.kit import make_kit
+from diagnosis.predict import Span, predictions
+from records.live import LiveRow
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.effects.api import with_effects
+from tests.diagnosis.conftest import Fly
+
+STEP_RAD = 1.534e-3
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0}}
+
+
+def rows_of(log: RunLog) -> list[LiveRow]:
+    return [
+        LiveRow(t_s, tuple(u), tuple(y), (0.0, 0.0))
+        for t_s, u, y in zip(log.t_s.tolist(), log.u.tolist(), log.y.tolist(), strict=True)
+    ]
+
+
+def fed(lookahead: Lookahead, rows: list[LiveRow], batch: int = 5) -> list[Ahead]:
+    return [entry for k in range(0, len(rows), batch) for entry in lookahead.take(rows[k : k + batch])]
+
+
+def errors(found: list[Ahead]) -> np.ndarray:
+    return np.array([np.subtract(entry.y, entry.predicted) for entry in found])
+
+
+@pytest.fixture(scope="module")
+def calm(fly: Fly, plant: BoundPlant) -> list[LiveRow]:
+    """A rig with the twin's own coefficients and no air."""
+    names = [str(symbol) for symbol in plant.model.parameter_symbols]
+    return rows_of(fly(3, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
+
+
+def test_a_twin_that_is_exact_leaves_what_the_encoder_leaves(plant: BoundPlant, calm: list[LiveRow]) -> None:
+    # A state estimated from readings of one step's resolution by a filter that expects some air, run on for a second of a lively
+    # flight: rms within one and a half steps, nothing beyond six times that.
+    lookahead = Lookahead(plant)
+    found = fed(lookahead, calm)
+    assert np.abs(errors(found)).max() < 9 * STEP_RAD
+    assert max(gap for gap in lookahead.gap if gap is not None) < 1.5 * STEP_RAD
+
+
+def test_it_begins_after_three_seconds_and_goes_on_twenty_times_a_second(
+    plant: BoundPlant, calm: list[LiveRow]
+) -> None:
+    times = np.array([entry.t_s for entry in fed(Lookahead(plant), calm)])
+    assert times[0] == pytest.approx(3.0, abs=0.011)
+    assert np.allclose(np.diff(times), EVERY_S)
+
+
+def test_what_the_rig_has_and_the_twin_lacks_shows_as_a_gap(plant: BoundPlant, fly: Fly) -> None:
+    # A spring of 4 mN m/rad is some ten times what the encoder leaves; the twin that states it predicts as well as an exact one does.
+    names = [str(symbol) for symbol in plant.model.parameter_symbols]
+    rows = rows_of(fly(3, SPRING, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
+    lacking, stating = Lookahead(plant), Lookahead(with_effects(plant, SPRING))
+    fed(lacking, rows)
+    fed(stating, rows)
+    assert lacking.gap[1] is not None
+    assert stating.gap[1] is not None
+    assert stating.gap[1] < 1.5 * STEP_RAD
+    assert lacking.gap[1] > 10 * stating.gap[1]
+
+
+def test_it_is_the_prediction_of_the_whole_log(plant: BoundPlant, fly: Fly) -> None:
+    # It remembers five seconds, the diagnosis the whole log: the states differ by less than an encoder step's worth.
+    log = fly(1, seconds=8.0)
+    rows = rows_of(log)
+    found = fed(Lookahead(plant), rows)
+    places = [round(entry.t_s / 0.01) for entry in found]
+    case = make_case(make_kit(plant), [log], stated=plant)
+    spans = [Span(place - 100, place, place + 1) for place in places]
+    whole = predictions(case, case.flights[0], nothing_supposed(case, UNREST), spans=spans)[places]
+    assert np.abs(whole - [entry.predicted for entry in found]).max() < 0.5 * STEP_RAD
+
+
+def test_rows_one_by_one_and_in_batches_give_the_same(plant: BoundPlant, calm: list[LiveRow]) -> None:
+    one, many = (np.array([e.predicted for e in fed(Lookahead(plant), calm[:500], batch)]) for batch in (1, 25))
+    assert one.shape == many.shape
+    assert np.abs(one - many).max() < 0.1 * STEP_RAD
+
+
+def test_after_a_leap_it_begins_anew(plant: BoundPlant, calm: list[LiveRow]) -> None:
+    lookahead = Lookahead(plant)
+    fed(lookahead, calm[:400])
+    lookahead.forget()
+    assert lookahead.gap == (None, None)
+    assert not fed(lookahead, calm[:290])
+    assert fed(lookahead, calm[290:310])
+
+
+def test_a_reading_that_is_missing_leaves_no_gap_of_its_own(plant: BoundPlant, calm: list[LiveRow]) -> None:
+    blind = [LiveRow(row.t_s, row.u, (row.y[0], float("nan")), row.reference) for row in calm[:500]]
+    lookahead = Lookahead(plant)
+    fed(lookahead, blind)
+    assert lookahead.gap[0] is not None
+    assert lookahead.gap[1] is None

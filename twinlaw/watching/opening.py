@@ -1,0 +1,107 @@
+"""From the command line's words to what is watched: a log file, an emulated board, or a board at a port."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from records.errors import BadInput
+from records.log import load_log
+from records.table import ControllerTable, load_table
+from rig.client import DEFAULT_TIMEOUT_S, BoardClient
+from rig.emulator.serial_port import EmulatedSerial
+from rig.live import LiveFlight, LoopFlight, time_of
+from rig.live_flying import EmulatedRig, FlyingFlight, RealRig
+from rig.numbers import numbers_of
+from rig.port import open_port
+from sim.bind import BoundPlant
+from sim.columns import log_columns
+from sim.manoeuvres import at_rest, flight
+from sim.stepped import SteppedPlant
+from twinlaw.stages import board_url, load_bound
+from twinlaw.watching.board import BoardSource
+from twinlaw.watching.replay import LogSource
+from twinlaw.watching.source import Source, signals
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What to watch: `port` is a port, `emulated` or a log; `rig` the plant file that is simulated, None the plant itself."""
+
+    port: str
+    plant: Path
+    table: Path
+    out: Path
+    rig: Path | None
+    arithmetic: str
+    fly: bool
+
+
+def is_log(port: str) -> bool:
+    """Whether a --port names a log: a file, or what ends as one."""
+    return Path(port).is_file() or port.endswith(".csv")
+
+
+def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
+    """The twin's plant, what is watched, and the axes that are held. Raises BadInput, and then nothing stays open."""
+    bound = load_bound(asked.plant)
+    if is_log(asked.port):
+        _demand_no_board(asked)
+        log = load_log(Path(asked.port), log_columns(bound.model))
+        told = {"title": Path(asked.port).name, "who": f"log {asked.port}, twin {asked.plant}", **signals(bound)}
+        return bound, LogSource(log, told), log.locked
+    return bound, _open_board(asked, bound), ()
+
+
+def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
+    table = load_table(asked.table)
+    if table.plant != bound.plant.name:
+        got = f"a table for {table.plant!r}"
+        raise BadInput("controller table", str(asked.table), got, f"one for {bound.plant.name!r}", "give its --plant")
+    rig = bound if asked.rig is None else _rig(asked.rig, bound)
+    manoeuvre = flight(bound, table.sample_period_s)
+    url = board_url(asked.port, asked.out / "firmware.elf")
+    port = open_port(url, timeout_s=DEFAULT_TIMEOUT_S)
+    numbers = numbers_of(table, asked.arithmetic)
+    client = BoardClient.over(port, asked.port, table_digest=table.digest, numbers=numbers)
+    try:
+        client.disarm()  # whatever an earlier host has left
+        flying = _flight(asked.fly, client, port, SteppedPlant(rig, at_rest(rig)), table)
+    except BaseException:
+        client.close()
+        raise
+    title = "emulated board" if asked.port == "emulated" else f"board at {asked.port}"
+    told = {"title": title, "who": _who(asked, client), **signals(bound)}
+    return BoardSource(flying, table, manoeuvre.reference_rad, told, client.close)
+
+
+def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: ControllerTable) -> LiveFlight:
+    if not fly:
+        return LoopFlight(client, plant, time_of(port), table.sample_period_s)
+    steps = (table.elevation.resolution_rad, table.azimuth.resolution_rad)
+    psi, phi = (round(y / step) for y, step in zip(plant.measured(), steps, strict=True))
+    rig = EmulatedRig(port, plant, steps) if isinstance(port, EmulatedSerial) else RealRig()
+    flying = FlyingFlight(client, rig, time_of(port), table.sample_period_s)
+    flying.preset(psi, phi)
+    return flying
+
+
+def _rig(path: Path, bound: BoundPlant) -> BoundPlant:
+    rig = load_bound(path)
+    if rig.model.outputs.keys() != bound.model.outputs.keys() or rig.plant.model != bound.plant.model:
+        got = f"the equations of {rig.plant.model}"
+        raise BadInput("rig", str(path), got, f"those of {bound.plant.model}", "give a plant file of the same rig")
+    return rig
+
+
+def _demand_no_board(asked: Watched) -> None:
+    if asked.fly or asked.rig is not None:
+        raise BadInput("--fly or --rig", asked.port, "a log", "a board", "leave them out, or give a board's --port")
+
+
+def _who(asked: Watched, client: BoardClient) -> str:
+    identity = client.identity
+    moves = "its own encoders" if asked.fly else f"simulated rig {asked.rig or asked.plant}"
+    return (
+        f"board {identity.unique_id}, firmware {identity.firmware_version}, {identity.arithmetic}, "
+        f"table {identity.table_digest[:16]}; {moves}; twin {asked.plant}"
+    )

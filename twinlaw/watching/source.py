@@ -1,0 +1,66 @@
+"""What can be watched: a board that flies, or a log that is replayed."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from records.live import LiveRow
+from records.units import unit_suffix
+from sim.bind import BoundPlant
+
+DEG = 57.29577951308232
+
+
+@dataclass(frozen=True)
+class Step:
+    """Rows that came, and how long to wait for the next step on the wall clock; 0 for a source that keeps its own pace."""
+
+    rows: Sequence[LiveRow]
+    wait_s: float
+
+
+class Source(Protocol):
+    """Moved by one thread alone. `anew` is set by a source whose next row does not follow the last one, and cleared by its reader."""
+
+    armed: bool
+    anew: bool
+
+    def facts(self) -> Mapping[str, Any]:
+        """What never changes, for the page."""
+        ...
+
+    def status(self) -> Mapping[str, Any]:
+        """What changes, for the page."""
+        ...
+
+    def obey(self, wish: Mapping[str, Any]) -> None:
+        """Do what a page asks for; raises BadInput for what cannot be done."""
+        ...
+
+    def step(self) -> Step:
+        """Go on by a little; raises BadInput where the board is lost."""
+        ...
+
+    def disarm(self) -> None:
+        """Nothing is armed afterwards; raises BadInput where the board does not answer."""
+        ...
+
+    def close(self) -> None:
+        """Leave ports and files as they are to be left."""
+        ...
+
+
+def signals(bound: BoundPlant) -> dict[str, Any]:
+    """Inputs and outputs as the page names them: what a person calls it, the unit shown, and its factor."""
+    model = bound.model
+    axes = {str(axis.position): axis.name for axis in model.axes}
+    outputs = [_signal(name, axes.get(str(expression), "")) for name, expression in model.outputs.items()]
+    return {"outputs": outputs, "inputs": [_signal(str(variable), "") for variable in model.inputs]}
+
+
+def _signal(name: str, axis: str) -> dict[str, Any]:
+    unit = unit_suffix(name) or ""
+    stem = name.removesuffix(f"_{unit}") if unit else name
+    shown, factor = unit.replace("rad", "deg"), DEG if unit.startswith("rad") else 1.0
+    label = f"{axis} {stem}".strip()
+    return {"name": name, "label": label, "unit": shown.replace("_", "/"), "factor": factor}
