@@ -191,7 +191,7 @@ function build() {
       { name: "reference", style: REFERENCE, t: rows.t, v: scale(rows.r[k], output.factor) },
       { name: "measured", style: MEASURED, t: rows.t, v: scale(rows.y[k], output.factor) },
       { name: "predicted 1 s before", style: PREDICTED, t: rows.at, v: scale(rows.p[k], output.factor) },
-    ],
+    ].filter((line) => line.style !== REFERENCE || facts.referenced !== false),
   }));
   for (const unit of new Set(facts.outputs.map((output) => output.unit))) charts.push({
     title: `measured minus predicted${unit ? ` [${unit}]` : ""}`,

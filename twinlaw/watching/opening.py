@@ -100,7 +100,8 @@ def _demand_no_board(asked: Watched) -> None:
 
 def _who(asked: Watched, client: BoardClient) -> str:
     identity = client.identity
-    moves = "its own encoders" if asked.fly else f"simulated rig {asked.rig or asked.plant}"
+    simulated = asked.port == "emulated" or not asked.fly
+    moves = f"simulated rig {asked.rig or asked.plant}" if simulated else "the rig on its encoders"
     return (
         f"board {identity.unique_id}, firmware {identity.firmware_version}, {identity.arithmetic}, "
         f"table {identity.table_digest[:16]}; {moves}; twin {asked.plant}"

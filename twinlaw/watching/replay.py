@@ -24,13 +24,15 @@ class LogSource:
         self.anew = False
         self._facts = facts
         self._rows = live_rows(log)
+        self._referenced = any(reference_name(output) in log.extra for output in log.columns.outputs)
         self._end_s = self._rows[-1].t_s
         self._now_s, self._next = 0.0, 0
         self._playing, self._speed = True, 1.0
 
     def facts(self) -> Mapping[str, Any]:
         """Kind and length."""
-        return {**self._facts, "kind": "log", "duration_s": self._end_s, "speeds": SPEEDS}
+        own = {"kind": "log", "duration_s": self._end_s, "speeds": SPEEDS, "referenced": self._referenced}
+        return {**self._facts, **own}
 
     def status(self) -> Mapping[str, Any]:
         """Where the replay is."""

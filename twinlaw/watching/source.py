@@ -22,8 +22,12 @@ class Step:
 class Source(Protocol):
     """Moved by one thread alone. `anew` is set by a source whose next row does not follow the last one, and cleared by its reader."""
 
-    armed: bool
     anew: bool
+
+    @property
+    def armed(self) -> bool:
+        """Whether a board obeys its law now."""
+        ...
 
     def facts(self) -> Mapping[str, Any]:
         """What never changes, for the page."""
