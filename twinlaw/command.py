@@ -3,35 +3,21 @@
 Exit status: 0 done, 1 a verification failed, 2 bad input (one line on stderr: where, what, got, expected, remedy).
 """
 
-import argparse
 import os
 import signal
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
 
 from records.errors import BadInput, VerificationFailed
 from twinlaw import console
-from twinlaw.verbs import VERBS, verb_module, verb_text
-
-DESCRIPTION = "From a plant's equations to a verified flight of a microcontroller, and back."
-EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
-
-
-class Parser(argparse.ArgumentParser):
-    """A parser that tells what is wrong with the command line in one line, as all else is told."""
-
-    def error(self, message: str) -> NoReturn:
-        """Leave with exit status 2."""
-        console.fail(f"{message}; `{self.prog} --help` names what there is")
-        sys.exit(2)
+from twinlaw.parser import build_parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        options = _parser(words[:1]).parse_args(words)
+        options = build_parser(words[:1]).parse_args(words)
         status = int(options.run(options))
         sys.stdout.flush()  # here, where a full disk can still be told
         return status
@@ -60,25 +46,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _silence_stdout() -> None:
     """What is still to be written there goes nowhere, and the interpreter leaves without complaint."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _parser(asked: Sequence[str]) -> Parser:
-    """The parser of all verbs, with the options of the one that was `asked` for."""
-    parser = Parser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
-    verbs = parser.add_subparsers(title="verbs, in the order of the work", metavar="VERB", required=True)
-    for word in VERBS:
-        text = verb_text(word)
-        sub = verbs.add_parser(
-            word,
-            help=text.splitlines()[0].replace("%", "%%"),
-            description=text,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        if word in asked:
-            verb = verb_module(word)
-            verb.add_arguments(sub)
-            sub.set_defaults(run=verb.run)
-    return parser
 
 
 if __name__ == "__main__":

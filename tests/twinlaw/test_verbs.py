@@ -8,6 +8,8 @@ import pytest
 
 from twinlaw import verbs
 from twinlaw.command import main
+from twinlaw.completion import command_tree
+from twinlaw.parser import build_parser
 from twinlaw.verbs import VERBS, verb_module, verb_text
 
 
@@ -33,3 +35,14 @@ def test_the_list_of_verbs_loads_none_of_their_tools() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_every_verb_that_tells_anything_tells_it_to_a_program_too() -> None:
+    # `completion` prints a script, and nothing beside it.
+    below = (command for verb in command_tree(build_parser(tuple(VERBS))).commands for command in verb.all)
+    mute = [
+        entry.at
+        for entry in below
+        if not entry.commands and "--json" not in {f for o in entry.options for f in o.flags}
+    ]
+    assert mute == ["completion"]

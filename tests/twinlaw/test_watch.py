@@ -47,8 +47,9 @@ class Page:
 
     def next(self, name: str, condition: Callable[[dict[str, Any]], object] = lambda content: True) -> dict[str, Any]:
         """The next event of that name for which the condition holds."""
-        told = ""
+        told, end = "", time.monotonic() + PATIENCE_S
         while True:
+            assert time.monotonic() < end, f"no {name} of the kind that was waited for"
             line = self._answer.readline().decode().rstrip("\n")
             assert line or told or self._answer.isclosed() is False
             if line.startswith("event: "):

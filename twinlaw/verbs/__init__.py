@@ -32,6 +32,7 @@ VERBS: Mapping[str, str] = {
     "blind": "blind",
     "bench": "bench",
     "doctor": "doctor",
+    "completion": "completion",
 }
 
 

@@ -4,6 +4,7 @@
 """
 
 import argparse
+import json
 from pathlib import Path
 
 from recordings.mdf4_export import mdf4_bytes
@@ -12,12 +13,14 @@ from records.files import write_atomic
 from records.log import load_log, plant_of_log
 from sim.columns import log_columns
 from sim.plants import MODELS
+from twinlaw import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """LOG.csv, --out."""
+    """LOG.csv, --out, --json."""
     parser.add_argument("log", type=Path, metavar="LOG.csv")
     parser.add_argument("--out", type=Path, metavar="NAME.mf4", help="default: LOG.mf4 beside the log")
+    options.as_json(parser)
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -31,5 +34,6 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("plant", where, repr(plant), f"one of {', '.join(MODELS)}", "name a known plant")
     log = load_log(chosen.log, log_columns(MODELS[plant]()))
     write_atomic(out, mdf4_bytes(log))
-    print(f"{out}  {len(log.t_s)} rows")
+    told = {"mf4": str(out), "rows": len(log.t_s)}
+    print(json.dumps(told) if chosen.json else f"{out}  {len(log.t_s)} rows")
     return 0

@@ -5,6 +5,7 @@ the chip must have started (docs/hardware.md). Both verify what they wrote and s
 """
 
 import argparse
+import json
 
 from records.errors import BadInput
 from rig.flash import boot_loader_command, openocd_command, run_flash
@@ -12,9 +13,10 @@ from twinlaw import console, options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --out."""
+    """--port, --out, --json."""
     parser.add_argument("--port", help="serial port of the boot loader; without it the ST-LINK is used")
     options.out(parser)
+    options.as_json(parser)
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -27,5 +29,8 @@ def run(chosen: argparse.Namespace) -> int:
     command = boot_loader_command(image, chosen.port) if chosen.port else openocd_command(image)
     with console.stage(f"writing {image}"):
         run_flash(command)
+    if chosen.json:
+        print(json.dumps({"image": str(image), "port": chosen.port, "written": True}))
+        return 0
     print(f"{image} written, verified and started; check the board with `twinlaw validate --port PORT`")
     return 0

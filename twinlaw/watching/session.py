@@ -70,10 +70,8 @@ class Session:
             self._heard[page] = self._clock()
 
     def gone(self, page: str) -> None:
-        """A page is closed; what it armed is disarmed."""
+        """A page is closed, and not heard any more: what it armed is disarmed at once."""
         self._heard.pop(page, None)
-        if self._pilot == page:
-            self._wishes.put(Wish(page, {"do": "stop"}))
 
     def stop(self) -> None:
         """End `run`."""

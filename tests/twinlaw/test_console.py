@@ -1,0 +1,54 @@
+"""Colours and progress: on a terminal that wants them, and nowhere else."""
+
+import os
+import pty
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+FAILS = [sys.executable, "-m", "twinlaw.command", "design", "--plant", "missing.toml"]
+ESCAPE = "\x1b["
+
+
+def on_a_terminal(command: list[str], **environment: str) -> str:
+    """What a command shows on a terminal of its own."""
+    master, slave = pty.openpty()
+    given = {"PATH": os.environ["PATH"], "PYTHONPATH": str(ROOT), "TERM": "xterm", **environment}
+    process = subprocess.Popen(command, stdin=slave, stdout=slave, stderr=slave, env=given, cwd=ROOT)
+    os.close(slave)
+    shown = b""
+    try:
+        while data := os.read(master, 4096):
+            shown += data
+    except OSError:
+        pass  # the terminal has no writer any more
+    os.close(master)
+    assert process.wait() == 2
+    return shown.decode()
+
+
+@pytest.mark.parametrize(
+    ("environment", "coloured"),
+    [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
+)
+def test_an_error_is_red_where_the_terminal_wants_it(environment: dict[str, str], coloured: bool) -> None:
+    shown = on_a_terminal(FAILS, **environment)
+    assert "missing.toml" in shown
+    assert (ESCAPE in shown) is coloured
+
+
+def test_a_pipe_gets_neither_colours_nor_progress() -> None:
+    done = subprocess.run(FAILS, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert ESCAPE not in done.stdout + done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_only_one_place_knows_colours() -> None:
+    # So that no verb can forget NO_COLOR: the escape is written in twinlaw/console.py alone.
+    escape = re.compile(r"\\x1b|\\033|\\e\[|\\u001b")
+    found = [path for path in (ROOT / "twinlaw").rglob("*.py") if escape.search(path.read_text("utf-8"))]
+    assert [path.name for path in found] == ["console.py"]
