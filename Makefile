@@ -6,7 +6,7 @@ PLANT ?= plants/ce150.toml
 OUT ?= build
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: help run test soak check lint types layers bench clean
+.PHONY: help run test docs soak check lint types layers bench clean
 
 help:  ## this list
 	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -16,6 +16,9 @@ run: $(VENV)/.run  ## design, generate, verify and fly PLANT (plants/ce150.toml)
 
 test: $(VENV)/.test  ## the whole test suite, style and types included
 	$(BIN)/python -m pytest
+
+docs: $(VENV)/.docs  ## the documentation as a site that needs no network, build/site/index.html
+	$(BIN)/mkdocs build --quiet
 
 soak: $(VENV)/.test  ## faults at full length: every byte, every bit of the state, 100 seeds, a million frames
 	TWINLAW_SOAK=1 $(BIN)/python -m pytest tests/rig/test_hostile_*.py tests/firmware/test_faults_*.py
@@ -46,4 +49,8 @@ $(VENV)/.run: pyproject.toml
 
 $(VENV)/.test: $(VENV)/.run
 	$(PIP) --editable '.[test]'
+	touch $@
+
+$(VENV)/.docs: $(VENV)/.run
+	$(PIP) --editable '.[docs]'
 	touch $@

@@ -1,0 +1,42 @@
+"""What the site has beside the pages of this folder: README.md as its first page, and a reference made from the sources."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File, Files
+
+from twinlaw.parser import build_parser
+from twinlaw.verbs import VERBS
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add the pages that are made."""
+    pages = {"index.md": first_page(), "reference/verbs.md": verbs_page()}
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["root_packages"]
+    pages |= {f"reference/{name}.md": f"# {name}\n\n::: {name}\n" for name in packages if name != "twinlaw"}
+    for path, text in pages.items():
+        files.append(File.generated(config, path, content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
+    """A link to a file of the checkout that is no page of the site becomes its name."""
+    return re.sub(r"\[([^\]]+)\]\(\.\./([^)]+)\)", r"\1 (`\2`)", markdown)
+
+
+def first_page() -> str:
+    """README.md, whose links go from the top of the checkout."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    return re.sub(r"\[([^\]]+)\]\(((?:rig|plants)/[^)]+)\)", r"`\2`", text)
+
+
+def verbs_page() -> str:
+    """What every verb says of itself with --help."""
+    parser = build_parser(tuple(VERBS))
+    verbs = next(action.choices for action in parser._actions if isinstance(action.choices, dict))
+    parts = [f"## {word}\n\n```text\n{verbs[word].format_help().rstrip()}\n```\n" for word in VERBS]
+    return "\n".join(["# The verbs\n", "`twinlaw VERB --help`, verb by verb.\n", *parts])
