@@ -37,6 +37,7 @@ __attribute__((section(".vectors"), used)) static const vector_table VECTORS = {
 
 void Reset_Handler(void)
 {
+    SCB_VTOR = (uint32_t)&VECTORS; /* the serial boot loader, if it was first, has its own in use */
     const uint32_t *from = &_data_load;
     for (uint32_t *to = &_data_start; to < &_data_end; to++) {
         *to = *from++;

@@ -41,10 +41,13 @@ _Static_assert(offsetof(rcc_registers, CSR) == 0x60, "RCC layout");
 
 #define RCC_CR_HSION BIT(8)
 #define RCC_CR_HSIRDY BIT(10)
+#define RCC_CR_HSIDIV_MASK (7u << 11)
 #define RCC_CR_PLLON BIT(24)
 #define RCC_CR_PLLRDY BIT(25)
+#define RCC_CFGR_SW_HSISYS 0u
 #define RCC_CFGR_SW_PLLRCLK 2u
 #define RCC_CFGR_SWS_MASK (7u << 3)
+#define RCC_CFGR_SWS_HSISYS (0u << 3)
 #define RCC_CFGR_SWS_PLLRCLK (2u << 3)
 #define RCC_PLLCFGR_PLLSRC_HSI16 2u
 #define RCC_PLLCFGR_PLLM_1 (0u << 4)
@@ -186,6 +189,9 @@ typedef struct {
 
 /* Unique device number, RM0444 38.1. */
 #define UNIQUE_ID ((const volatile uint32_t *)0x1fff7590u)
+
+/* Where the vectors stand, PM0223 4.3.4. */
+#define SCB_VTOR (*(volatile uint32_t *)0xe000ed08u)
 
 /* System timer, PM0223 4.4; interrupt controller, PM0223 4.2. */
 typedef struct {

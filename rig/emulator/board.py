@@ -12,7 +12,7 @@ from records.errors import BadInput
 from rig.emulator import calls
 from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm, ReceivedByte, Reset, no_memory
 from rig.emulator.coverage import LineCounts, lines_executed
-from rig.emulator.image import FLASH_BYTES, SRAM_BYTES, Image
+from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SMALLEST_BYTES, SRAM_BYTES, Image, as_image
 from rig.emulator.native import library
 from rig.emulator.stops import Stop, StopKind
 
@@ -30,15 +30,15 @@ class EmulatedBoard:
     Limits: GPIO A-C, TIM1/2/3/6/7, USART2 (8N1, no FIFO), IWDG, RCC, SysTick, NVIC; any other register stops the run.
     """
 
-    def __init__(self, elf: bytes | Path, config: BoardConfig | None = None) -> None:
+    def __init__(self, elf: bytes | Path | Image, config: BoardConfig | None = None) -> None:
         self.config = config or BoardConfig()
         self._ffi, self._lib = library()
         self._finalizer: Callable[[], object] = lambda: None
         self.load(elf)
 
-    def load(self, elf: bytes | Path) -> None:
+    def load(self, elf: bytes | Path | Image) -> None:
         """Put another image into flash and power the board up afresh; raises BadInput for what is no image."""
-        self.image = Image(elf, "image in memory") if isinstance(elf, bytes) else Image.from_file(elf)
+        self.image = as_image(elf)
         config = self.config
         self._finalizer()
         machine = self._lib.emulator_create(self.image.flash, FLASH_BYTES, list(config.unique_id))
@@ -66,6 +66,13 @@ class EmulatedBoard:
     def reset(self) -> None:
         """Pull the reset pin; RAM keeps its content."""
         self._lib.emulator_reset(self._machine, RESET_CODES["pin"])
+
+    def start_from_boot_loader(self, address: int) -> None:
+        """Reset, and start the program whose vectors stand at `address` as the boot loader's GO does; raises BadInput outside flash."""
+        if address % 256 or not FLASH_BASE <= address < FLASH_BASE + FLASH_BYTES:
+            raise no_memory(address, SMALLEST_BYTES)
+        self.reset()
+        self._lib.emulator_boot_loader_leaves(self._machine, address - FLASH_BASE)
 
     # --- time ---
 

@@ -11,6 +11,7 @@
 
 uint8_t *bus_memory(machine *m, uint32_t address, uint32_t size) {
     if (address - SRAM_BASE < SRAM_BYTES) return size <= SRAM_BYTES - (address - SRAM_BASE) ? m->sram + (address - SRAM_BASE) : NULL;
+    if (address < FLASH_BASE && m->device.system_memory_at_0) return NULL;
     uint32_t offset = address >= FLASH_BASE ? address - FLASH_BASE : address; /* flash is seen at 0 too */
     return offset < FLASH_BYTES && size <= FLASH_BYTES - offset ? m->flash + offset : NULL;
 }

@@ -35,7 +35,7 @@ bool code_create(machine *m) {
 void code_destroy(machine *m) { free(m->code); }
 
 op *code_at(machine *m, uint32_t address) {
-    for (uint32_t i = 0; i < REGION_COUNT; i++) {
+    for (uint32_t i = m->device.system_memory_at_0 ? FLASH : ALIAS; i < REGION_COUNT; i++) {
         uint32_t offset = address - REGIONS[i].base;
         if (offset < REGIONS[i].bytes) return region_code(m, i) + offset / 2;
     }

@@ -59,6 +59,7 @@ typedef struct {
     usart_state usart;
     iwdg_state iwdg;
     host_side host;
+    bool system_memory_at_0; /* as the boot loader leaves it; else flash is seen there (SYSCFG_CFGR1.MEM_MODE) */
     uint32_t reset_request; /* a reset_cause, done between two instructions */
 } device_state;
 

@@ -51,6 +51,11 @@ void emulator_reset(machine *m, uint32_t cause) {
     machine_reset(m, cause);
 }
 
+void emulator_boot_loader_leaves(machine *m, uint32_t flash_offset) {
+    m->stop = (stop_record){0};
+    boot_loader_leaves(m, flash_offset);
+}
+
 /* Execute the one instruction under a host break, so that the run can go on behind it. */
 static void step_over_break(machine *m) {
     handler real = decode(m, m->core.ip);
@@ -121,7 +126,7 @@ void emulator_break(machine *m, uint32_t address, uint32_t set) {
 
 void emulator_execution_counts(machine *m, uint64_t *flash, uint64_t *sram) {
     const op *alias = code_at(m, 0), *own = code_at(m, FLASH_BASE), *ram = code_at(m, SRAM_BASE);
-    for (uint32_t i = 0; i < FLASH_BYTES / 2; i++) flash[i] = alias[i].count + own[i].count;
+    for (uint32_t i = 0; i < FLASH_BYTES / 2; i++) flash[i] = (alias ? alias[i].count : 0) + own[i].count;
     for (uint32_t i = 0; i < SRAM_BYTES / 2; i++) sram[i] = ram[i].count;
 }
 

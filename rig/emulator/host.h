@@ -21,6 +21,7 @@ void emulator_destroy(machine *m);
 void emulator_configure(machine *m, uint32_t stop_on_fault, uint32_t stop_on_reset, uint32_t stack_limit, uint64_t host_bit_ps);
 void emulator_set_host_bit(machine *m, uint64_t bit_ps);
 void emulator_reset(machine *m, uint32_t cause);
+void emulator_boot_loader_leaves(machine *m, uint32_t flash_offset);
 void emulator_run(machine *m, uint64_t limit_cycle, uint64_t limit_ps, uint64_t host_bytes);
 void emulator_status(machine *m, machine_status *out);
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from elftools.common.exceptions import ELFError
+from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
 from records.errors import BadInput
@@ -46,12 +47,20 @@ class Image:
 
     def __init__(self, elf: bytes, where: str) -> None:
         self.where = where
-        self._elf = open_elf(elf, where)
+        self._elf: ELFFile | None = open_elf(elf, where)
         try:
-            self.flash = self._flash_content()
+            self.flash = _flash_content(self._elf, where)
             self._table = self._elf.get_section_by_name(".symtab")
         except ELFError as error:
             raise _not_an_image(where, f"a damaged file ({error})") from error
+
+    @classmethod
+    def from_flash(cls, content: bytes, where: str) -> "Image":
+        """What a programmer has left in the flash: content without names, lines or sections."""
+        image = cls.__new__(cls)
+        image.where, image._elf, image._table = where, None, None
+        image.flash = content.ljust(FLASH_BYTES, b"\xff")
+        return image
 
     @classmethod
     def from_file(cls, path: Path) -> "Image":
@@ -60,21 +69,6 @@ class Image:
             return cls(path.read_bytes(), str(path))
         except OSError as error:
             raise _not_an_image(str(path), error.strerror or str(error)) from error
-
-    def _flash_content(self) -> bytes:
-        content = bytearray(b"\xff" * FLASH_BYTES)
-        loaded = 0
-        for segment in self._elf.iter_segments("PT_LOAD"):
-            start, data = segment["p_paddr"] - FLASH_BASE, segment.data()
-            if len(data) != segment["p_filesz"]:
-                raise _not_an_image(self.where, "a truncated file")
-            if not data or not 0 <= start <= FLASH_BYTES - len(data):
-                continue
-            content[start : start + len(data)] = data
-            loaded += len(data)
-        if loaded < SMALLEST_BYTES:
-            raise _not_an_image(self.where, "no content in flash")
-        return bytes(content)
 
     @cached_property
     def symbols(self) -> dict[str, Symbol]:
@@ -98,7 +92,7 @@ class Image:
         """First address behind everything the image places in RAM."""
         ends = [
             s["sh_addr"] + s["sh_size"]
-            for s in self._elf.iter_sections()
+            for s in (self._elf.iter_sections() if self._elf else ())
             if s["sh_flags"] & 2 and s["sh_addr"] >= SRAM_BASE
         ]
         return max([SRAM_BASE, *ends])
@@ -122,7 +116,7 @@ class Image:
         return f"0x{address:08x}{inside}" + (f" at {row.file}:{row.line}" if row and function else "")
 
     def _line_rows(self) -> Iterator[SourceLine]:
-        if not self._elf.has_dwarf_info():
+        if self._elf is None or not self._elf.has_dwarf_info():
             return
         dwarf = self._elf.get_dwarf_info()
         for unit in dwarf.iter_CUs():
@@ -138,6 +132,29 @@ class Image:
                 number = state.file - first
                 name = files[number] if 0 <= number < len(files) else "?"
                 yield SourceLine(state.address, name, 0 if state.end_sequence else state.line)
+
+
+def as_image(source: "bytes | Path | Image") -> Image:
+    """The image in these bytes, in this file, or itself; raises BadInput for what is no image."""
+    if isinstance(source, Image):
+        return source
+    return Image(source, "image in memory") if isinstance(source, bytes) else Image.from_file(source)
+
+
+def _flash_content(elf: ELFFile, where: str) -> bytes:
+    content = bytearray(b"\xff" * FLASH_BYTES)
+    loaded = 0
+    for segment in elf.iter_segments("PT_LOAD"):
+        start, data = segment["p_paddr"] - FLASH_BASE, segment.data()
+        if len(data) != segment["p_filesz"]:
+            raise _not_an_image(where, "a truncated file")
+        if not data or not 0 <= start <= FLASH_BYTES - len(data):
+            continue
+        content[start : start + len(data)] = data
+        loaded += len(data)
+    if loaded < SMALLEST_BYTES:
+        raise _not_an_image(where, "no content in flash")
+    return bytes(content)
 
 
 def _named(table: SymbolTableSection) -> Iterator[Symbol]:

@@ -59,6 +59,9 @@ void usart_received(machine *m);
 void host_received(machine *m);
 void iwdg_bite(machine *m);
 
+/* The PLL as this PLLCFGR sets it becomes the system clock. */
+void rcc_run_from_pll(machine *m, uint32_t pllcfgr);
+
 /* The core clock has changed: what was planned in seconds lies at another cycle now. */
 void clock_changed(machine *m);
 void usart_reschedule(machine *m);

@@ -8,6 +8,9 @@ enum { HSION = 1 << 8, HSIRDY = 1 << 10, HSEON = 1 << 16, HSERDY = 1 << 17, PLLO
 enum { LSION = 1, LSIRDY = 2, RMVF = 1 << 23 };
 enum { FROM_HSI = 0, FROM_PLL = 2, FROM_LSI = 3 };
 
+/* Of a PLL that runs, only the outputs can be switched (RM0444 5.4.4): P, Q and R. */
+#define PLL_OUTPUTS (1u << 16 | 1u << 24 | 1u << 28)
+
 #define HSI_HZ 16000000ull
 #define LSI_HZ 32000ull
 
@@ -67,6 +70,13 @@ static bool set_clock(machine *m) {
     return true;
 }
 
+void rcc_run_from_pll(machine *m, uint32_t pllcfgr) {
+    m->device.rcc.reg[PLLCFGR] = pllcfgr;
+    m->device.rcc.reg[CR] |= PLLON | PLLRDY;
+    m->device.rcc.reg[CFGR] = FROM_PLL << 3 | FROM_PLL;
+    set_clock(m);
+}
+
 bool rcc_read(machine *m, uint32_t index, uint32_t offset, uint32_t *value) {
     (void)index;
     *value = m->device.rcc.reg[offset / 4];
@@ -79,6 +89,15 @@ static uint32_t with_ready_flags(uint32_t cr) {
     return cr | (cr & HSION ? HSIRDY : 0) | (cr & PLLON ? PLLRDY : 0);
 }
 
+/* An oscillator that the system clock comes from cannot be switched off (RM0444 5.4.1). */
+static uint32_t kept_running(const rcc_state *rcc) {
+    switch (rcc->reg[CFGR] & 7u) {
+    case FROM_HSI: return HSION;
+    case FROM_PLL: return HSION | PLLON;
+    default: return 0;
+    }
+}
+
 bool rcc_write(machine *m, uint32_t index, uint32_t offset, uint32_t value) {
     (void)index;
     rcc_state *rcc = &m->device.rcc;
@@ -86,9 +105,9 @@ bool rcc_write(machine *m, uint32_t index, uint32_t offset, uint32_t value) {
     bool peripheral_reset = offset / 4 >= IOPRSTR && offset / 4 <= APBRSTR2 && value != 0;
     if (peripheral_reset) return false; /* not modelled */
     switch (offset / 4) {
-    case CR: *reg = with_ready_flags(value); return set_clock(m);
+    case CR: *reg = with_ready_flags(value | (*reg & kept_running(rcc))); return set_clock(m);
     case CFGR: *reg = (value & ~0x38u) | (value & 7u) << 3; return set_clock(m); /* SWS follows SW */
-    case PLLCFGR: *reg = value; return set_clock(m);
+    case PLLCFGR: *reg = rcc->reg[CR] & PLLON ? (*reg & ~PLL_OUTPUTS) | (value & PLL_OUTPUTS) : value; return set_clock(m);
     case CSR:
         *reg = (*reg & 0xFF000000u) | (value & LSION ? LSION | LSIRDY : 0);
         if (value & RMVF) *reg &= 0x00FFFFFFu;

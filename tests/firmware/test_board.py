@@ -6,6 +6,7 @@ from codegen.law import generate_law
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
+from rig.emulator.image import FLASH_BASE
 from rig.image import build_firmware
 from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
 from tests.firmware.desk import MODES, STATES, Desk
@@ -40,6 +41,22 @@ def test_it_comes_up_at_64_MHz_with_every_output_off(desk):
     assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks, pwm.period_ticks) == (False, 0, 0, 3200)
     assert [desk.board.gpio("B").drives(pin) for pin in (0, 1)] == [False, False]
     assert [desk.board.gpio("A").mode >> 2 * pin & 3 for pin in (0, 1, 2, 3, 6, 7, 8, 9)] == [2] * 8
+
+
+def test_it_starts_from_the_serial_boot_loader_as_from_a_reset(desk):
+    # The loader leaves its own vectors, system memory at address 0 and a clock of 24 MHz from the PLL.
+    desk.board.start_from_boot_loader(FLASH_BASE)
+    assert desk.board.clock_hz == 24_000_000
+    desk.start()
+    assert desk.board.clock_hz == 64_000_000
+    desk.sequence = 0
+    desk.ask("IDENTIFY")
+    first = desk.ask("GET_COUNTERS").number("device_time_us")
+    desk.run(1.0)
+    assert desk.ask("GET_COUNTERS").number("device_time_us") - first == pytest.approx(1.003e6, abs=20)
+    desk.arm("FLYING")
+    desk.run(3 * TICK_S)
+    assert desk.board.pwm().enabled
 
 
 def test_it_tells_who_it_is(desk):

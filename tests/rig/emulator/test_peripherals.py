@@ -41,6 +41,27 @@ def test_64_mhz_without_flash_wait_states_is_refused() -> None:
     assert "64000000" in stop.message
 
 
+def test_a_pll_that_runs_cannot_be_set_and_one_in_use_cannot_be_stopped() -> None:
+    source = """
+    volatile uint32_t running, after, setting;
+    void Reset_Handler(void) {
+        clock_64_mhz();
+        REG(0x4002100C) = 2u | 16u << 8 | 1u << 28 | 7u << 29;
+        REG(0x40021000) &= ~(1u << 24);
+        running = REG(0x40021000) >> 24 & 3u;
+        setting = REG(0x4002100C);
+        REG(0x40021008) = 0;
+        REG(0x40021000) &= ~(1u << 24);
+        after = REG(0x40021000) >> 24 & 3u;
+        STOP();
+    }
+    VECTORS(0);
+    """
+    board = stopped("pll", source)
+    assert word(board, "setting") == 2 | 8 << 8 | 1 << 28 | 1 << 29
+    assert (word(board, "running"), word(board, "after"), board.clock_hz) == (3, 0, 16_000_000)
+
+
 def test_prescalers_divide_core_and_timer_clock() -> None:
     source = """
     volatile uint32_t first, second;
