@@ -51,9 +51,7 @@ class BoardClient:
         """As `connect`, over a port that is open; it is closed again when the board is refused."""
         line = Line(port, where, FrameReceiver(PROTOCOL))
         try:
-            line.restart()
-            identity = replies.identity(line.request("IDENTIFY", {}, "IDENTITY"))
-            line.backlog.clear()  # replies to an earlier host, whose numbers would be taken for ours
+            identity = _introduced(line)
             check_identity(identity, where, table_digest, numbers.name)
         except BaseException:
             port.close()
@@ -132,6 +130,22 @@ class BoardClient:
         if frame.message.name == "RESULT":
             check_result(frame, name, self._line.where)
         return frame
+
+
+def asked_identity(url: str, *, timeout_s: float = DEFAULT_TIMEOUT_S) -> Identity:
+    """Who the board at `url` is, whatever its table and arithmetic; raises BadInput when the port is not there or silent."""
+    port = open_port(url, timeout_s=timeout_s)
+    try:
+        return _introduced(Line(port, url, FrameReceiver(PROTOCOL)))
+    finally:
+        port.close()
+
+
+def _introduced(line: Line) -> Identity:
+    line.restart()
+    identity = replies.identity(line.request("IDENTIFY", {}, "IDENTITY"))
+    line.backlog.clear()  # replies to an earlier host, whose numbers would be taken for ours
+    return identity
 
 
 def check_identity(identity: Identity, where: str, table_digest: str | None, arithmetic: str) -> None:

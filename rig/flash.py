@@ -1,14 +1,22 @@
 """Programming a board: OpenOCD through the ST-LINK, or stm32flash through the chip's serial boot loader (AN3155)."""
 
+import re
 import shutil
+import struct
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from records.errors import BadInput
+from records.errors import BadInput, VerificationFailed
 
-FLASH_START = 0x08000000
-_LAST_LINES = 3
+FLASH_START, FLASH_BYTES = 0x08000000, 0x20000
+RAM_START, RAM_BYTES = 0x20000000, 0x9000
+CHIP_IDS = {0x460: "STM32G071"}  # RM0444 40.10.1, the same for the STM32G081
+_PSEUDO_TERMINALS = "/dev/pts/"
+_STARTED = f"Starting execution at address 0x{FLASH_START:08x}... done"
+_COMPLAINT = re.compile(r"error|fail|nack|can't|cannot|unknown|unsupported|timeout", re.IGNORECASE)
+_MOST_LINES = 3
+_FLASH_AGAIN = "the chip may hold a part of the image: leave the motors without supply and flash again"
 
 
 def openocd_command(elf: Path, *, board: str = "board/st_nucleo_g0.cfg") -> list[str]:
@@ -16,16 +24,91 @@ def openocd_command(elf: Path, *, board: str = "board/st_nucleo_g0.cfg") -> list
     return ["openocd", "-f", board, "-c", f"program {{{elf}}} verify reset exit"]
 
 
-def boot_loader_command(binary: Path, port: str, *, line_mode: str = "8e1") -> list[str]:
-    """Write, verify and start `binary` through the serial boot loader; the chip's line is 8e1, a pty's 8n1."""
-    return ["stm32flash", "-m", line_mode, "-w", str(binary), "-v", "-g", f"0x{FLASH_START:08x}", port]
+def identify_command(port: str) -> list[str]:
+    """Ask the boot loader which chip it is in."""
+    return ["stm32flash", "-m", line_mode(port), port]
 
 
-def run_flash(command: Sequence[str]) -> str:
-    """Run a programming command and return what it said.
+def boot_loader_command(binary: Path, port: str) -> list[str]:
+    """Write, verify and start `binary` through the serial boot loader."""
+    return ["stm32flash", "-m", line_mode(port), "-w", str(binary), "-v", "-g", f"0x{FLASH_START:08x}", port]
 
-    Raises BadInput when the tool is not installed, or fails: its own last lines are in the message.
+
+def line_mode(port: str) -> str:
+    """The boot loader's line has even parity (AN3155, section 2); a pseudo-terminal carries none, and refuses to be asked for it."""
+    return "8n1" if str(Path(port).resolve()).startswith(_PSEUDO_TERMINALS) else "8e1"
+
+
+def flash_through_st_link(elf: Path) -> None:
+    """Program, verify and start through an ST-LINK.
+
+    Raises BadInput when the tool or the ST-LINK is not there, VerificationFailed when programming had begun and failed.
     """
+    command = openocd_command(elf)
+    done = _run(command)
+    if done.returncode == 0:
+        return
+    if "** Programming Started **" in done.stdout + done.stderr:
+        raise _not_programmed(command[0], done)
+    raise _refused(
+        command[0],
+        done,
+        "an ST-LINK with a board behind it",
+        "check the cable and the board's supply; docs/hardware.md",
+    )
+
+
+def flash_through_boot_loader(binary: Path, port: str) -> None:
+    """Ask which chip answers, then write, verify and start.
+
+    Raises BadInput when the tool or the boot loader is not there or the chip is another one, before anything is erased;
+    VerificationFailed when writing had begun and failed.
+    """
+    _demand_image(binary)
+    asked = _run(identify_command(port))
+    if asked.returncode != 0:
+        raise _refused(
+            port,
+            asked,
+            "the chip's boot loader to answer",
+            "how the chip starts its boot loader is in docs/hardware.md",
+        )
+    chip_id = re.search(r"Device ID\s*:\s*0x([0-9a-fA-F]+)", asked.stdout)
+    if chip_id is None or int(chip_id[1], 16) not in CHIP_IDS:
+        raise BadInput(
+            what="chip",
+            where=port,
+            got=f"device id 0x{chip_id[1]}" if chip_id else "no device id",
+            expected=" or ".join(f"0x{code:04x} ({name})" for code, name in CHIP_IDS.items()),
+            remedy="nothing was written; give the port of the right board as --port",
+        )
+    written = _run(boot_loader_command(binary, port))
+    if written.returncode != 0:
+        raise _not_programmed(port, written)
+    if _STARTED not in written.stdout:  # of a refused start the tool tells, but does not fail
+        got, expected = _complaint(written), "the image started"
+        raise VerificationFailed(
+            f"{port}: start: got {got}, expected {expected}; it is written and verified: reset the board by hand"
+        )
+
+
+def _demand_image(binary: Path) -> None:
+    """Raise BadInput for what this chip could not start: the vectors of a Cortex-M stand first, within its memories."""
+    content = binary.read_bytes()
+    stack, start = struct.unpack("<II", content[:8].ljust(8, b"\xff"))
+    fits = len(content) <= FLASH_BYTES and RAM_START < stack <= RAM_START + RAM_BYTES
+    if not (fits and start & 1 and FLASH_START <= start < FLASH_START + len(content)):
+        raise BadInput(
+            what="firmware image",
+            where=str(binary),
+            got=f"{len(content)} bytes that begin with {content[:8].hex(' ') or 'nothing'}",
+            expected=f"an image of {FLASH_BYTES} bytes at most that begins with its stack and its start",
+            remedy="build it with `twinlaw build` or `twinlaw run`",
+        )
+
+
+def _run(command: Sequence[str]) -> subprocess.CompletedProcess[str]:
+    """Run a programming command; raises BadInput when the tool is not installed."""
     tool = command[0]
     if shutil.which(tool) is None:
         raise BadInput(
@@ -35,15 +118,22 @@ def run_flash(command: Sequence[str]) -> str:
             expected=f"{tool} in the search path",
             remedy=f"install it (Debian: apt install {tool}), or use the other way to flash",
         )
-    done = subprocess.run(list(command), capture_output=True, text=True, check=False)
-    said = (done.stdout + done.stderr).strip()
-    if done.returncode != 0:
-        last = "; ".join(line.strip() for line in said.splitlines()[-_LAST_LINES:])
-        raise BadInput(
-            what="programming",
-            where=" ".join(command),
-            got=last or f"exit status {done.returncode}",
-            expected="the image written and verified",
-            remedy="check cable and supply; how the chip starts its serial boot loader is in docs/hardware.md",
-        )
-    return said
+    return subprocess.run(list(command), capture_output=True, text=True, errors="replace", check=False)
+
+
+def _refused(where: str, done: subprocess.CompletedProcess[str], expected: str, remedy: str) -> BadInput:
+    return BadInput("programming", where, _complaint(done), expected, f"nothing was written; {remedy}")
+
+
+def _not_programmed(where: str, done: subprocess.CompletedProcess[str]) -> VerificationFailed:
+    got = _complaint(done)
+    return VerificationFailed(
+        f"{where}: programming: got {got}, expected the image written, verified and started; {_FLASH_AGAIN}"
+    )
+
+
+def _complaint(done: subprocess.CompletedProcess[str]) -> str:
+    """What the tool itself gives as its reason: its last lines that complain, else its last line."""
+    lines = [line.strip(" *") for line in (done.stdout + "\n" + done.stderr).splitlines() if line.strip()]
+    complaints = [line for line in lines if _COMPLAINT.search(line)]
+    return "; ".join((complaints or lines)[-_MOST_LINES:]) or f"exit status {done.returncode}"

@@ -4,48 +4,40 @@ POSIX only. The terminal's own speed setting is the host's speed: a client that 
 """
 
 import contextlib
-import os
-import select
-import termios
 import threading
 import time
-import tty
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
+from typing import Self
 
+from records.errors import BadInput
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
+from rig.emulator.boot_loader import BootLoader, LoaderFaults
+from rig.emulator.image import Image
+from rig.emulator.native import library
 from rig.emulator.stops import Stop
+from rig.emulator.terminal import Terminal
 
 SLICE_S = 0.001  # how long the board may lag behind the wall clock
 LONGEST_LEAP_S = 0.05  # after a pause of the computer the board goes on from where it was
-SPEEDS = {getattr(termios, name): int(name[1:]) for name in dir(termios) if name[0] == "B" and name[1:].isdigit()}
-SPEED_CODES = {baud: code for code, baud in SPEEDS.items()}
-OUTPUT_SPEED = 5  # index into what tcgetattr gives
 
 
-class PtyBoard:
-    """A running board; `path` is the device to open. Use it as a context manager.
+class _PtyChip:
+    """A chip that runs in a thread of its own; `path` is the device to open. Use it as a context manager."""
 
-    `stop` tells why the board stopped, None while it runs. The board itself belongs to the pacing thread until `close`.
-    """
-
-    def __init__(
-        self, elf: bytes | Path, config: BoardConfig | None = None, clock: Callable[[], float] = time.monotonic
-    ) -> None:
-        self.board = EmulatedBoard(elf, config)
+    def __init__(self, speed_baud: int, clock: Callable[[], float]) -> None:
         self.stop: Stop | None = None
         self._clock = clock
-        self._master, self._slave = os.openpty()
-        os.set_blocking(self._master, False)
-        self._prepare_terminal()
-        self.path = os.ttyname(self._slave)
+        self._terminal = Terminal(speed_baud)
+        self._speed_baud: int | None = speed_baud
+        self.path = self._terminal.path
         self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._pace, name="emulated board", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="emulated board", daemon=True)
         self._thread.start()
 
-    def __enter__(self) -> "PtyBoard":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -54,48 +46,74 @@ class PtyBoard:
         self.close()
 
     def close(self) -> None:
-        """Switch the board off and remove the device."""
+        """Switch the chip off and remove the device."""
         self._closing.set()
         self._thread.join()
-        os.close(self._master)
-        os.close(self._slave)
+        self._terminal.close()
 
-    def _prepare_terminal(self) -> None:
-        tty.setraw(self._slave)
-        settings = termios.tcgetattr(self._slave)
-        settings[4] = settings[5] = SPEED_CODES.get(self.board.config.host_baud, termios.B115200)
-        termios.tcsetattr(self._slave, termios.TCSANOW, settings)
-        self._speed = settings[OUTPUT_SPEED]
+    def _run(self) -> None:
+        raise NotImplementedError
 
-    def _pace(self) -> None:
-        origin_s = self._clock() - self.board.time_s
+    def _pace(self, board: EmulatedBoard) -> None:
+        """Let the board keep up with the wall clock until it stops or is switched off."""
+        origin_s = self._clock() - board.time_s
         while not self._closing.is_set() and self.stop is None:
-            self._take_from_host()
+            self._take_from_host(board)
             target_s = self._clock() - origin_s
-            leap_s = target_s - self.board.time_s - LONGEST_LEAP_S
+            leap_s = target_s - board.time_s - LONGEST_LEAP_S
             origin_s += max(0.0, leap_s)
-            self._run_to(target_s - max(0.0, leap_s))
+            self._run_to(board, target_s - max(0.0, leap_s))
 
-    def _take_from_host(self) -> None:
-        ready, _, _ = select.select([self._master], [], [], SLICE_S)
-        self._follow_speed()
-        if ready:
-            self.board.uart_write(os.read(self._master, 4096))
+    def _take_from_host(self, board: EmulatedBoard) -> None:
+        data = self._terminal.read(SLICE_S)
+        speed_baud = self._terminal.speed_baud
+        if speed_baud and speed_baud != self._speed_baud:
+            self._speed_baud = speed_baud
+            board.set_host_baud(speed_baud)
+        if data:
+            board.uart_write(data)
 
-    def _follow_speed(self) -> None:
-        speed = termios.tcgetattr(self._slave)[OUTPUT_SPEED]
-        if speed != self._speed and SPEEDS.get(speed):
-            self._speed = speed
-            self.board.set_host_baud(SPEEDS[speed])
-
-    def _run_to(self, t_s: float) -> None:
-        stop = self.board.run_until_s(t_s)
-        self._give_to_host(self.board.uart_read())
+    def _run_to(self, board: EmulatedBoard, t_s: float) -> None:
+        stop = board.run_until_s(t_s)
+        self._terminal.write(board.uart_read())
         if stop.is_fault:
             self.stop = stop
 
-    def _give_to_host(self, answer: bytes) -> None:
-        """As with a real port, what nobody reads is lost when the buffer is full."""
-        with contextlib.suppress(BlockingIOError):
-            while answer:
-                answer = answer[os.write(self._master, answer) :]
+
+class PtyBoard(_PtyChip):
+    """A running board. `stop` tells why it stopped, None while it runs. The board belongs to its thread until `close`."""
+
+    def __init__(
+        self,
+        elf: bytes | Path | Image,
+        config: BoardConfig | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.board = EmulatedBoard(elf, config)
+        super().__init__(self.board.config.host_baud, clock)
+
+    def _run(self) -> None:
+        self._pace(self.board)
+
+
+class PtyBootLoader(_PtyChip):
+    """A chip in its serial boot loader; sent to the start of a program in flash, it runs that, on the same line.
+
+    `loader` holds the flash; what the host makes of the line's speed, the loader follows as its 0x7F lets it.
+    """
+
+    def __init__(
+        self, faults: LoaderFaults | None = None, flash: bytes = b"", clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        library()  # compiled before the line is open: a program that has been started is to answer at once
+        self.loader = BootLoader(faults, flash)
+        super().__init__(BoardConfig().host_baud, clock)
+
+    def _run(self) -> None:
+        while not self._closing.is_set() and self.loader.go_address is None:
+            self._terminal.write(self.loader.take(self._terminal.read(SLICE_S)))
+        if self.loader.go_address is not None:
+            board = EmulatedBoard(Image.from_flash(bytes(self.loader.flash), "flash"))
+            with contextlib.suppress(BadInput):  # a program in RAM is not emulated: the line is silent
+                board.start_from_boot_loader(self.loader.go_address)
+                self._pace(board)

@@ -1,11 +1,62 @@
-"""Commands that program a board, and what is said when they cannot."""
+"""Commands that program a board; what is said when they cannot; stm32flash itself against an emulated boot loader."""
 
+import shutil
+import struct
 from pathlib import Path
 
 import pytest
 
-from records.errors import BadInput
-from rig.flash import boot_loader_command, openocd_command, run_flash
+from codegen.law import generate_law
+from records.errors import BadInput, VerificationFailed
+from rig.client import BoardClient, asked_identity
+from rig.emulator.boot_loader import Command, LoaderFaults
+from rig.emulator.image import FLASH_BASE, FLASH_BYTES
+from rig.emulator.pty_port import PtyBootLoader
+from rig.flash import (
+    boot_loader_command,
+    flash_through_boot_loader,
+    flash_through_st_link,
+    identify_command,
+    openocd_command,
+)
+from rig.image import build_firmware
+from rig.numbers import numbers_of
+from tests.law_tables import ce150_table
+from twinlaw.command import main
+
+needs_stm32flash = pytest.mark.skipif(
+    shutil.which("stm32flash") is None, reason="stm32flash is not installed (Debian: apt install stm32flash)"
+)
+HALF_WAY = FLASH_BASE + 0x1000
+VECTORS = struct.pack("<II", 0x20008000, FLASH_BASE + 0x101)
+
+
+@pytest.fixture(scope="module", params=["float32", "fixed"])
+def built(request, tmp_path_factory) -> tuple[Path, str]:
+    folder = tmp_path_factory.mktemp(request.param)
+    build_firmware(generate_law(ce150_table(), request.param), folder)
+    return folder, request.param
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory) -> Path:
+    """Any content behind its vectors will do where it is not started: 12 KiB of which no byte reads as erased."""
+    path = tmp_path_factory.mktemp("image") / "firmware.bin"
+    path.write_bytes(VECTORS + (bytes(range(255)) * 49)[8 : 12 * 1024])
+    return path
+
+
+@pytest.fixture
+def fake_tool(tmp_path, monkeypatch):
+    """A program that stands for a programming tool, first in the search path."""
+
+    def make(name: str, script: str) -> None:
+        path = tmp_path / name
+        path.write_text(f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+        monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+
+    return make
 
 
 def test_openocd_programs_verifies_and_starts():
@@ -15,28 +66,116 @@ def test_openocd_programs_verifies_and_starts():
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("line_mode", ["8e1", "8n1"])
-def test_the_boot_loader_writes_verifies_and_starts_at_the_start_of_flash(line_mode):
-    command = boot_loader_command(Path("build/firmware.bin"), "/dev/ttyUSB0", line_mode=line_mode)
-    assert " ".join(command) == f"stm32flash -m {line_mode} -w build/firmware.bin -v -g 0x08000000 /dev/ttyUSB0"
+@pytest.mark.parametrize(("port", "mode"), [("/dev/ttyUSB0", "8e1"), ("/dev/ttyACM3", "8e1"), ("/dev/pts/7", "8n1")])
+def test_the_boot_loader_writes_verifies_and_starts_at_the_start_of_flash(port, mode):
+    command = boot_loader_command(Path("build/firmware.bin"), port)
+    assert " ".join(command) == f"stm32flash -m {mode} -w build/firmware.bin -v -g 0x08000000 {port}"
+    assert " ".join(identify_command(port)) == f"stm32flash -m {mode} {port}"
 
 
-def test_a_missing_tool_is_named_with_its_remedy():
-    with pytest.raises(BadInput, match="tool-that-is-not-there"):
-        run_flash(["tool-that-is-not-there", "firmware.elf"])
+def test_a_missing_tool_is_named_with_its_remedy(monkeypatch, tmp_path, image):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BadInput, match=r"no openocd on this computer.*apt install openocd"):
+        flash_through_st_link(Path("firmware.elf"))
+    with pytest.raises(BadInput, match=r"no stm32flash on this computer.*apt install stm32flash"):
+        flash_through_boot_loader(image, "/dev/ttyUSB0")
 
 
-def test_a_failing_tool_is_quoted_in_one_line(tmp_path):
-    script = tmp_path / "openocd"
-    script.write_text("#!/bin/sh\necho first\necho Error: no device found >&2\nexit 1\n")
-    script.chmod(0o755)
-    with pytest.raises(BadInput, match="Error: no device found") as caught:
-        run_flash([str(script), "-f", "x"])
-    assert "\n" not in str(caught.value)
+def test_an_st_link_that_is_not_there_is_bad_input_and_failed_programming_is_not(fake_tool):
+    fake_tool("openocd", "echo Info : first; echo Error: open failed >&2; echo shutdown command invoked >&2; exit 1")
+    with pytest.raises(BadInput, match=r"Error: open failed.*nothing was written") as refused:
+        flash_through_st_link(Path("firmware.elf"))
+    assert "\n" not in str(refused.value)
+    assert "shutdown" not in str(refused.value)
+    fake_tool("openocd", "echo '** Programming Started **'; echo '** Verify Failed **' >&2; exit 1")
+    with pytest.raises(VerificationFailed, match=r"Verify Failed.*flash again"):
+        flash_through_st_link(Path("firmware.elf"))
 
 
-def test_a_tool_that_succeeds_is_quoted(tmp_path):
-    script = tmp_path / "stm32flash"
-    script.write_text("#!/bin/sh\necho done $1\n")
-    script.chmod(0o755)
-    assert run_flash([str(script), "42"]) == "done 42"
+@pytest.mark.parametrize(
+    "content",
+    [b"", VECTORS[:7], bytes(4096), VECTORS[4:] * 100, VECTORS + bytes(FLASH_BYTES), b"\x7fELF" + bytes(4096)],
+)
+def test_what_is_no_image_for_the_chip_is_refused_before_the_port_is_opened(content, tmp_path):
+    path = tmp_path / "firmware.bin"
+    path.write_bytes(content)
+    with pytest.raises(BadInput, match=rf"firmware\.bin: firmware image: got {len(content)} bytes.*twinlaw build"):
+        flash_through_boot_loader(path, "/dev/no-such-port")
+
+
+@needs_stm32flash
+def test_what_stm32flash_writes_boots_and_answers_with_its_tables_digest_on_the_same_line(built):
+    folder, arithmetic = built
+    table = ce150_table()
+    with PtyBootLoader() as chip:
+        flash_through_boot_loader(folder / "firmware.bin", chip.path)
+        binary = (folder / "firmware.bin").read_bytes()
+        assert bytes(chip.loader.flash) == binary + b"\xff" * (FLASH_BYTES - len(binary))
+        identity = asked_identity(chip.path)
+        assert (identity.table_digest, identity.arithmetic) == (table.digest, arithmetic)
+        numbers = numbers_of(table, arithmetic)
+        with BoardClient.connect(chip.path, table_digest=table.digest, numbers=numbers) as client:
+            assert client.self_test() == 0
+    assert chip.stop is None
+
+
+@needs_stm32flash
+def test_an_older_image_in_the_flash_is_erased_first(image):
+    with PtyBootLoader(flash=bytes(range(256)) * (FLASH_BYTES // 256)) as chip:
+        flash_through_boot_loader(image, chip.path)
+        assert chip.loader.flash[: 12 * 1024] == image.read_bytes()
+
+
+@needs_stm32flash
+def test_a_chip_whose_loader_was_spoken_to_before_is_flashed_all_the_same(image):
+    with PtyBootLoader() as chip:
+        chip.loader.take(b"\x7f")
+        flash_through_boot_loader(image, chip.path)
+        assert chip.loader.flash[: 12 * 1024] == image.read_bytes()
+
+
+# What goes wrong, what the message must hold, and whether anything may have been written: then it is a failed verification (1).
+FAILURES = [
+    (LoaderFaults(refused=frozenset({Command.GET})), ["NACK", "0x00", "docs/hardware.md", "nothing was written"], 2),
+    (LoaderFaults(refused=frozenset({Command.GET_ID})), ["NACK", "0x02", "nothing was written"], 2),
+    (LoaderFaults(chip_id=0x410), ["0x0410", "0x0460 (STM32G071)", "nothing was written", "--port"], 2),
+    (LoaderFaults(chip_id=0x999), ["0x999", "nothing was written"], 2),
+    (LoaderFaults(refused=frozenset({Command.ERASE})), ["NACK", "0x44", "erase", "flash again"], 1),
+    (LoaderFaults(refused=frozenset({Command.WRITE})), ["NACK", "0x31", "0x08000000", "flash again"], 1),
+    (LoaderFaults(refused=frozenset({Command.READ})), ["NACK", "0x11", "0x08000000", "flash again"], 1),
+    (LoaderFaults(refused=frozenset({Command.GO})), ["NACK", "0x21", "written and verified", "reset"], 1),
+    (LoaderFaults(refused_address=HALF_WAY), ["write", "0x08001000", "flash again"], 1),
+    (LoaderFaults(worn_address=HALF_WAY + 1), ["verify", "0x08001001", "found 0xff", "flash again"], 1),
+    (LoaderFaults(silent_after=5000), ["ACK", "0x08001", "flash again"], 1),
+]
+
+
+@needs_stm32flash
+@pytest.mark.parametrize(("faults", "words", "status"), FAILURES, ids=lambda value: str(value)[:60])
+def test_a_loader_that_fails_gives_one_clear_line_and_its_exit_status(faults, words, status, image, capsys):
+    with PtyBootLoader(faults) as chip:
+        assert main(["flash", "--port", chip.path, "--out", str(image.parent)]) == status
+        written = bytes(chip.loader.flash) != b"\xff" * FLASH_BYTES
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    assert told.err.startswith("twinlaw: error: ")
+    assert [word for word in (chip.path, *words) if word not in told.err] == []
+    assert status == 1 or not written
+
+
+@needs_stm32flash
+def test_a_port_at_which_nothing_answers_and_one_that_is_not_there_are_bad_input(image, capsys):
+    with PtyBootLoader(LoaderFaults(silent_after=0)) as chip:
+        assert main(["flash", "--port", chip.path, "--out", str(image.parent)]) == 2
+    told = capsys.readouterr().err
+    assert all(word in told for word in ("timeout", "boot loader", "docs/hardware.md"))
+    assert main(["flash", "--port", "/dev/no-such-port", "--out", str(image.parent)]) == 2
+    assert "/dev/no-such-port" in capsys.readouterr().err
+
+
+@needs_stm32flash
+def test_the_verb_tries_all_of_it_on_an_emulated_chip(built, capsys):
+    folder, arithmetic = built
+    assert main(["flash", "--port", "emulated", "--out", str(folder)]) == 0
+    assert f"table {ce150_table().digest[:16]}, {arithmetic}" in capsys.readouterr().out

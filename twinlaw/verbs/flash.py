@@ -1,20 +1,22 @@
 """Write the firmware image into a board: through an ST-LINK (OpenOCD), or through the chip's serial boot loader.
 
-Without --port the ST-LINK is used and DIR/firmware.elf written; with --port the boot loader and DIR/firmware.bin, which
-the chip must have started (docs/hardware.md). Both verify what they wrote and start it.
+Without --port the ST-LINK is used and DIR/firmware.elf written; with --port the boot loader (stm32flash) and DIR/firmware.bin,
+which the chip must have started (docs/hardware.md). Both verify what they wrote and start it. --port emulated tries the second way
+on an emulated chip, from its boot loader to the started firmware's answer. Exit status 1 when writing had begun and failed.
 """
 
 import argparse
 import json
 
 from records.errors import BadInput
-from rig.flash import boot_loader_command, openocd_command, run_flash
+from rig.emulated_flash import flash_emulated
+from rig.flash import flash_through_boot_loader, flash_through_st_link
 from twinlaw import console, options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--port, --out, --json."""
-    parser.add_argument("--port", help="serial port of the boot loader; without it the ST-LINK is used")
+    parser.add_argument("--port", help="serial port of the boot loader, or `emulated`; without it the ST-LINK is used")
     options.out(parser)
     options.as_json(parser)
 
@@ -26,11 +28,19 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput(
             "firmware image", str(image), "no such file", "an image", "build it with `twinlaw build` or `twinlaw run`"
         )
-    command = boot_loader_command(image, chosen.port) if chosen.port else openocd_command(image)
-    with console.stage(f"writing {image}"):
-        run_flash(command)
-    if chosen.json:
-        print(json.dumps({"image": str(image), "port": chosen.port, "written": True}))
-        return 0
-    print(f"{image} written, verified and started; check the board with `twinlaw validate --port PORT`")
+    if chosen.port == "emulated":
+        with console.stage(f"writing {image} into an emulated chip"):
+            identity = flash_emulated(image)
+        told = f"{image} written, verified and started on an emulated chip, where it answers:\n"
+        told += f"table {identity.table_digest[:16]}, {identity.arithmetic}, firmware {identity.firmware_version}"
+        answer = {"table_digest": identity.table_digest, "arithmetic": identity.arithmetic}
+    else:
+        with console.stage(f"writing {image}"):
+            if chosen.port:
+                flash_through_boot_loader(image, chosen.port)
+            else:
+                flash_through_st_link(image)
+        told = f"{image} written, verified and started; check the board with `twinlaw validate --port PORT`"
+        answer = {}
+    print(json.dumps({"image": str(image), "port": chosen.port, "written": True, **answer}) if chosen.json else told)
     return 0
