@@ -1,17 +1,27 @@
 """Inputs and states on which executions of the fixed-point law are compared: those of the float32 law as words, and any words at all."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed_formats import MISSING, law_formats
+from codegen.fixed_constants import FixedAxis, fixed_constants, word_number
+from codegen.fixed_equations import AXIS_STATE_FIELDS
+from codegen.fixed_formats import FILTERED_BITS, MISSING, law_formats
 from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from verification import stimuli
 from verification.stimuli import Stimulus
 
 Bits = NDArray[np.uint32]
+
+_AXES = ("elevation", "azimuth")
+_WORD_OF = {
+    f"{axis}.{name}": index for index, (axis, name) in enumerate((a, n) for a in _AXES for n in AXIS_STATE_FIELDS)
+}
+EDGES = "edges of words"
+_MOVE_BITS = 20  # how far the last step of v at the end of its range goes
+_NEIGHBOURS = 4
 
 # Missing, the outermost, and the least words, a few powers of two and their neighbours.
 SPECIAL_WORDS = np.array(
@@ -36,16 +46,18 @@ SPECIAL_WORDS = np.array(
 
 
 def fixed_stimuli(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
-    """At least `steps` control steps: reference jumps, saturation, missing and special words, broken and random states."""
+    """At least `steps` control steps: reference jumps, saturation, missing and special words, broken, edge and random states."""
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
     lanes = -(-share // 250)
+    edges = at_the_edges(table)
     return (
         as_words(table, stimuli.reference_jumps(table, rng, 250, lanes)),
         as_words(table, stimuli.saturating(table, rng, 250, lanes)),
         with_special_words(table, rng, 250, lanes),
         from_random_states(table, rng, 2 * lanes, 125),
-        from_random_words(rng, share),
+        from_random_words(rng, max(1, share - edges.steps)),
+        edges,
     )
 
 
@@ -78,6 +90,38 @@ def from_random_states(table: ControllerTable, rng: np.random.Generator, lanes: 
     plain = as_words(table, stimuli.reference_jumps(table, rng, steps, lanes))
     states = _sprinkled(_any_size(rng, (lanes, STATE_WORDS)), rng, 50)
     return Stimulus("random states", plain.angles, plain.inputs, states)
+
+
+def at_the_edges(table: ControllerTable) -> Stimulus:
+    """One step from states that chance does not meet: a filter whose step is a whole word, feedback at either end of its range."""
+    law = fixed_constants(table, word_number)
+    states = [
+        {f"{axis}.reference_{index}_rad": sign * 2**places for axis in _AXES for index in (1, 2)}
+        for places in range(FILTERED_BITS - 8, FILTERED_BITS + 1)
+        for sign in (1, -1)
+    ]
+    states += [state for axis in (law.elevation, law.azimuth) for state in _feedback_at_its_ends(axis, law.w_bits - 1)]
+    words = np.zeros((len(states), STATE_WORDS), dtype=np.int64)
+    for row, state in zip(words, states, strict=True):
+        for name, value in state.items():
+            row[_WORD_OF[name]] = value
+    at_rest = np.zeros((1, len(states), 4), dtype=np.uint32)
+    return Stimulus(EDGES, at_rest[0, :, 2:].copy(), at_rest, words.astype(np.int32).view(np.uint32))
+
+
+def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str, int]]:
+    """States from which v moves to -2^bits or 2^bits and its neighbours: w far out, its difference takes it there."""
+    gains = {
+        term.factor: term.sign * term.polynomial.constant / 2.0 ** (term.excess + axis.residue_places)
+        for term in axis.terms
+    }
+    if not gains.get("w_1_V"):
+        return
+    for sign in (1, -1):
+        w_0, move = sign * (2**bits - 2**_MOVE_BITS), sign * 2**_MOVE_BITS
+        w_1 = round((move - gains.get("w_0_V", 0.0) * w_0) / gains["w_1_V"])
+        for off in range(-_NEIGHBOURS, _NEIGHBOURS + 1):
+            yield {f"{axis.name}.w_0_V": w_0, f"{axis.name}.w_1_V": w_1 + off}
 
 
 def from_random_words(rng: np.random.Generator, lanes: int) -> Stimulus:

@@ -10,6 +10,7 @@ import pytest
 from codegen.law import generate_law
 from codegen.twin import Float32Twin
 from tests.law_tables import ce150_table, dense_table
+from verification.fixed_stimuli import EDGES
 from verification.host_law import HostLaw
 from verification.proofs import mutation
 from verification.proofs.mutants_c import mutated_c
@@ -24,16 +25,17 @@ pytest.importorskip("pycparser", reason="pycparser is not installed (pip install
 
 
 @cache
-def law() -> Mapping[str, str]:
-    return generate_law(dense_table())
+def law(arithmetic: str = "float32") -> Mapping[str, str]:
+    return generate_law(dense_table(), arithmetic)
 
 
-def subject() -> Subject:
-    return Subject(dense_table(), law(), b"")
+def subject(arithmetic: str = "float32") -> Subject:
+    return Subject(dense_table(), law(arithmetic), b"", arithmetic=arithmetic)
 
 
-def test_the_score_of_the_c_is_above_its_bound_on_a_table_in_which_everything_counts() -> None:
-    score = c_score(subject())
+@pytest.mark.parametrize("arithmetic", ["float32", "fixed"])
+def test_the_score_of_the_c_is_above_its_bound_on_a_table_in_which_everything_counts(arithmetic: str) -> None:
+    score = c_score(subject(arithmetic))
     assert score.tried > 200
     assert score.share >= LEAST_SCORE, score.survivors
 
@@ -73,6 +75,26 @@ def test_a_changed_equation_of_the_twin_is_noticed_and_an_unchanged_one_is_not()
     assert is_twin_noticed(dense_table(), "float32", changed, truths)
     (same,) = (m for m in mutants if "lanes == 1" not in m.change and m.change == "sign > 0 -> sign >= 0")
     assert not is_twin_noticed(dense_table(), "float32", same, truths)
+
+
+# Changes of the fixed-point twin that only states from the edges of words tell from the law, and one that nothing tells.
+EDGE_CHANGES = {
+    "below = 1 if product > 0": "product & _LOW_WORD -> product | _LOW_WORD",
+    "below = (product > 0)": "product & _LOW_WORD -> product | _LOW_WORD",
+    "return -(1 << bits) <= value": "-(1 << bits) <= value < 1 << bits -> -(1 << bits) < value < 1 << bits",
+    "return (value >= -(2**bits))": "value < 2 ** bits -> value <= 2 ** bits",
+}
+
+
+@pytest.mark.parametrize("place", EDGE_CHANGES)
+def test_a_change_at_the_edge_of_a_word_is_noticed_in_fixed_point(place: str) -> None:
+    table = ce150_table()
+    stimuli = [stimulus for stimulus in stimuli_of(table, "fixed", 500) if stimulus.name == EDGES]
+    truths = [Truth(stimuli, stepped(HostLaw(generate_law(table, "fixed"), "fixed"), stimuli))]
+    mutants = [m for m in python_mutants("fixed") if place in m.source and m.change == EDGE_CHANGES[place]]
+    assert [is_twin_noticed(table, "fixed", mutant, truths) for mutant in mutants] == [True]
+    same = next(m for m in python_mutants("fixed") if m.change == "product > 0 -> product >= 0")
+    assert not is_twin_noticed(table, "fixed", same, truths)
 
 
 def test_every_mutant_of_a_table_is_another_table() -> None:

@@ -1,6 +1,6 @@
 """What a law does, as a test sees it: states, outputs, duties, angles and the self-test, on the stimuli of the equality checks."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from verification.equality import BatchStepper, differing
-from verification.fixed_stimuli import SPECIAL_WORDS, fixed_stimuli
+from verification.fixed_stimuli import EDGES, SPECIAL_WORDS, fixed_stimuli
 from verification.host_law import HostLaw
 from verification.stimuli import SPECIAL_BITS, Stimulus, standard_stimuli
 
@@ -18,7 +18,10 @@ Bits = NDArray[Any]
 
 _STIMULI = {"float32": standard_stimuli, "fixed": fixed_stimuli}
 _SPECIAL = {"float32": SPECIAL_BITS, "fixed": SPECIAL_WORDS}
-COUNTS = np.array([[0, 0], [1, -1], [7, 9], [-511, 403], [1024, 1365], [2**31 - 1, -(2**31)]], dtype=np.int32)
+_FAR = [[2**31 - 1, -(2**31)], [-(2**31), 2**31 - 1], [2**24 + 1, -(2**24) - 1]]
+COUNTS = np.array(
+    [*([n, n] for n in range(-8192, 8193)), *_FAR], dtype=np.int32
+)  # two turns either way, and far beyond
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,22 @@ class Behaviour:
 
 
 def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
-    """The stimuli of the equality checks, `steps` control steps of them, and one lane whose every word is missing."""
-    return (*_STIMULI[arithmetic](table, steps), _all_missing(int(_SPECIAL[arithmetic][0])))
+    """The stimuli of the equality checks, `steps` steps of them, those from edges also lane by lane, and one with every word missing.
+
+    A lane alone runs on single numbers, for which the twin has decisions of their own.
+    """
+    stimuli = _STIMULI[arithmetic](table, steps)
+    alone = [lane for stimulus in stimuli if stimulus.name == EDGES for lane in _lane_by_lane(stimulus)]
+    return (*stimuli, *alone, _all_missing(int(_SPECIAL[arithmetic][0])))
+
+
+def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:
+    states = stimulus.states
+    for lane in range(len(stimulus.angles)):
+        one = slice(lane, lane + 1)
+        yield Stimulus(
+            stimulus.name, stimulus.angles[one], stimulus.inputs[:, one], None if states is None else states[one]
+        )
 
 
 def _all_missing(word: int) -> Stimulus:

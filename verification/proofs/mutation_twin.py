@@ -4,6 +4,7 @@ A mutant of the twin is noticed when its steps, or the self-test that it would r
 A mutant of the table is noticed when the twin made from it does not step as the C of the table does.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +16,7 @@ from codegen.self_test import self_test
 from records.table import AxisLaw, ControllerTable, Polynomial
 from verification.equality import BatchStepper
 from verification.proofs.mutants_python import PythonMutant, mutated_twin
-from verification.proofs.mutation_judge import COUNTS, Behaviour, stepped
+from verification.proofs.mutation_judge import Behaviour, stepped
 from verification.stimuli import Stimulus
 
 
@@ -27,7 +28,8 @@ class Truth:
     behaviour: Behaviour
 
 
-_ANGLES = [(int(psi), int(phi)) for psi, phi in COUNTS[:5]]
+_ANGLES = [(0, 0), (1, -1), (7, 9), (-511, 403), (1024, 1365), (2**31 - 1, -(2**31))]
+_VOLTAGES = (math.nan, 0.0, 5.0, -5.0, 0.0015625, -0.0015625, 10.0, -10.0, 1e4, -1e4)
 
 
 def is_twin_noticed(table: ControllerTable, arithmetic: str, mutant: PythonMutant, truths: Sequence[Truth]) -> bool:
@@ -43,12 +45,13 @@ def is_twin_noticed(table: ControllerTable, arithmetic: str, mutant: PythonMutan
 
 
 def twin_facts(twin: Any, table: ControllerTable) -> tuple[object, ...]:
-    """What a twin says before it was reset, what it records for the self-test, and its angles."""
+    """What a twin says before it was reset, what it records for the self-test, its angles and its duties."""
     fresh = twin.step(0.1, 0.1, 0.0, 0.0)
     angles = tuple(
         (float(twin.angle_from_counts_psi(psi)), float(twin.angle_from_counts_phi(phi))) for psi, phi in _ANGLES
     )
-    return fresh, self_test(table, twin), angles
+    duties = tuple((twin.duty_main(u_V), twin.duty_tail(u_V)) for u_V in _VOLTAGES)
+    return fresh, self_test(table, twin), angles, duties
 
 
 def table_mutants(table: ControllerTable) -> Iterator[tuple[str, ControllerTable]]:

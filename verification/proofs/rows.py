@@ -32,6 +32,5 @@ PROOFS: tuple[Proof, ...] = (
         "small wrong changes of C, table and twin that the checks notice",
         (PYCPARSER,),
         mutation.prove,
-        _FLOAT32,
     ),
 )
