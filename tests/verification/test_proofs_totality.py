@@ -6,12 +6,15 @@ import pytest
 
 from codegen.law import generate_law
 from tests.law_tables import ce150_table, changed_axis
-from verification.proofs.smt_text import PREAMBLE, Question, coefficient_ranges, questions
+from verification.proofs.questions import Question
+from verification.proofs.smt_fixed import fixed_questions, polynomial_ranges
+from verification.proofs.smt_text import PREAMBLE, coefficient_ranges, questions
 from verification.proofs.totality import holds
 
 pytest.importorskip("bitwuzla", reason="bitwuzla is not installed (pip install --editable '.[proofs]')")
 TABLE = ce150_table()
 LAW_C = generate_law(TABLE)["law.c"]
+FIXED_C = generate_law(TABLE, "fixed")["law.c"]
 
 
 def short(claims: list[Question]) -> list[Question]:
@@ -54,3 +57,40 @@ def test_every_array_of_the_c_has_its_question() -> None:
     arrays = [line for line in LAW_C.splitlines() if line.startswith("static const law_number ") and "range" in line]
     assert len(list(coefficient_ranges(TABLE, LAW_C))) == len(arrays)
     assert all(question.text.startswith(PREAMBLE) for question in questions(TABLE, LAW_C))
+
+
+def test_in_fixed_point_decisions_products_moves_and_limits_hold_for_all_words() -> None:
+    asked = [q for q in fixed_questions(TABLE, FIXED_C) if ".." not in q.claim]
+    assert len(asked) == 26
+    assert all(holds(question) for question in asked), [q.claim for q in asked if not holds(q)]
+
+
+def test_in_fixed_point_a_coefficient_stays_within_its_comment_and_leaves_a_narrower_one() -> None:
+    name = "azimuth_q_0"
+    (question,) = (q for q in polynomial_ranges(TABLE, FIXED_C) if q.claim.startswith(name))
+    assert holds(question)
+    low = question.claim.split()[-1].split("..")[0]
+    narrower = FIXED_C.replace(f"[{low}..", f"[{int(low) + 2}..")
+    (question,) = (q for q in polynomial_ranges(TABLE, narrower) if q.claim.startswith(name))
+    assert not holds(question)
+    functions = [line for line in FIXED_C.splitlines() if "(const powers *psi" in line and "_move(" not in line]
+    assert len(list(polynomial_ranges(TABLE, FIXED_C))) == len(functions)
+
+
+# A claim about the fixed-point law, and a change of its text that breaks it.
+BROKEN = {
+    "held": ("(bvashr (bvand short_by v)", "(bvashr (bvand short_by short_by)"),
+    "accepted": ("(bvand v (bvneg v))", "(bvand v v)"),
+    "product is exact": ("(high_half (bvadd (low_word lh)", "(bvlshr (bvadd (low_word lh)"),
+    "towards": ("(bvnot (bvashr (high_word sum) #x0000001f))", "#x7fffffff"),
+    "duties": ("(bvmul (let", "(bvadd (let"),
+    "the move of v of the azimuth": ("(is_within (high_word sum)", "(is_within (low_word sum)"),
+}
+
+
+@pytest.mark.parametrize("claim", BROKEN)
+def test_in_fixed_point_a_law_that_breaks_a_claim_is_found(claim: str) -> None:
+    question = next(q for q in fixed_questions(TABLE, FIXED_C) if q.claim.startswith(claim))
+    good, bad = BROKEN[claim]
+    assert good in question.text
+    assert not holds(replace(question, text=question.text.replace(good, bad)))

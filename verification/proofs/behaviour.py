@@ -1,10 +1,15 @@
 """No undefined behaviour, overflow or NaN for all time: Frama-C EVA on the generated law under a driver that never ends.
 
-EVA encloses every value that any run can reach (abstract interpretation; Frama-C 25 or newer). Three analyses, no alarm allowed:
+EVA encloses every value that any run can reach (abstract interpretation; Frama-C 25 or newer). No alarm is allowed. Law in float32:
 
     inputs within their declared ranges: every float result finite, outputs and duties within their limits;
     inputs of any bits, NaN and infinities included: no undefined behaviour, outputs and duties still within their limits;
     the predicates on bits, any bits: no undefined behaviour.
+
+Law in fixed point, where every word is a number:
+
+    inputs of any words: no overflow, no undefined behaviour, outputs and duties within their limits;
+    the decisions by masks, any words: the same.
 """
 
 import re
@@ -13,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from records.verification import ProofResult
+from verification.proofs.eva_fixed import DECISIONS_DRIVER, DRIVER, decision_view
 from verification.proofs.eva_source import PREDICATES_DRIVER, comparison_view, driver_in_range, driver_of_any_bits
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
@@ -20,6 +26,10 @@ from verification.ranges import declared_ranges
 
 NAME = "no undefined behaviour"
 _OPTIONS = ("-c11", "-eva", "-eva-precision", "3", "-machdep", "gcc_x86_32")
+_TOLD = {
+    "float32": "in range all numbers finite, with any bits",
+    "fixed": "with any words nothing overflows,",
+}
 _SPECIAL_FLOATS = ("-warn-special-float", "none")
 
 
@@ -41,12 +51,24 @@ def prove(subject: Subject) -> ProofResult:
     alarms = tuple(f"{analysis.title}: {alarm}" for analysis, lines in found for alarm in lines)
     if alarms:
         return ProofResult(NAME, "failed", f"{len(alarms)} alarms, first {alarms[0]}", alarms, {"alarms": len(alarms)})
-    told = "no alarm for all time: in range all numbers finite, with any bits outputs and duties within their limits"
+    told = f"no alarm for all time: {_TOLD[subject.arithmetic]} outputs and duties within their limits"
     return ProofResult(NAME, "proved", told, tuple(analysis.title for analysis, _ in found), {"alarms": 0.0})
 
 
 def analyses(subject: Subject) -> tuple[Analysis, ...]:
-    """The three analyses of a law, as texts."""
+    """The analyses of a law, as texts."""
+    return _float32_analyses(subject) if subject.arithmetic == "float32" else _fixed_analyses(subject)
+
+
+def _fixed_analyses(subject: Subject) -> tuple[Analysis, ...]:
+    law_h, law_c = subject.generated["law.h"], subject.generated["law.c"]
+    return (
+        Analysis("inputs of any words", {"law.h": law_h, "law.c": decision_view(law_c), "driver.c": DRIVER}),
+        Analysis("decisions on any words", {"law.h": law_h, "law.c": law_c, "driver.c": DECISIONS_DRIVER}),
+    )
+
+
+def _float32_analyses(subject: Subject) -> tuple[Analysis, ...]:
     law_h, law_c = subject.generated["law.h"], subject.generated["law.c"]
     view = {"law.h": law_h, "law.c": comparison_view(law_c)}
     given = declared_ranges(subject.table, subject.motion).given

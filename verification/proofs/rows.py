@@ -13,14 +13,12 @@ PROOFS: tuple[Proof, ...] = (
         "no undefined behaviour, overflow or NaN from any step, for all time",
         (FRAMA_C,),
         behaviour.prove,
-        _FLOAT32,
     ),
     Proof(
         totality.NAME,
         "limits hold for every bit pattern, coefficients stay within their stated ranges",
         (BITWUZLA,),
         totality.prove,
-        _FLOAT32,
     ),
     Proof(cost.NAME, "what one control step takes on the target, worst paths of soft float included", (), cost.prove),
     Proof(

@@ -1,24 +1,32 @@
-"""Saturation is total and the stated ranges hold, for every float32: decided by bitwuzla, an SMT solver on bits.
+"""Saturation is total and the stated ranges hold, for every float32 or every word: decided by bitwuzla, an SMT solver on bits.
 
 No sample is taken: the solver shows that no counterexample exists among all 2^32 (or 2^64) inputs, or names one.
 """
 
 from records.verification import ProofResult
-from verification.proofs.smt_text import Question, questions
+from verification.proofs.questions import Question
+from verification.proofs.smt_fixed import fixed_questions
+from verification.proofs.smt_text import questions
 from verification.proofs.subject import Subject
 
 NAME = "totality and ranges"
+_ASKED = {
+    "float32": (questions, "float32, NaN and infinities included where they are not excluded"),
+    "fixed": (fixed_questions, "word of 32 bits within the stated conditions"),
+}
 
 
 def prove(subject: Subject) -> ProofResult:
     """Every claim holds for all inputs; those that do not are the detail of a failure."""
-    asked = list(questions(subject.table, subject.generated["law.c"]))
+    law_c = subject.generated["law.c"]
+    asks, every = _ASKED[subject.arithmetic]
+    asked = list(asks(subject.table, law_c))
     broken = tuple(question.claim for question in asked if not holds(question))
     figures = {"claims": float(len(asked)), "broken": float(len(broken))}
     if broken:
         told = f"{len(broken)} of {len(asked)} claims have a counterexample, first: {broken[0]}"
         return ProofResult(NAME, "failed", told, broken, figures)
-    told = f"{len(asked)} claims hold for every float32, NaN and infinities included where they are not excluded"
+    told = f"{len(asked)} claims hold for every {every}"
     return ProofResult(NAME, "proved", told, tuple(question.claim for question in asked), figures)
 
 

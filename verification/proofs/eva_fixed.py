@@ -1,0 +1,135 @@
+"""C texts for Frama-C EVA: the fixed-point law with its branch-free decisions as comparisons, and the drivers that call it for ever.
+
+The law decides by masks, so that a step takes the same time whatever its numbers; an analysis of intervals cannot follow masks. In
+the view a decision is the comparison that it stands for, with every difference that it takes; the proof of totality
+(smt_fixed.py) shows that both give the same word. Everything else, products above all, is analysed as it was generated.
+"""
+
+import re
+from collections.abc import Mapping
+
+# The law's decisions by masks, and what they mean.
+_MEANING: Mapping[str, str] = {
+    "negative_part": "",
+    "clamp": """static int32_t clamp(int32_t value, int32_t low, int32_t high)
+{
+    const int32_t above_low = value - low;
+    const int32_t raised = (value < low) ? low : value;
+    const int32_t below_high = high - raised;
+    return (high < raised) ? high : raised;
+}
+""",
+    "held": """static int32_t held(int32_t value, int32_t low, int32_t high)
+{
+    return (value < low) ? low : (high < value) ? high : value;
+}
+""",
+    "accepted": """static law_number accepted(law_number value, law_number last)
+{
+    return (value == LAW_MISSING) ? last : value;
+}
+""",
+    "is_within": """static uint32_t is_within(int32_t value, uint32_t bits)
+{
+    return (-(1 << bits) <= value && value < (1 << bits)) ? 0xFFFFFFFFu : 0u;
+}
+""",
+    "masked": """static int32_t masked(int32_t value, uint32_t mask)
+{
+    return (mask != 0u) ? value : 0;
+}
+""",
+}
+# A filter's step ends between where it began and where it was to go.
+_TOWARDS = """static int32_t towards(int32_t value, int32_t target, int32_t gain)
+{
+    const int32_t step = 2 * (target - value);
+    const int32_t anywhere = Frama_C_interval(INT32_MIN, INT32_MAX);
+    return (value < target) ? held(anywhere, value, target) : held(anywhere, target, value);
+}
+"""
+# Two lines of drive(): the move is a word of 31 bits, and v takes it only where both conditions hold.
+_MOVE = re.compile(r"    const law_number move_V = \(int32_t\)\(whole & fits\);.*\n")
+_MOVE_MEANS = "    const law_number move_V = Frama_C_interval(-0x40000000, 0x3FFFFFFF);\n"
+_TAKEN = re.compile(
+    r"    const uint32_t plausible = fits & is_within\(last_V \+ move_V, (\d+)u\);\n"
+    r"    const law_number v_V = last_V \+ masked\(move_V, plausible\);\n"
+)
+_TAKEN_MEANS = r"""    const law_number moved_V = last_V + move_V;
+    const uint32_t plausible = fits & is_within(moved_V, \1u);
+    const law_number v_V = (fits != 0u && -(1 << \1u) <= moved_V && moved_V < (1 << \1u)) ? moved_V : last_V;
+"""
+
+_ANY_WORD = """static law_number any_word(void)
+{
+    return Frama_C_interval(INT32_MIN, INT32_MAX);
+}
+"""
+
+DRIVER = f"""#include "law.h"
+#include "__fc_builtin.h"
+
+{_ANY_WORD}
+int main(void)
+{{
+    law_state state;
+    law_input input;
+    law_output output;
+    law_reset(&state, any_word(), any_word());
+    while (1) {{
+        input.psi_ref_rad = any_word();
+        input.phi_ref_rad = any_word();
+        input.psi_rad = any_word();
+        input.phi_rad = any_word();
+        law_step(&state, &input, &output);
+        /*@ assert main_within: LAW_U_M_MIN_V <= output.u_M_V <= LAW_U_M_MAX_V; */
+        /*@ assert tail_within: LAW_U_T_MIN_V <= output.u_T_V <= LAW_U_T_MAX_V; */
+        const int32_t main_ticks = law_duty_main(any_word());
+        const int32_t tail_ticks = law_duty_tail(any_word());
+        /*@ assert main_duty: -LAW_PWM_TICKS <= main_ticks <= LAW_PWM_TICKS; */
+        /*@ assert tail_duty: -LAW_PWM_TICKS <= tail_ticks <= LAW_PWM_TICKS; */
+        const law_number psi_rad = law_angle_from_counts_psi(any_word());
+        const law_number phi_rad = law_angle_from_counts_phi(any_word());
+    }}
+}}
+"""
+
+# Every decision as it was generated; clamp and drive() are left to the proof of totality, which knows what their words can be.
+DECISIONS_DRIVER = f"""#include "law.c"
+#include "__fc_builtin.h"
+
+{_ANY_WORD}
+int main(void)
+{{
+    while (1) {{
+        const int32_t one = any_word();
+        const int32_t other = any_word();
+        const uint32_t places = Frama_C_unsigned_int_interval(0u, 30u);
+        const int32_t words[] = {{
+            floored(one, places), low_half(one), negative_part(one), accepted(one, other), wrapped(one, places),
+            masked(one, (uint32_t)other), held(one, LAW_PSI_REF_MIN_RAD, LAW_PSI_REF_MAX_RAD), held_angle(one, other),
+        }};
+        const uint32_t within = is_within(one, places);
+        const int32_t high = high_word(product(one, other));
+    }}
+}}
+"""
+
+
+def decision_view(law_c: str) -> str:
+    """law.c with its masks as comparisons; raises ValueError where one of them is not as it was."""
+    has_filter = "static int32_t towards(" in law_c  # a law whose references are taken as they are has none
+    for name, meaning in (*_MEANING.items(), *([("towards", _TOWARDS)] if has_filter else [])):
+        found = re.compile(rf"static \w+ {name}\([^)]*\)\n\{{\n.*?\n\}}\n", re.DOTALL)
+        law_c = _replaced(law_c, name, found, meaning)
+    law_c = _replaced(law_c, "move_V", _MOVE, _MOVE_MEANS)
+    law_c = _replaced(law_c, "v_V", _TAKEN, _TAKEN_MEANS)
+    return law_c.replace('#include "law.h"\n', '#include "law.h"\n#include "__fc_builtin.h"\n', 1)
+
+
+def _replaced(law_c: str, name: str, found: re.Pattern[str], meaning: str) -> str:
+    """`meaning` is a template of re.sub."""
+    text, count = found.subn(meaning, law_c)
+    if count != 1:
+        raise ValueError(f"law.c defines {name} {count} times, not once")
+    return text
