@@ -75,6 +75,10 @@ class Enumeration:
         """Code of the choice called `name`; raises KeyError when there is none."""
         return {choice.name: choice.code for choice in self.choices}[name]
 
+    def name_of(self, code: int) -> str:
+        """Name of the choice with `code`, also for a code that a newer board may send."""
+        return next((choice.name for choice in self.choices if choice.code == code), str(code))
+
     def sentence(self, code: int) -> str:
         """What a person reads for `code`, also for a code that a newer board may send."""
         return next((choice.sentence for choice in self.choices if choice.code == code), f"unknown code {code}")

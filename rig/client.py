@@ -1,6 +1,8 @@
 """The host's end of the line to a board: real, emulated or behind a pty, it knows no difference."""
 
+import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Self
 
 from records.errors import BadInput
@@ -108,6 +110,10 @@ class BoardClient:
         """Outputs of the law's self-test on the board that differ from the expected bits; 0 is a pass."""
         return self._request("SELF_TEST", {}, "SELF_TEST_RESULT").number("mismatches")
 
+    def clock_s(self) -> float:
+        """The time that the line lives in: of a port whose time is virtual, that, else the computer's."""
+        return float(getattr(self._line.port, "time_s", None) or time.perf_counter())
+
     def close(self) -> None:
         """Close the port; a board that is still armed loses its host and ramps to the safe value."""
         self._line.port.close()
@@ -176,16 +182,24 @@ def check_identity(identity: Identity, where: str, table_digest: str | None, ari
         )
 
 
+@dataclass(eq=False)
+class Refused(BadInput):
+    """The board took the command and does not obey; `reason` is its name in the protocol."""
+
+    reason: str = ""
+
+
 def check_result(frame: Frame, command: str, where: str) -> None:
-    """Raise BadInput, with the board's own reason, unless a RESULT says that the command was done."""
+    """Raise Refused, with the board's own reason, unless a RESULT says that the command was done."""
     reasons = PROTOCOL.enumeration("reason")
     reason = frame.number("reason")
     if reason != reasons.code("DONE"):
         state = PROTOCOL.enumeration("state").sentence(frame.number("state"))
-        raise BadInput(
+        raise Refused(
             what=command,
             where=where,
             got=f"a refusal ({state})",
             expected="the board to obey",
             remedy=reasons.sentence(reason),
+            reason=reasons.name_of(reason),
         )

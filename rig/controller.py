@@ -1,32 +1,27 @@
 """A board as the controller of a simulated closed loop."""
 
 from rig.client import BoardClient
+from rig.loop_session import LoopSession
 
 
 class BoardController:
     """The controller interface of sim/loop.py over a board in host-in-the-loop mode: one sample a frame, one answer a frame.
 
-    `law_cycles` are those of the last step, 0 before the first.
+    `law_cycles` are those of the last step, 0 before the first. The board is armed with the first step and not before: it counts
+    its host as lost after 0.1 s.
     """
 
     def __init__(self, client: BoardClient) -> None:
         self._client = client
-        self._start_rad: tuple[float, float] | None = None
+        self._session = LoopSession(client, 0.0, 0.0)
         self.law_cycles = 0
 
     def reset(self, psi_rad: float, phi_rad: float) -> None:
-        """Start anew at rest at these angles, with the next step.
-
-        Not at once: the board counts the host as lost after 0.1 s, which the host may well need before its first sample.
-        """
-        self._start_rad = (psi_rad, phi_rad)
+        """Start anew at rest at these angles, with the next step."""
+        self._session = LoopSession(self._client, psi_rad, phi_rad)
 
     def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
         """One sample through the serial line; returns (u_M_V, u_T_V). Raises BadInput when the board refuses or is lost."""
-        if self._start_rad is not None:
-            self._client.arm("LOOP")
-            self._client.reset_law(*self._start_rad)
-            self._start_rad = None
-        answer = self._client.sample(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
+        answer = self._session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
         self.law_cycles = answer.law_cycles
         return answer.u_M_V, answer.u_T_V

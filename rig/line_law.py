@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rig.client import BoardClient
+from rig.loop_session import LoopSession
 
 Bits = NDArray[np.uint32]
 
@@ -28,12 +29,13 @@ class LineLaw:
         return states, np.stack(lanes, axis=1)
 
     def _lane(self, angles: Bits, inputs: Bits) -> Bits:
-        self._client.arm("LOOP")
-        self._client.reset_law(*self._values(angles))
-        return np.array([self._step(row) for row in inputs])
+        psi_rad, phi_rad = self._values(angles)
+        session = LoopSession(self._client, psi_rad, phi_rad)
+        return np.array([self._step(session, row) for row in inputs])
 
-    def _step(self, row: Bits) -> Bits:
-        answer = self._client.sample(*self._values(row))
+    def _step(self, session: LoopSession, row: Bits) -> Bits:
+        psi_ref_rad, phi_ref_rad, psi_rad, phi_rad = self._values(row)
+        answer = session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
         self.cycles_max = max(self.cycles_max, answer.law_cycles)
         to_word = self._client.numbers.to_word
         return np.array([to_word(answer.u_M_V, "V"), to_word(answer.u_T_V, "V")], np.uint32)

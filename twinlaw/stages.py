@@ -26,6 +26,7 @@ from rig.image import FirmwareImage, build_firmware
 from rig.line_law import LineLaw
 from rig.numbers import numbers_of
 from rig.target_law import TargetLaw
+from rig.timing import line_timing
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.halving import StepError, step_error
@@ -205,7 +206,9 @@ def validate_board(table: ControllerTable, url: str, steps: int, arithmetic: str
         mismatches = client.self_test()
         host = HostLaw(generate_law(table, arithmetic), arithmetic)
         equality = _equal(Stateless(host), law, BY_NAME[arithmetic].sequences(table, steps))
-        client.disarm()
+        counters = client.counters()  # before the host falls silent on purpose
+        with stage("measuring round trips and ticks"):
+            timing = line_timing(client, table.sample_period_s)
         return Validation(
             port=url.split(":")[0] if url.startswith("emulated") else url,
             identity=asdict(client.identity),
@@ -213,7 +216,8 @@ def validate_board(table: ControllerTable, url: str, steps: int, arithmetic: str
             self_test_mismatches=mismatches,
             equality=equality,
             law_cycles_max=law.cycles_max,
-            counters=client.counters(),
+            timing=timing,
+            counters=counters,
         )
 
 

@@ -93,9 +93,10 @@ def verification_rows(verification: Verification) -> list[Row]:
         for row in verification.self_tests
     ]
     bound = verification.rounding
+    arithmetic = next((name for name, own in verification.roundings.items() if own == bound), "float32")
     rows.append(
         (
-            "rounding of one step, proved",
+            f"rounding of one step in {arithmetic}, proved",
             f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV",
             "proved",
         )
@@ -144,7 +145,7 @@ def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
 
 def validation_rows(validation: Validation) -> list[Row]:
     """One row per check of a board."""
-    equality = validation.equality
+    equality, timing = validation.equality, validation.timing
     faults = {name: count for name, count in validation.counters.items() if count and name != "frames_accepted"}
     told = ", ".join(f"{name} {count}" for name, count in faults.items()) or "no fault"
     return [
@@ -156,6 +157,17 @@ def validation_rows(validation: Validation) -> list[Row]:
         ),
         ("host = board", f"{equality.mismatches} of {equality.steps} steps differ", _held(not equality.mismatches)),
         ("control step", f"{validation.law_cycles_max} cycles at most, by the board's counter", ""),
+        (
+            "sample to answer",
+            f"{1e3 * timing.round_trip_median_s:.2f} ms, {1e3 * timing.round_trip_max_s:.2f} ms at most",
+            "",
+        ),
+        (
+            "tick to telemetry",
+            f"{1e6 * timing.tick_latency_min_s:.0f} to {1e6 * timing.tick_latency_max_s:.0f} us, "
+            f"jitter {1e6 * timing.tick_jitter_s:.0f} us over {timing.ticks} ticks",
+            "",
+        ),
         ("serial line", f"{validation.counters['frames_accepted']} frames accepted, {told}", ""),
     ]
 
