@@ -9,6 +9,7 @@ from codegen.law_equations import LawInput, state_from_words, words_from_state
 from records.table import ControllerTable
 from records.verification import ProofResult, RoundingBound
 from tests.law_tables import ce150_table
+from verification.fixed_rounding import fixed_rounding_bound
 from verification.proofs import PROOFS, Proof, Subject, run_proof
 from verification.proofs.gappa_script import GappaArithmetic, Prover
 from verification.proofs.rounding import ask_gappa, gappa_bound, prove, tighter_bound
@@ -86,6 +87,15 @@ def test_the_row_tells_both_bounds_and_which_is_tighter() -> None:
     assert set(result.figures) == {"u_M_V", "u_T_V", "balls_u_M_V", "balls_u_T_V"}
 
 
+def test_the_row_of_the_fixed_point_law_needs_no_tool_and_is_the_bound_of_the_verification() -> None:
+    (row,) = (proof for proof in PROOFS if proof.name == "rounding bound" and "fixed" in proof.arithmetics)
+    result = run_proof(row, Subject(ce150_table(), {}, b"", arithmetic="fixed"))
+    bound = fixed_rounding_bound(ce150_table())
+    assert result.outcome == "proved"
+    assert result.figures == {"u_M_V": bound.u_M, "u_T_V": bound.u_T}
+    assert tighter_bound(bound, result) == bound
+
+
 def test_the_smaller_bound_is_taken_per_output_and_named() -> None:
     balls = RoundingBound(2e-3, 1e-3, "balls")
     proved = ProofResult("rounding bound", "proved", "", figures={"u_M_V": 1e-3, "u_T_V": 5e-3})
@@ -110,6 +120,7 @@ def test_a_missing_tool_skips_with_what_to_do_and_a_foreign_arithmetic_says_so()
 
 
 def test_every_proof_has_its_own_name_and_says_what_it_shows() -> None:
-    names = [proof.name for proof in PROOFS]
-    assert len(set(names)) == len(names)
+    for arithmetic in ("float32", "fixed"):
+        names = [proof.name for proof in PROOFS if arithmetic in proof.arithmetics]
+        assert len(set(names)) == len(names) == 7
     assert all(proof.shows for proof in PROOFS)

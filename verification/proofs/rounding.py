@@ -12,6 +12,7 @@ from codegen.law_constants import law_constants
 from codegen.law_equations import LawInput, state_from_words, words_from_state
 from records.table import ControllerTable
 from records.verification import ProofResult, RoundingBound
+from verification.fixed_rounding import fixed_rounding_bound
 from verification.proofs.gappa_script import GappaArithmetic
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
@@ -35,6 +36,13 @@ def prove(subject: Subject) -> ProofResult:
     told = f"u_M within {1e3 * gappa.u_M:.2f} mV, u_T within {1e3 * gappa.u_T:.2f} mV by Gappa"
     against = f"{1e3 * balls.u_M:.2f} and {1e3 * balls.u_T:.2f} mV by ball arithmetic; tighter: {tighter}"
     return ProofResult(NAME, "proved", f"{told}, {against}", figures=figures)
+
+
+def prove_fixed(subject: Subject) -> ProofResult:
+    """Both bounds of the fixed-point law in volt, by ball arithmetic, which needs no tool."""
+    bound = fixed_rounding_bound(subject.table, subject.motion)
+    told = f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV by ball arithmetic"
+    return ProofResult(NAME, "proved", told, (bound.method,), {"u_M_V": bound.u_M, "u_T_V": bound.u_T})
 
 
 def gappa_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
