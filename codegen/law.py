@@ -15,6 +15,7 @@ from codegen.operations import operation_count
 from codegen.self_test import self_test
 from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
 from records.errors import BadInput
+from records.law_table import FlownTable
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
@@ -74,14 +75,15 @@ def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[st
     if arithmetic not in ARITHMETIC_CODES:
         known = " or ".join(ARITHMETIC_CODES)
         raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
-    context = _shared_context(table, arithmetic) | _CONTEXTS[arithmetic](table)
+    context = shared_context(table, arithmetic) | _CONTEXTS[arithmetic](table)
     templates = _TEMPLATES[arithmetic]
-    return {name: _environment().get_template(template).render(context) for name, template in templates.items()}
+    return {name: c_environment().get_template(template).render(context) for name, template in templates.items()}
 
 
-def _environment() -> jinja2.Environment:
+def c_environment(*loaders: jinja2.BaseLoader) -> jinja2.Environment:
+    """Templates of C: those of this stage and of further `loaders`; what is undefined is an error."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("codegen", "templates"),
+        loader=jinja2.ChoiceLoader([*loaders, jinja2.PackageLoader("codegen", "templates")]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -92,7 +94,8 @@ def _environment() -> jinja2.Environment:
     return environment
 
 
-def _shared_context(table: ControllerTable, arithmetic: str) -> dict[str, Any]:
+def shared_context(table: FlownTable, arithmetic: str) -> dict[str, Any]:
+    """What the templates of every law and arithmetic take."""
     return {
         "arithmetic": arithmetic,
         "arithmetic_code": ARITHMETIC_CODES[arithmetic],
@@ -118,6 +121,7 @@ def _float32_context(table: ControllerTable) -> dict[str, Any]:
         "elevation": table.elevation,
         "azimuth": table.azimuth,
         "axis_state_fields": AXIS_STATE_FIELDS,
+        "axis_state_note": "; the index is the power of delta = 1 - z^-1",
         "last_accepted_fields": LAST_ACCEPTED_FIELDS,
         "arrays": arrays,
         "degrees": sorted({len(array.coefficients) - 1 for array in arrays} - {0}),

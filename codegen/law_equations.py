@@ -10,7 +10,7 @@ few decisions. The equations are those of records/table.py with w = v - s and w 
 so that with p_0 = 0 and no saturation v moves by Q e and past moves alone: the integrator is exact in any arithmetic.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -96,18 +96,23 @@ STATE_WORDS = 2 * len(AXIS_STATE_FIELDS) + len(LAST_ACCEPTED_FIELDS)
 
 def state_from_words(words: Any) -> LawState[Any]:
     """A state from its numbers in the order of the C structure; `words[i]` is number i."""
-    count = len(AXIS_STATE_FIELDS)
+    return state_of_words(words, AxisState)
+
+
+def state_of_words(words: Any, axis_state: Callable[..., Any]) -> LawState[Any]:
+    """The same for any law whose axes remember an `axis_state`, a dataclass of numbers."""
+    count = len(fields(axis_state))  # type: ignore[arg-type]
     return LawState(
-        AxisState(*(words[index] for index in range(count))),
-        AxisState(*(words[index] for index in range(count, 2 * count))),
-        *(words[index] for index in range(2 * count, STATE_WORDS)),
+        axis_state(*(words[index] for index in range(count))),
+        axis_state(*(words[index] for index in range(count, 2 * count))),
+        *(words[index] for index in range(2 * count, 2 * count + len(LAST_ACCEPTED_FIELDS))),
     )
 
 
 def words_from_state(state: LawState[N]) -> Iterator[N]:
     """The numbers of a state in the order of the C structure."""
     for axis in (state.elevation, state.azimuth):
-        yield from (getattr(axis, name) for name in AXIS_STATE_FIELDS)
+        yield from (getattr(axis, field.name) for field in fields(axis))
     yield from (getattr(state, name) for name in LAST_ACCEPTED_FIELDS)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import Protocol, SupportsFloat
 
-from records.table import AxisLaw, ControllerTable
+from records.law_table import AxisRange, FlownTable
 
 STEPS = 320
 REFERENCE_EVERY = 64
@@ -62,7 +62,7 @@ class Twin(Protocol):
         """The 32 bits of a number that is none."""
 
 
-def self_test(table: ControllerTable, twin: Twin) -> SelfTest:
+def self_test(table: FlownTable, twin: Twin) -> SelfTest:
     """The self-test of `table`, its expected results computed by the twin of the arithmetic in question."""
     twin.reset(0.0, 0.0)
     spans = (_span(table.elevation), _span(table.azimuth))
@@ -118,13 +118,13 @@ def _checksum(twin: Twin, outputs: list[tuple[float, float]]) -> int:
     return checksum
 
 
-def _span(axis: AxisLaw) -> int:
+def _span(axis: AxisRange) -> int:
     """Counts that cover the axis' references, small enough for 32-bit products."""
     widest_rad = max(abs(axis.reference_min_rad), abs(axis.reference_max_rad))
     return max(1, min(WIDEST_SPAN_COUNTS, int(widest_rad / axis.resolution_rad)))
 
 
-def _move(axis: AxisLaw) -> int:
+def _move(axis: AxisRange) -> int:
     return max(1, min(_span(axis), int(MOVE_RAD / axis.resolution_rad)))
 
 

@@ -13,6 +13,7 @@ from codegen.law_constants import law_constants
 from codegen.law_equations import (
     STATE_WORDS,
     LawInput,
+    LawOutput,
     LawState,
     law_reset,
     law_step,
@@ -81,7 +82,7 @@ class Float32Twin:
     arithmetic = "float32"
 
     def __init__(self, table: ControllerTable) -> None:
-        self.law = law_constants(table, np.float32)
+        self.law: Any = law_constants(table, np.float32)
         self.resolution_psi_rad = np.float32(table.elevation.resolution_rad)
         self.resolution_phi_rad = np.float32(table.azimuth.resolution_rad)
         self._state: LawState[np.float32] = self._at_rest(0.0, 0.0)
@@ -94,13 +95,13 @@ class Float32Twin:
         """One sample; returns (u_M_V, u_T_V) within their limits."""
         given = LawInput(*(np.float32(value) for value in (psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)))
         with np.errstate(all="ignore"):
-            self._state, output = law_step(self.law, Float32Scalars(), self._state, given)
+            self._state, output = self.law_step(self.scalars, self._state, given)
         return float(output.u_M_V), float(output.u_T_V)
 
     def start(self, angles: Bits) -> Bits:
         """States at rest, bits [lanes, STATE_WORDS], for angles psi, phi as bits [lanes, 2]."""
         psi_rad, phi_rad = _numbers(angles).T
-        return _bits_of_state(law_reset(self.law, Float32Lanes(), psi_rad, phi_rad), len(angles))
+        return self._bits_of_state(self.law_reset(self.lanes, psi_rad, phi_rad), len(angles))
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
         """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2].
@@ -110,14 +111,14 @@ class Float32Twin:
         steps, lanes = inputs.shape[:2]
         outputs = np.empty((steps, lanes, 2), dtype=np.float32)
         # One lane goes faster as single numbers than as arrays of one.
-        decisions: Any = Float32Scalars() if lanes == 1 else Float32Lanes()
+        decisions: Any = self.scalars if lanes == 1 else self.lanes
         columns = (lambda rows: rows[0]) if lanes == 1 else np.transpose
-        state = state_from_words(columns(_numbers(states)))
+        state = self.state_from_words(columns(_numbers(states)))
         with np.errstate(all="ignore"):
             for given, output in zip(_numbers(inputs), outputs, strict=True):
-                state, voltages = law_step(self.law, decisions, state, LawInput(*columns(given)))
+                state, voltages = self.law_step(decisions, state, LawInput(*columns(given)))
                 output[:, 0], output[:, 1] = voltages.u_M_V, voltages.u_T_V
-        return _bits_of_state(state, lanes), outputs.view(np.uint32)
+        return self._bits_of_state(state, lanes), outputs.view(np.uint32)
 
     def angle_from_counts_psi(self, counts: int) -> np.float32:
         """Elevation [rad] of an encoder count."""
@@ -145,7 +146,33 @@ class Float32Twin:
         return 0x7FC00000
 
     def _at_rest(self, psi_rad: float, phi_rad: float) -> LawState[np.float32]:
-        return law_reset(self.law, Float32Scalars(), np.float32(psi_rad), np.float32(phi_rad))
+        return self.law_reset(self.scalars, np.float32(psi_rad), np.float32(phi_rad))
+
+    def _bits_of_state(self, state: LawState[Any], lanes: int) -> Bits:
+        words = np.empty((lanes, self.state_words), dtype=np.float32)
+        for index, word in enumerate(words_from_state(state)):
+            words[:, index] = word
+        return words.view(np.uint32)
+
+    # What the law is: another law's twin replaces these.
+
+    scalars: Any = Float32Scalars()
+    lanes: Any = Float32Lanes()
+    state_words = STATE_WORDS
+
+    def law_reset(self, decisions: Any, psi_rad: Any, phi_rad: Any) -> LawState[Any]:
+        """The state at rest."""
+        return law_reset(self.law, decisions, psi_rad, phi_rad)
+
+    def law_step(
+        self, decisions: Any, state: LawState[Any], given: LawInput[Any]
+    ) -> tuple[LawState[Any], LawOutput[Any]]:
+        """One sample."""
+        return law_step(self.law, decisions, state, given)
+
+    def state_from_words(self, words: Any) -> LawState[Any]:
+        """A state from its numbers."""
+        return state_from_words(words)
 
 
 def _duty(u_V: np.float32, safe_V: np.float32) -> int:
@@ -158,10 +185,3 @@ def _duty(u_V: np.float32, safe_V: np.float32) -> int:
 
 def _numbers(bits: Bits) -> NDArray[np.float32]:
     return np.ascontiguousarray(bits).view(np.float32)
-
-
-def _bits_of_state(state: LawState[Any], lanes: int) -> Bits:
-    words = np.empty((lanes, STATE_WORDS), dtype=np.float32)
-    for index, word in enumerate(words_from_state(state)):
-        words[:, index] = word
-    return words.view(np.uint32)

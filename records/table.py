@@ -77,7 +77,7 @@ class ControllerTable:
     @property
     def digest(self) -> str:
         """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of the table."""
-        return hashlib.sha256(_canonical(asdict(self)).encode()).hexdigest()
+        return hashlib.sha256(canonical_text(asdict(self)).encode()).hexdigest()
 
 
 def table_text(table: ControllerTable) -> str:
@@ -121,7 +121,8 @@ def with_origin(table: ControllerTable, origin: Mapping[str, Any]) -> Controller
     return replace(table, origin=origin)
 
 
-def _canonical(content: Mapping[str, Any]) -> str:
+def canonical_text(content: Mapping[str, Any]) -> str:
+    """The one JSON text of `content` that a digest is taken of."""
     return json.dumps(content, sort_keys=True, separators=(",", ":"))
 
 

@@ -10,7 +10,7 @@ from rig.emulator.board import EmulatedBoard
 
 Bits = NDArray[np.uint32]
 
-_STATE_BYTES, _INPUT_BYTES, _OUTPUT_BYTES = 4 * STATE_WORDS, 16, 8
+_INPUT_BYTES, _OUTPUT_BYTES = 16, 8
 
 
 class TargetLaw:
@@ -21,18 +21,19 @@ class TargetLaw:
 
     name = "target"
 
-    def __init__(self, board: EmulatedBoard, arithmetic: str = "float32") -> None:
+    def __init__(self, board: EmulatedBoard, arithmetic: str = "float32", state_words: int = STATE_WORDS) -> None:
         self.arithmetic = arithmetic
+        self._state_bytes = 4 * state_words
         self.cycles_max = 0
         self.cycles_min = 2**63
         self.stack_bytes = 0
         self._board = board
         self._state = board.scratch_address()
-        self._input = self._state + _STATE_BYTES
+        self._input = self._state + self._state_bytes
         self._output = self._input + _INPUT_BYTES
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest [lanes, STATE_WORDS] for angles psi, phi as bits [lanes, 2]."""
+        """States at rest [lanes, words] for angles psi, phi as bits [lanes, 2]."""
         return np.array([self._start_lane(int(psi), int(phi)) for psi, phi in angles], dtype=np.uint32)
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
@@ -58,7 +59,7 @@ class TargetLaw:
         return self._board.read_memory(address, size).hex()
 
     def _start_lane(self, psi_bits: int, phi_bits: int) -> Bits:
-        self._board.write_memory(self._state, bytes(_STATE_BYTES))
+        self._board.write_memory(self._state, bytes(self._state_bytes))
         self._board.call("law_reset", self._state, psi_bits, phi_bits)
         return self._read_state()
 
@@ -71,7 +72,7 @@ class TargetLaw:
     def _one_step(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
         """All lanes in one batch, each with its own state."""
         rows = [(self._state, states), (self._input, inputs[0])]
-        wells = [(self._state, _STATE_BYTES), (self._output, _OUTPUT_BYTES)]
+        wells = [(self._state, self._state_bytes), (self._output, _OUTPUT_BYTES)]
         done = self._call(rows, wells, len(states))
         return done.outputs[0].view(np.uint32), done.outputs[1].view(np.uint32)[np.newaxis]
 
@@ -84,4 +85,4 @@ class TargetLaw:
         return done
 
     def _read_state(self) -> Bits:
-        return np.frombuffer(self._board.read_memory(self._state, _STATE_BYTES), np.uint32).copy()
+        return np.frombuffer(self._board.read_memory(self._state, self._state_bytes), np.uint32).copy()

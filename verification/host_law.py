@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from codegen.fixed_formats import value_of, word_of
 from codegen.law import generate_law
-from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 
@@ -53,8 +52,7 @@ class HostLaw:
         self.arithmetic = arithmetic
         self._places = _places(texts["law.h"]) if arithmetic == "fixed" else None
         self._ffi, self._lib = load_shared(_DECLARATIONS, library)
-        if self._lib.law_batch_state_words() != STATE_WORDS:
-            raise ValueError(f"law_state of the C has other words than the twin's {STATE_WORDS}")
+        self.state_words = int(self._lib.law_batch_state_words())
         self._state = self.start(self._angles(0.0, 0.0))
 
     def reset(self, psi_rad: float, phi_rad: float) -> None:
@@ -72,8 +70,8 @@ class HostLaw:
         return u_M_V, u_T_V
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest, bits [lanes, STATE_WORDS], for angles psi, phi as bits [lanes, 2]."""
-        states = np.zeros((len(angles), STATE_WORDS), dtype=np.uint32)
+        """States at rest, bits [lanes, words], for angles psi, phi as bits [lanes, 2]."""
+        states = np.zeros((len(angles), self.state_words), dtype=np.uint32)
         self._lib.law_batch_start(len(angles), self._pointer(angles), self._pointer(states))
         return states
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.law_equations import STATE_WORDS
-from records.table import AxisLaw, ControllerTable
+from records.law_table import AxisRange, FlownTable
 
 Bits = NDArray[np.uint32]
 Numbers = NDArray[np.float32]
@@ -27,7 +27,7 @@ SPECIAL_BITS = np.array(
 class Stimulus:
     """Lanes of the law to be stepped together, all numbers as bits.
 
-    `angles` [lanes, 2] start the lanes at rest (psi, phi); `states` [lanes, STATE_WORDS], where given, replace them.
+    `angles` [lanes, 2] start the lanes at rest (psi, phi); `states` [lanes, words], where given, replace them.
     `inputs` [steps, lanes, 4] hold psi_ref_rad, phi_ref_rad, psi_rad, phi_rad.
     """
 
@@ -42,7 +42,9 @@ class Stimulus:
         return int(self.inputs.shape[0] * self.inputs.shape[1])
 
 
-def standard_stimuli(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
+def standard_stimuli(
+    table: FlownTable, steps: int = 100_000, seed: int = 1, state_words: int = STATE_WORDS
+) -> tuple[Stimulus, ...]:
     """At least `steps` control steps: reference jumps, saturation, missing and special numbers, broken and random states."""
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
@@ -51,12 +53,12 @@ def standard_stimuli(table: ControllerTable, steps: int = 100_000, seed: int = 1
         reference_jumps(table, rng, 250, lanes),
         saturating(table, rng, 250, lanes),
         with_special_numbers(table, rng, 250, lanes),
-        from_random_states(table, rng, 2 * lanes, 125),
-        from_random_bits(rng, share),
+        from_random_states(table, rng, 2 * lanes, 125, state_words),
+        from_random_bits(rng, share, state_words),
     )
 
 
-def sequences(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
+def sequences(table: FlownTable, steps: int = 100_000, seed: int = 1) -> tuple[Stimulus, ...]:
     """The same kinds without set states, for a board that can only be reset and stepped."""
     rng = np.random.default_rng(seed)
     lanes = -(-steps // (3 * 250))
@@ -67,7 +69,7 @@ def sequences(table: ControllerTable, steps: int = 100_000, seed: int = 1) -> tu
     )
 
 
-def reference_jumps(table: ControllerTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
+def reference_jumps(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """Angles that wander by encoder steps, references that jump every now and then to anywhere within their range."""
     angles = np.stack([_wander(axis, rng, steps, lanes) for axis in (table.elevation, table.azimuth)], axis=-1)
     references = np.stack([_jumps(axis, rng, steps, lanes) for axis in (table.elevation, table.azimuth)], axis=-1)
@@ -75,7 +77,7 @@ def reference_jumps(table: ControllerTable, rng: np.random.Generator, steps: int
     return Stimulus("reference jumps", _bits(inputs[0, :, 2:]), _bits(inputs))
 
 
-def saturating(table: ControllerTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
+def saturating(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """References beyond their range and angles that jump from stop to stop, so that both outputs dwell at their limits."""
     dwell = rng.integers(0, 20, (steps, lanes, 4)) == 0
     levels = rng.uniform(-3.0, 3.0, (steps, lanes, 4))
@@ -83,7 +85,7 @@ def saturating(table: ControllerTable, rng: np.random.Generator, steps: int, lan
     return Stimulus("saturation", _bits(inputs[0, :, 2:]), _bits(inputs))
 
 
-def with_special_numbers(table: ControllerTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
+def with_special_numbers(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """Reference jumps in which one number in thirty is NaN, infinite, subnormal, zero of either sign, huge or tiny."""
     plain = reference_jumps(table, rng, steps, lanes)
     special = rng.choice(SPECIAL_BITS, plain.inputs.shape)
@@ -91,28 +93,30 @@ def with_special_numbers(table: ControllerTable, rng: np.random.Generator, steps
     return Stimulus("special numbers", inputs[0, :, 2:].copy(), inputs)
 
 
-def from_random_states(table: ControllerTable, rng: np.random.Generator, lanes: int, steps: int) -> Stimulus:
+def from_random_states(
+    table: FlownTable, rng: np.random.Generator, lanes: int, steps: int, state_words: int = STATE_WORDS
+) -> Stimulus:
     """States of ordinary size, one number in fifty special, then ordinary inputs: broken states must heal alike."""
     plain = reference_jumps(table, rng, steps, lanes)
-    ordinary = _bits(rng.normal(0.0, 3.0, (lanes, STATE_WORDS)).astype(np.float32))
+    ordinary = _bits(rng.normal(0.0, 3.0, (lanes, state_words)).astype(np.float32))
     special = rng.choice(SPECIAL_BITS, ordinary.shape)
     states = np.where(rng.integers(0, 50, ordinary.shape) == 0, special, ordinary)
     return Stimulus("random states", plain.angles, plain.inputs, states)
 
 
-def from_random_bits(rng: np.random.Generator, lanes: int) -> Stimulus:
+def from_random_bits(rng: np.random.Generator, lanes: int, state_words: int = STATE_WORDS) -> Stimulus:
     """One step from states and inputs of any bits: in half of the lanes all words, in the others one in eight.
 
     With all words random nearly every state is broken; with a few, each guard is met with the rest of the law in order.
     """
     wild = np.arange(lanes)[:, np.newaxis] % 2 == 0
-    words = rng.normal(0.0, 1.0, (lanes, STATE_WORDS + 4)).astype(np.float32).view(np.uint32)
+    words = rng.normal(0.0, 1.0, (lanes, state_words + 4)).astype(np.float32).view(np.uint32)
     any_bits = rng.integers(0, 2**32, words.shape, dtype=np.uint32)
     special = rng.choice(SPECIAL_BITS, words.shape)
     draw = rng.integers(0, 16, words.shape)
     words = np.where(wild | (draw == 0), any_bits, np.where(draw == 1, special, words))
-    inputs = words[np.newaxis, :, STATE_WORDS:].copy()
-    return Stimulus("random bits", inputs[0, :, 2:].copy(), inputs, words[:, :STATE_WORDS].copy())
+    inputs = words[np.newaxis, :, state_words:].copy()
+    return Stimulus("random bits", inputs[0, :, 2:].copy(), inputs, words[:, :state_words].copy())
 
 
 def replayed(name: str, psi_ref_rad: Numbers, phi_ref_rad: Numbers, psi_rad: Numbers, phi_rad: Numbers) -> Stimulus:
@@ -121,13 +125,13 @@ def replayed(name: str, psi_ref_rad: Numbers, phi_ref_rad: Numbers, psi_rad: Num
     return Stimulus(name, _bits(inputs[0, :, 2:]), _bits(inputs))
 
 
-def _wander(axis: AxisLaw, rng: np.random.Generator, steps: int, lanes: int) -> NDArray[np.float64]:
+def _wander(axis: AxisRange, rng: np.random.Generator, steps: int, lanes: int) -> NDArray[np.float64]:
     moves_rad = rng.integers(-6, 7, (steps, lanes)) * axis.resolution_rad
     start_rad = rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes)
     return start_rad + np.cumsum(moves_rad, axis=0)
 
 
-def _jumps(axis: AxisLaw, rng: np.random.Generator, steps: int, lanes: int) -> NDArray[np.float64]:
+def _jumps(axis: AxisRange, rng: np.random.Generator, steps: int, lanes: int) -> NDArray[np.float64]:
     levels_rad = rng.uniform(1.1 * axis.reference_min_rad, 1.1 * axis.reference_max_rad, (steps, lanes))
     return _held_where_not(rng.integers(0, 60, (steps, lanes)) == 0, levels_rad)
 

@@ -1,0 +1,93 @@
+"""The table of a controller that is not the scheduled one: its own numbers in the frame that all controllers share.
+
+    u = feedback(reference, angle) + u_ff(filtered elevation reference),   limited
+
+The frame accepts inputs, filters references, adds the operating point's voltage and limits; what the feedback is made of are the
+controller's own `gains`, a frozen record of numbers and tuples of numbers.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Generic, Protocol, TypeVar
+
+from records.table import Polynomial, canonical_text
+
+SCHEMA = "law-table/1"
+G = TypeVar("G")
+
+
+class AxisRange(Protocol):
+    """What every table states of an axis: the range of its references, its limits, its encoder's step."""
+
+    @property
+    def reference_min_rad(self) -> float: ...
+    @property
+    def reference_max_rad(self) -> float: ...
+    @property
+    def u_min_V(self) -> float: ...
+    @property
+    def u_max_V(self) -> float: ...
+    @property
+    def resolution_rad(self) -> float: ...
+
+
+class FlownTable(Protocol):
+    """What every table states, whichever controller it is of: records.table.ControllerTable, or LawTable."""
+
+    @property
+    def plant(self) -> str: ...
+    @property
+    def sample_period_s(self) -> float: ...
+    @property
+    def elevation(self) -> AxisRange: ...
+    @property
+    def azimuth(self) -> AxisRange: ...
+    @property
+    def digest(self) -> str: ...
+
+
+@dataclass(frozen=True)
+class AxisTable(Generic[G]):
+    """One axis: the controller's own `gains`, the frame's feed-forward, reference filter, limits and ranges (V, rad)."""
+
+    gains: G
+    feedforward_V: Polynomial
+    prefilter_time_constant_s: float
+    u_min_V: float
+    u_max_V: float
+    u_safe_V: float
+    reference_min_rad: float
+    reference_max_rad: float
+    resolution_rad: float
+
+    def prefilter_gain(self, sample_period_s: float) -> float:
+        """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
+        T_s = self.prefilter_time_constant_s
+        return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+
+
+@dataclass(frozen=True)
+class LawTable(Generic[G]):
+    """Both axes of a controller over the elevations psi_min_rad..psi_max_rad; `origin` tells where the numbers are from."""
+
+    controller: str
+    plant: str
+    sample_period_s: float
+    psi_min_rad: float
+    psi_max_rad: float
+    elevation: AxisTable[G]
+    azimuth: AxisTable[G]
+    origin: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of the table."""
+        return hashlib.sha256(canonical_text(asdict(self)).encode()).hexdigest()
+
+
+def law_table_text(table: LawTable[Any]) -> str:
+    """The table as JSON text with its digest; numbers print so that they read back exactly."""
+    return json.dumps({"schema": SCHEMA, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
