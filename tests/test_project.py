@@ -17,6 +17,7 @@ PACKAGES = (
     "recordings",
     "design",
     "codegen",
+    "controllers",
     "verification",
     "rig",
     "identification",

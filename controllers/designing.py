@@ -1,0 +1,80 @@
+"""What the designs of all controllers share: sampled plants at the operating points, and the frame's part of the table."""
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.discretise import SampledPlant, sample
+from design.linearise import LinearPlant, linearise, subsystem
+from design.operating_points import equilibria, grid
+from design.schedule import fit
+from design.settings import AXES, DesignSettings
+from design.table import LIMITS, SENSORS
+from records.law_table import AxisTable, LawTable
+from sim.bind import BoundPlant
+from sim.effects.api import without_effects
+from sim.equilibrium import OperatingPoint
+
+Array = NDArray[np.float64]
+G = TypeVar("G")
+
+
+@dataclass(frozen=True)
+class Points:
+    """The operating points psi_rad (points,) of the schedule's range: equilibria, and the plant linearised there."""
+
+    bound: BoundPlant
+    settings: DesignSettings
+    psi_rad: Array
+    equilibria: tuple[OperatingPoint, ...]
+    linear: tuple[LinearPlant, ...]
+
+    def axis(self, name: str) -> tuple[LinearPlant, ...]:
+        """The third-order part of each from the axis' input to its angle."""
+        return tuple(subsystem(self.bound, plant, name) for plant in self.linear)
+
+    def sampled(self, name: str) -> tuple[SampledPlant, ...]:
+        """The same, sampled with a zero-order hold."""
+        return tuple(sample(plant, self.settings.sample_period_s) for plant in self.axis(name))
+
+
+def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
+    """The operating points of the nominal plant: controllers are designed without added effects. Raises BadInput for one out of reach."""
+    seen = without_effects(bound) if bound.effects else bound
+    psi_rad = grid(settings)
+    points = equilibria(seen, psi_rad)
+    return Points(seen, settings, psi_rad, points, tuple(linearise(seen, point) for point in points))
+
+
+def axis_table(points: Points, axis: str, gains: G, prefilter_time_constant_s: float) -> AxisTable[G]:
+    """A controller's `gains` in the frame: feed-forward of eq (28) fitted as the scheduled law's, limits and ranges of the plant."""
+    bound, settings, wishes = points.bound, points.settings, points.settings.axis(axis)
+    voltages_V = np.array([point.u0[AXES.index(axis)] for point in points.equilibria])
+    u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
+    return AxisTable(
+        gains=gains,
+        feedforward_V=fit(points.psi_rad, voltages_V, settings.feedforward_degree),
+        prefilter_time_constant_s=prefilter_time_constant_s,
+        u_min_V=u_min_V,
+        u_max_V=u_max_V,
+        u_safe_V=min(max(0.0, u_min_V), u_max_V),
+        reference_min_rad=wishes.reference_min_rad,
+        reference_max_rad=wishes.reference_max_rad,
+        resolution_rad=bound.plant.sensors[SENSORS[axis]],
+    )
+
+
+def law_table(controller: str, points: Points, axes: dict[str, AxisTable[G]], origin: dict[str, Any]) -> LawTable[G]:
+    """The table of both axes."""
+    return LawTable(
+        controller=controller,
+        plant=points.bound.plant.name,
+        sample_period_s=points.settings.sample_period_s,
+        psi_min_rad=points.settings.psi_min_rad,
+        psi_max_rad=points.settings.psi_max_rad,
+        elevation=axes["elevation"],
+        azimuth=axes["azimuth"],
+        origin=origin,
+    )

@@ -1,0 +1,47 @@
+"""A controller that is nothing but its design rule, its equations over any arithmetic, and its template of C."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from codegen.twin import Float32Twin
+from controllers.controller import FloatLaw
+from controllers.designing import Points, points_of
+from controllers.exact import EquationLaw, EquationTwin
+from controllers.frame import AxisEquations
+from controllers.source import generate
+from design.settings import DesignSettings
+from records.law_table import LawTable, law_table_text
+from sim.bind import BoundPlant
+
+
+@dataclass(frozen=True)
+class EquationController:
+    """A row of the table; `tables` designs at the operating points, `template` is its file in controllers/templates."""
+
+    name: str
+    title: str
+    source: str
+    equations: AxisEquations
+    tables: Callable[[Points], LawTable[Any]]
+    template: str
+
+    def design(self, bound: BoundPlant, settings: DesignSettings) -> LawTable[Any]:
+        """The table on this plant; raises BadInput where it cannot be designed."""
+        return self.tables(points_of(bound, settings))
+
+    def text(self, table: LawTable[Any]) -> str:
+        """The table as JSON text with its digest."""
+        return law_table_text(table)
+
+    def float_law(self, table: LawTable[Any]) -> FloatLaw:
+        """The law in double precision."""
+        return EquationLaw(self.equations, table)
+
+    def twin(self, table: LawTable[Any]) -> Float32Twin:
+        """The exact model of the float32 C."""
+        return EquationTwin(self.equations, table)
+
+    def generate(self, table: LawTable[Any]) -> Mapping[str, str]:
+        """law.h, law.c and law_self_test.c."""
+        return generate(table, self.equations, self.template)

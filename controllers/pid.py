@@ -1,0 +1,119 @@
+"""PID of both axes: one set of gains an axis, derivative on the filtered angle, back-calculation against windup.
+
+    e = filtered reference - angle,   y_f <- y_f + g (angle - y_f),   g = 1 - exp(-Ts/Tf)
+    v = k_p e + I - (k_d / Tf) (angle - y_f)                                                         (C.1)
+    u = v + u_ff,   limited;   I <- I + k_i Ts e + (Ts / Tt) (limited u - u),   Tt = sqrt(Ti Td)       (C.2)
+
+Seed 001 compares its fuzzy controllers with PID controllers "previously designed" and prints no gains; how they are tuned here stands
+in controllers/pid_tuning.py. (C.2) is back-calculation with the tracking time that Astrom and Hagglund recommend (Advanced PID Control,
+2006, section 3.5). Angles in rad, voltages in V.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from controllers.designing import Points, axis_table, law_table
+from controllers.equation_controller import EquationController
+from controllers.frame import AxisNumbers, Decisions, Sample
+from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
+from design.settings import AXES
+from design.table import LIMITS
+from records.law_table import LawTable
+
+N = TypeVar("N")
+
+ANGLE_MAX_RAD = 8.0  # no shaft turns so far; a filter beyond comes from a broken state
+
+
+@dataclass(frozen=True)
+class PidGains:
+    """k_p, k_i Ts, k_d / Tf of (C.1) and (C.2), the gain g of the angle's filter, Ts / Tt, and the widest I."""
+
+    k_p_V_rad: float
+    k_i_Ts_V_rad: float
+    k_d_Tf_V_rad: float
+    filter_gain: float
+    tracking_gain: float
+    i_max_V: float
+    angle_max_rad: float
+
+
+@dataclass(frozen=True)
+class PidState(Generic[N]):
+    """What one axis remembers: filtered reference, filtered angle, the integral."""
+
+    reference_1_rad: N
+    reference_2_rad: N
+    filtered_rad: N
+    integral_V: N
+
+
+class Pid:
+    """The equations of one axis, name by name and operation by operation as in templates/pid.c.j2."""
+
+    AxisState = PidState
+
+    def axis_rest(
+        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, reference_rad: N, angle_rad: N
+    ) -> PidState[N]:
+        """The filters at the angle, nothing integrated."""
+        filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
+        return PidState(reference_rad, reference_rad, filtered_rad, zero)
+
+    def axis_step(
+        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, state: PidState[Any], sample: Sample[Any]
+    ) -> tuple[PidState[N], N]:
+        """(C.1), the limits, (C.2)."""
+        gains, angle_rad = axis.gains, sample.angle_rad
+        e_rad = state.reference_2_rad - angle_rad
+        filtered_rad = state.filtered_rad + gains.filter_gain * (angle_rad - state.filtered_rad)
+        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, zero)
+        v_V = gains.k_p_V_rad * e_rad + state.integral_V - gains.k_d_Tf_V_rad * (angle_rad - filtered_rad)
+        u_V = v_V + sample.u_ff_V
+        limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+        integral_V = state.integral_V + gains.k_i_Ts_V_rad * e_rad + gains.tracking_gain * (limited_V - u_V)
+        integral_V = arithmetic.saturate(integral_V, -gains.i_max_V, gains.i_max_V, zero)
+        return PidState(state.reference_1_rad, state.reference_2_rad, filtered_rad, integral_V), limited_V
+
+
+def design(points: Points) -> LawTable[PidGains]:
+    """Both axes tuned on the plant's operating points; raises BadInput where no gains hold the sensitivity."""
+    tunings = {axis: tune(points.sampled(axis), axis) for axis in AXES}
+    axes = {
+        axis: axis_table(
+            points, axis, _gains(points, axis, tuning), points.settings.axis(axis).prefilter_time_constant_s
+        )
+        for axis, tuning in tunings.items()
+    }
+    origin = {
+        axis: {**vars(tuning), "rule": RULE, "Ms_max": LARGEST_SENSITIVITY[axis]} for axis, tuning in tunings.items()
+    }
+    return law_table("pid", points, axes, origin)
+
+
+RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point"
+
+
+def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
+    Ts_s = points.settings.sample_period_s
+    low_V, high_V = (points.bound.parameter(name) for name in LIMITS[axis])
+    return PidGains(
+        k_p_V_rad=tuning.k_p,
+        k_i_Ts_V_rad=tuning.k_i * Ts_s,
+        k_d_Tf_V_rad=tuning.k_d / tuning.filter_s,
+        filter_gain=-math.expm1(-Ts_s / tuning.filter_s),
+        tracking_gain=Ts_s / math.sqrt(tuning.k_d / tuning.k_i),
+        i_max_V=high_V - low_V,
+        angle_max_rad=ANGLE_MAX_RAD,
+    )
+
+
+CONTROLLER = EquationController(
+    name="pid",
+    title="PID",
+    source="seed 001, section 5.2.2, which prints no gains; tuned here by a stated rule",
+    equations=Pid(),
+    tables=design,
+    template="pid.c.j2",
+)

@@ -1,0 +1,14 @@
+"""The table of controllers: a new one is a file with its row here (and a template, where its C is not another's)."""
+
+from collections.abc import Mapping
+
+from controllers import pid, scheduled
+from controllers.controller import Controller
+
+CONTROLLERS: Mapping[str, Controller] = {
+    row.name: row
+    for row in (
+        scheduled.CONTROLLER,
+        pid.CONTROLLER,
+    )
+}

@@ -1,0 +1,97 @@
+"""What every row of the table holds: twin, host and target equal in all bits, one firmware, a digest of its own, total laws."""
+
+import numpy as np
+import pytest
+
+from controllers.table import CONTROLLERS
+from rig.emulator.board import EmulatedBoard
+from rig.image import build_firmware, control_sources
+from rig.target_law import TargetLaw
+from sim.loop import fly
+from sim.manoeuvres import Leg, hop, manoeuvre
+from tests.controllers.rows import ROWS, ce150, designed
+from verification.equality import compare
+from verification.host_law import HostLaw
+from verification.stimuli import standard_stimuli
+
+TRUTH_DEG = 4.0  # mean |error| that all of them hold on the hop: one step of 10 deg, one of 15 deg, in eight seconds
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_twin_and_host_are_equal_in_all_bits_of_a_hundred_thousand_steps(name: str) -> None:
+    row, table = designed(name)
+    twin, host = row.twin(table), HostLaw(row.generate(table))
+    assert host.state_words == twin.state_words
+    result = compare(twin, host, standard_stimuli(table, state_words=twin.state_words))
+    assert (result.equality.mismatches, result.first_mismatch) == (0, None)
+    assert result.equality.steps >= 100_000
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_host_and_target_are_equal_and_the_board_names_the_table(name: str) -> None:
+    row, table = designed(name)
+    texts = row.generate(table)
+    host = HostLaw(texts)
+    target = TargetLaw(EmulatedBoard(build_firmware(texts).elf), state_words=host.state_words)
+    result = compare(host, target, standard_stimuli(table, 2_000, state_words=host.state_words))
+    assert (result.equality.mismatches, result.first_mismatch) == (0, None)
+    assert (host.self_test(), target.self_test()) == (0, 0)
+    assert host.table_digest() == target.table_digest() == table.digest
+    assert target.cycles_max < 640_000, "more than the 10 ms of a sample at 64 MHz"
+
+
+def test_digests_tell_controllers_of_the_same_plant_apart() -> None:
+    digests = {designed(name)[1].digest for name in ROWS}
+    assert len(digests) == len(ROWS)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_the_same_table_gives_the_same_bytes_and_a_changed_one_other_ones(name: str) -> None:
+    row, table = designed(name)
+    assert row.generate(table) == row.generate(table)
+    assert f'"digest": "{table.digest}"' in row.text(table)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_the_self_test_notices_a_changed_law(name: str) -> None:
+    row, table = designed(name)
+    texts = dict(row.generate(table))
+    changed = texts["law.c"].replace("+ u_ff_V", "- u_ff_V").replace("v_V + u_M_ff_V", "v_V - u_M_ff_V")
+    assert changed != texts["law.c"]
+    assert HostLaw({**texts, "law.c": changed}).self_test() > 0
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_float_law_and_twin_fly_the_same_flight(name: str) -> None:
+    row, table = designed(name)
+    manoeuvre = hop(ce150())
+    exact, single = (fly(ce150(), law, manoeuvre) for law in (row.float_law(table), row.twin(table)))
+    assert np.max(np.abs(exact.y - single.y)) < np.radians(0.3)  # a few encoder steps
+    assert np.degrees(np.mean(np.abs(manoeuvre.reference_rad - single.y))) < TRUTH_DEG
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_a_flight_with_a_broken_state_comes_back_to_its_reference(name: str) -> None:
+    # Truth: whatever the 32-bit words of the state are at the start, the last two of twenty seconds are within 2 deg.
+    row, table = designed(name)
+    rng = np.random.default_rng(3)
+    still = manoeuvre("still", hop(ce150()).x0, 20.0, 0.01, ((Leg(0.0, -10.0),), (Leg(0.0, 0.0),)))
+    for kind in range(3):
+        law = _BrokenLaw(row.generate(table))
+        law.wild = rng.integers(0, 2**32, (1, law.state_words), dtype=np.uint32)
+        law.wild[:, :: kind + 1] = (0x7FC00000, 0x7F800000, 0xC61C4000)[kind]
+        error_rad = (still.reference_rad - fly(ce150(), law, still).y)[-200:]
+        assert np.degrees(np.max(np.abs(error_rad))) < 2.0, kind
+
+
+class _BrokenLaw(HostLaw):
+    """A compiled law that starts with whatever stands in `wild`."""
+
+    def reset(self, psi_rad: float, phi_rad: float) -> None:
+        self._state = self.wild.copy()
+
+
+def test_the_firmware_knows_no_controller() -> None:
+    names = {word for name in CONTROLLERS for word in (name, name.upper())} - {"scheduled"}
+    for source in control_sources():
+        assert not names & set(source.read_text().replace("_", " ").split()), source.name
