@@ -20,8 +20,9 @@ class FloatLaw(Protocol):
 class Controller(Protocol):
     """A row of controllers.table.CONTROLLERS.
 
-    `title` is a few words for a heading, `source` the paper and the place in it. A table's digest names table and controller: it is in the
-    C, in the image, and in what the board answers to IDENTIFY. Any image is linked from the same firmware and the three C texts.
+    `title` is a few words for a heading, `source` the paper and the place in it, `note` a paragraph of docs/controllers.md: how it is
+    designed, and which of the paper's slips are mended. A table's digest names table and controller: it is in the C, in the image, and
+    in what the board answers to IDENTIFY. Any image is linked from the same firmware and the three C texts.
     """
 
     @property
@@ -32,6 +33,9 @@ class Controller(Protocol):
 
     @property
     def source(self) -> str: ...
+
+    @property
+    def note(self) -> str: ...
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> Any:
         """The table (a FlownTable) on this plant; raises BadInput where it cannot be designed."""

@@ -22,6 +22,7 @@ class EquationController:
     name: str
     title: str
     source: str
+    note: str
     equations: AxisEquations
     tables: Callable[[Points], LawTable[Any]]
     template: str

@@ -92,7 +92,7 @@ def design(points: Points) -> LawTable[PidGains]:
     return law_table("pid", points, axes, origin)
 
 
-RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point"
+RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point and Ti >= 4 Td"
 
 
 def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
@@ -112,7 +112,13 @@ def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
 CONTROLLER = EquationController(
     name="pid",
     title="PID",
-    source="seed 001, section 5.2.2, which prints no gains; tuned here by a stated rule",
+    source="seed 001, section 5.2.2, which prints no gains",
+    note=(
+        "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 3 (elevation) and 2 (azimuth) at "
+        "every operating point, with Ti >= 4 Td and Tf = Td/10; the elevation's bound is 3 because one set of gains reaches no less than "
+        "2.5 over +-40 deg. The derivative is of the filtered angle, the integral is held by back-calculation, references are filtered "
+        "as the scheduled law's."
+    ),
     equations=Pid(),
     tables=design,
     template="pid.c.j2",

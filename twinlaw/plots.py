@@ -39,7 +39,7 @@ class Curve:
     y: Array
     label: str = ""
     colour: str = BLUE
-    dash: str = "-"
+    dash: Any = "-"
     marker: str = ""
 
 

@@ -30,6 +30,7 @@ VERBS: Mapping[str, str] = {
     "envelope": "envelope",
     "diagnose": "diagnose",
     "blind": "blind",
+    "compare": "compare",
     "bench": "bench",
     "doctor": "doctor",
     "completion": "completion",

@@ -1,0 +1,68 @@
+"""`twinlaw compare`: what it leaves behind, that it is the same twice, and that its figures are those of an independent flight."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from controllers.table import CONTROLLERS
+from sim.loop import fly
+from tests.controllers.rows import ce150, designed
+from tests.test_project import ROOT
+from twinlaw.command import main
+from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.measures import merit
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("compare")
+    words = ["compare", "--plant", str(ROOT / "plants" / "ce150.toml"), "--out", str(out)]
+    assert (
+        main([*words, "--controllers", "pid", "--runs", "2", "--effects", "azimuth.cable_spring", "--steps", "1000"])
+        == 0
+    )
+    return out
+
+
+def test_it_leaves_table_c_and_image_of_each_and_a_plot_of_each_figure(folder: Path) -> None:
+    content = json.loads((folder / "compare.json").read_text())
+    row = content["controllers"][0]
+    assert json.loads((folder / "pid" / "controller.json").read_text())["digest"] == row["table_digest"]
+    assert row["table_digest"] in (folder / "pid" / "generated" / "law.c").read_text()
+    assert bytes.fromhex(row["table_digest"]) in (folder / "pid" / "firmware.bin").read_bytes()
+    assert {entry["mismatches"] for entry in row["equality"]} == {0}
+    for name in FIGURES:
+        labels = re.findall(r"<text[^>]*>([^<]*)<", (folder / f"controllers-{name}.svg").read_text())
+        assert {"time [s]", "elevation [deg]", "azimuth [deg]", "u_M [V]", "u_T [V]", "pid", "reference"} <= set(labels)
+
+
+def test_its_figures_are_those_of_the_twin_flown_sample_by_sample(folder: Path) -> None:
+    row, table = designed("pid")
+    plan = FIGURES["fig-19"].manoeuvre(ce150(), 0.01)
+    log = fly(ce150(), row.twin(table), plan)
+    own = merit(log.t_s, plan.reference_rad, log.y, log.u, 0)
+    told = json.loads((folder / "compare.json").read_text())["controllers"][0]["figures"]["fig-19"]["elevation"]
+    assert told["iae_rad_s"] == pytest.approx(own.iae_rad_s, rel=1e-9)
+    assert told["settling_s"] == pytest.approx(own.settling_s)
+
+
+def test_an_unknown_controller_is_refused_in_one_line(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["compare", "--controllers", "pld", "--out", str(tmp_path)])
+    assert left.value.code == 2
+    said = capsys.readouterr().err
+    assert "pld" in said
+    assert all(name in said for name in CONTROLLERS)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_page_is_of_today_s_tables() -> None:
+    """To write it anew, the page itself names the command."""
+    page = (ROOT / "docs" / "controllers.md").read_text(encoding="utf-8")
+    for name in CONTROLLERS:
+        assert f"`{name}`" in page
+        assert f"`{designed(name)[1].digest[:16]}`" in page, name
+    for link in re.findall(r"\]\(([^)#]+)\)", page):
+        assert (ROOT / "docs" / link).is_file(), link

@@ -1,0 +1,163 @@
+"""The stages behind `twinlaw compare`: each controller designed, generated, linked, verified on the board, and flown."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codegen.protocol_source import protocol_source
+from controllers.controller import Controller
+from controllers.table import CONTROLLERS
+from design.settings import read_settings
+from records.errors import VerificationFailed
+from records.files import write_atomic
+from records.protocol import PROTOCOL
+from records.verification import Equality, TargetCost, equality_table
+from rig.emulator.board import EmulatedBoard
+from rig.image import build_firmware
+from rig.target_law import TargetLaw
+from sim.bind import BoundPlant
+from twinlaw.console import stage
+from verification.comparison.flights import AXES, Flown, Trial, judge
+from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.measures import Merit
+from verification.equality import compare
+from verification.flown_law import FlownLaw
+from verification.host_law import HostLaw
+from verification.static_bound import kept_bound
+from verification.stimuli import standard_stimuli
+
+SCHEMA = "comparison/1"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is compared: the plants that they fly, and the steps of each equality."""
+
+    trial: Trial
+    steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One controller: its table's digest, equality and cost on the board, and its flights with their merits by axis."""
+
+    row: Controller
+    digest: str
+    equality: tuple[Equality, ...]
+    self_test_mismatches: int
+    cost: TargetCost
+    flights: Mapping[str, Flown]
+    figures: Mapping[str, Mapping[str, Merit]]
+    spread: Sequence[Mapping[str, Merit]]
+    effects: Mapping[str, Mapping[str, Merit]]
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Sentences, one a check that did not hold."""
+        differing = [f"{self.row.name}: {text}" for row in self.equality for text in row.failures]
+        wrong = self.self_test_mismatches
+        return (*differing, *([f"{self.row.name}: the self-test finds {wrong} mismatches"] if wrong else []))
+
+
+def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path) -> Compared:
+    """Everything of one controller; leaves its table, C and image in folder/NAME."""
+    row = CONTROLLERS[name]
+    with stage(f"{name}: designing"):
+        table = row.design(bound, read_settings(bound))
+        texts = row.generate(table)
+    place = folder / name
+    write_atomic(place / "controller.json", row.text(table))
+    for file, text in {**texts, **protocol_source(PROTOCOL)}.items():
+        write_atomic(place / "generated" / file, text)
+    with stage(f"{name}: building the firmware"):
+        image = build_firmware(texts, place)
+    twin, host = row.twin(table), HostLaw(texts)
+    target = TargetLaw(EmulatedBoard(image.elf), state_words=twin.state_words)
+    stimuli = standard_stimuli(table, wanted.steps, state_words=twin.state_words)
+    with stage(f"{name}: stepping twin, host and target side by side"):
+        equality = tuple(compare(one, other, stimuli).equality for one, other in ((twin, host), (host, target)))
+        mismatches = host.self_test() + target.self_test()
+    with stage(f"{name}: bounding cycles and stack"):
+        bounded = kept_bound(image.elf, "law_step")
+    cost = TargetCost(
+        arithmetic="float32",
+        cycles_max=target.cycles_max,
+        cycles_bound=bounded.cycles_bound,
+        stack_bytes=bounded.stack_bytes,
+        flash_bytes=image.sizes.flash_bytes,
+        ram_bytes=image.sizes.ram_bytes,
+    )
+    with stage(f"{name}: flying the papers' manoeuvres, {wanted.trial.runs} spread plants, effects"):
+        judged = judge(bound, FlownLaw(texts), table.sample_period_s, wanted.trial)
+    return Compared(
+        row, table.digest, equality, mismatches, cost, judged.flights, judged.figures, judged.spread, judged.effects
+    )
+
+
+def demand_equal(rows: Sequence[Compared]) -> None:
+    """Raise VerificationFailed naming every check that did not hold."""
+    failures = [text for row in rows for text in row.failures]
+    if failures:
+        raise VerificationFailed("; ".join(failures))
+
+
+def facts(bound: BoundPlant, rows: Sequence[Compared], wanted: Wanted) -> dict[str, Any]:
+    """compare.json for a program."""
+    return {
+        "schema": SCHEMA,
+        "plant": bound.plant.name,
+        "runs": wanted.trial.runs,
+        "seed": wanted.trial.seed,
+        "figures": {name: figure.title for name, figure in FIGURES.items()},
+        "controllers": [_facts(row) for row in rows],
+    }
+
+
+def _facts(row: Compared) -> dict[str, Any]:
+    return {
+        "name": row.row.name,
+        "title": row.row.title,
+        "source": row.row.source,
+        "table_digest": row.digest,
+        "equality": [equality_table(entry) for entry in row.equality],
+        "self_test_mismatches": row.self_test_mismatches,
+        "target": asdict(row.cost),
+        "figures": {
+            name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.figures.items()
+        },
+        "spread": {axis: asdict(spread_of(row, axis)) for axis in AXES},
+        "effects": {
+            name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.effects.items()
+        },
+    }
+
+
+@dataclass(frozen=True)
+class Spread:
+    """One axis over the spread plants: how many flights had a step that did not settle, and medians and worst of its merits."""
+
+    unsettled: int
+    median_iae_rad_s: float
+    worst_iae_rad_s: float
+    worst_overshoot: float
+    worst_settling_s: float | None
+    worst_steady_error_rad: float
+    worst_swing_V: float
+
+
+def spread_of(row: Compared, axis: str) -> Spread:
+    """The spread flights of one controller and axis."""
+    merits = [entry[axis] for entry in row.spread]
+    times = [merit.settling_s for merit in merits if merit.settling_s is not None]
+    return Spread(
+        unsettled=len(merits) - len(times),
+        median_iae_rad_s=float(np.median([merit.iae_rad_s for merit in merits])),
+        worst_iae_rad_s=max(merit.iae_rad_s for merit in merits),
+        worst_overshoot=max(merit.overshoot for merit in merits),
+        worst_settling_s=max(times, default=None),
+        worst_steady_error_rad=max(merit.steady_error_rad for merit in merits),
+        worst_swing_V=max(merit.swing_V for merit in merits),
+    )

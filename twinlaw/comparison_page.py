@@ -1,0 +1,77 @@
+"""docs/controllers.md as text, from a comparison."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from twinlaw import comparison_tables as tables
+from twinlaw.comparing import Compared, Wanted, spread_of
+from verification.comparison.flights import AXES
+from verification.comparison.manoeuvres import FIGURES
+
+_TEMPLATES = Path(__file__).resolve().parent / "templates"
+
+
+def page_text(rows: Sequence[Compared], wanted: Wanted, command: str, out: str) -> str:
+    """The page; the same comparison gives the same bytes."""
+    environment = Environment(
+        loader=FileSystemLoader(_TEMPLATES), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    effects = tables.effect_rows(rows)
+    return environment.get_template("controllers.md.j2").render(
+        command=command,
+        out=out,
+        rows=[
+            {"name": row.row.name, "title": row.row.title, "source": row.row.source, "digest": row.digest}
+            for row in rows
+        ],
+        notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
+        cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
+        figures=[
+            {
+                "name": name,
+                "title": figure.title,
+                "tables": [
+                    (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
+                    for axis in AXES
+                ],
+            }
+            for name, figure in FIGURES.items()
+        ],
+        runs=wanted.trial.runs,
+        seed=wanted.trial.seed,
+        spread=[(axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES],
+        effects=_markdown(*effects),
+        verdict=verdict(rows),
+    )
+
+
+def verdict(rows: Sequence[Compared]) -> str:
+    """Who leads on the spread plants, by axis and figure of merit, in one sentence."""
+    parts = []
+    for axis in AXES:
+        spread = {row.row.name: spread_of(row, axis) for row in rows}
+        held = {name: found for name, found in spread.items() if not found.unsettled} or spread
+        iae = min(held, key=lambda name: held[name].median_iae_rad_s)
+        swing = min(held, key=lambda name: held[name].worst_swing_V)
+        overshoot = min(held, key=lambda name: held[name].worst_overshoot)
+        parts.append(
+            f"{axis}: least IAE `{iae}` ({math.degrees(held[iae].median_iae_rad_s):.0f} deg s in the median), least overshoot "
+            f"`{overshoot}` ({100.0 * held[overshoot].worst_overshoot:.1f} % at worst), least swing `{swing}` "
+            f"({held[swing].worst_swing_V:.1f} V)"
+        )
+    cheapest = min(rows, key=lambda row: row.cost.cycles_max)
+    return (
+        "Of those that settle on all spread plants, in the "
+        + "; in the ".join(parts)
+        + f". The cheapest step is `{cheapest.row.name}`'s, {cheapest.cost.cycles_max} cycles."
+    )
+
+
+def _markdown(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [heading, ["---"] * len(heading), *rows]
+    return (
+        "\n".join("| " + " | ".join(line) + " |" for line in lines).replace("| --- ", "|---").replace("--- |", "---|")
+    )

@@ -1,0 +1,62 @@
+"""Compare the controllers of the papers: each as generated C on the same firmware, flown on the papers' own manoeuvres.
+
+Writes DIR/compare.json, DIR/controllers.md with a plot of each figure, and for each controller DIR/NAME/ with its table, C and image.
+Besides the nominal plant they fly plants whose parameters are all up to 10 % off, and each of a list of effects that the
+equations lack. Exit status 1 when twin, compiled C and the emulated board differ in a single bit.
+"""
+
+import argparse
+import json
+import shlex
+
+from controllers.table import CONTROLLERS
+from records.files import write_atomic
+from twinlaw import comparison_tables, console, options
+from twinlaw.comparing import Wanted, compare_controller, demand_equal, facts
+from twinlaw.comparison_page import page_text, verdict
+from twinlaw.stages import STEPS, load_bound
+from verification.comparison.conditions import EFFECTS
+from verification.comparison.flights import Trial
+from verification.comparison.manoeuvres import FIGURES
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """--plant, --controllers, --runs, --seed, --effects, --steps, --out, --json."""
+    options.plant(parser)
+    parser.add_argument(
+        "--controllers", nargs="+", choices=tuple(CONTROLLERS), default=tuple(CONTROLLERS), metavar="NAME",
+        help=f"which of them: {', '.join(CONTROLLERS)}; default: all",
+    )  # fmt: skip
+    parser.add_argument("--runs", type=options.count, default=100, help="spread plants; default: %(default)s")
+    parser.add_argument("--seed", type=options.count, default=1, help="of the spread; default: %(default)s")
+    parser.add_argument(
+        "--effects", nargs="*", choices=EFFECTS, default=EFFECTS, metavar="EFFECT",
+        help=f"added one at a time, each at its reference size: {', '.join(EFFECTS)}; default: all",
+    )  # fmt: skip
+    parser.add_argument("--steps", type=options.count, default=STEPS, help="compared at least; default: %(default)s")
+    options.out(parser)
+    options.as_json(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Design, verify, fly, write, tell, and fail where bits differ."""
+    bound = load_bound(chosen.plant)
+    wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
+    names = tuple(dict.fromkeys(chosen.controllers))
+    rows = [compare_controller(bound, name, wanted, chosen.out) for name in names]
+    content = facts(bound, rows, wanted)
+    write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
+    for name in FIGURES:
+        write_atomic(chosen.out / f"controllers-{name}.svg", comparison_tables.figure_plot(rows, name))
+    command = f"twinlaw compare --plant {shlex.quote(str(chosen.plant))} --out {shlex.quote(str(chosen.out))}"
+    write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, command, str(chosen.out)))
+    if chosen.json:
+        print(json.dumps(content))
+    else:
+        print(console.table(comparison_tables.cost_rows(rows), comparison_tables.COST_HEADING))
+        for axis in ("elevation", "azimuth"):
+            print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
+            print(console.table(comparison_tables.spread_rows(rows, axis), comparison_tables.SPREAD_HEADING))
+        print(f"\n{verdict(rows)}\n{chosen.out / 'controllers.md'}")
+    demand_equal(rows)
+    return 0

@@ -1,0 +1,82 @@
+"""Figures of merit of one flight, one axis at a time, as the encoder shows it.
+
+A hold is what lies between two changes of any reference; its step is the change of this axis' reference that began it.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+BAND_RAD = np.radians(1.0)  # seed 001 calls its errors of 0.5 to 1 deg good
+STEADY_S = 2.0
+LEAST_STEP_RAD = np.radians(2.0)
+
+
+@dataclass(frozen=True)
+class Merit:
+    """One axis over a flight; times in s, angles in rad, voltages in V.
+
+    `overshoot` is the largest excess beyond a new reference as a share of its step; `settling_s` the longest time from a step until the
+    angle stays within 1 deg of it, None where it does not before the next change; `steady_error_rad` the largest |mean error| of the last
+    two seconds of a hold; `iae_rad_s` the integral of |error|; `largest_error_rad` that of all samples later than the longest
+    time to settle asked for, 5 s after the last change; `swing_V` largest minus least voltage after the first hold; `travel_V_s` the
+    way of the voltage per second.
+    """
+
+    overshoot: float
+    settling_s: float | None
+    steady_error_rad: float
+    iae_rad_s: float
+    largest_error_rad: float
+    swing_V: float
+    travel_V_s: float
+
+
+CALM_S = 5.0
+
+
+def merit(t_s: Array, reference_rad: Array, y_rad: Array, u_V: Array, axis: int) -> Merit:
+    """Judge axis 0 or 1 of a flight: t_s (n,), references and angles (n, 2), voltages (n, 2)."""
+    holds = _holds(reference_rad)
+    reference, y, u = reference_rad[:, axis], y_rad[:, axis], u_V[:, axis]
+    error = reference - y
+    period_s = float(t_s[1] - t_s[0])
+    before = np.concatenate([[y[0]], reference])
+    steps = [(begin, end, float(reference[begin] - before[begin])) for begin, end in holds]
+    steps = [entry for entry in steps if abs(entry[2]) >= LEAST_STEP_RAD]
+    settling = [_settling_s(error[begin:end], period_s) for begin, end, _ in steps]
+    calm = [error[begin + round(CALM_S / period_s) : end] for begin, end in holds]
+    late = u[holds[0][1] :] if len(holds) > 1 else u
+    return Merit(
+        overshoot=max((_overshoot(error[begin:end], step) for begin, end, step in steps), default=0.0),
+        settling_s=None if None in settling else max((time for time in settling if time is not None), default=0.0),
+        steady_error_rad=max(
+            abs(float(np.mean(error[max(begin, end - round(STEADY_S / period_s)) : end]))) for begin, end in holds
+        ),
+        iae_rad_s=float(np.sum(np.abs(error)) * period_s),
+        largest_error_rad=max((float(np.max(np.abs(part))) for part in calm if part.size), default=0.0),
+        swing_V=float(np.ptp(late)),
+        travel_V_s=float(np.sum(np.abs(np.diff(late))) / (period_s * late.size)),
+    )
+
+
+def _holds(reference_rad: Array) -> list[tuple[int, int]]:
+    changed = np.flatnonzero(np.any(np.diff(reference_rad, axis=0) != 0.0, axis=1)) + 1
+    edges = [0, *changed.tolist(), len(reference_rad)]
+    return list(pairwise(edges))
+
+
+def _overshoot(error_rad: Array, step_rad: float) -> float:
+    return float(max(np.max(-np.sign(step_rad) * error_rad), 0.0) / abs(step_rad))
+
+
+def _settling_s(error_rad: Array, period_s: float) -> float | None:
+    outside = np.flatnonzero(np.abs(error_rad) > BAND_RAD)
+    if not outside.size:
+        return 0.0
+    last = int(outside[-1]) + 1
+    return None if last == len(error_rad) else last * period_s

@@ -1,0 +1,31 @@
+"""Generated C in the simulation's compiled loop: the same law.c that the firmware has, called by the kernel once a sample."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sim.compiled_run import CController
+from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
+
+_DRIVER = Path(__file__).with_name("law_flight.c")
+_DECLARATIONS = """
+    uint32_t law_flight_size(void);
+    void law_flight_start(void *self, uint32_t samples);
+    void law_flight_step(void *context, const double *reference_rad, const double *angle_rad, double *u_V);
+"""
+
+
+class FlownLaw:
+    """A compiled float32 law that flies whole flights without Python, one after another."""
+
+    def __init__(self, texts: Mapping[str, str]) -> None:
+        """Compile the generated `texts` (file name -> C); raises BadInput when the compiler refuses."""
+        sources = [CText(name, text) for name, text in texts.items()]
+        library = build_shared("flight", [*sources, _DRIVER], flags=STRICT_FLOAT_FLAGS)
+        self._ffi, self._lib = load_shared(_DECLARATIONS, library)
+        self._state = self._ffi.new("char[]", self._lib.law_flight_size())
+
+    def controller(self, samples: int) -> CController:
+        """The law for flights of `samples` samples each, to be given to sim.simulate; this object must outlive the flight."""
+        self._lib.law_flight_start(self._state, samples)
+        address = self._ffi.addressof(self._lib, "law_flight_step")
+        return CController(int(self._ffi.cast("intptr_t", address)), int(self._ffi.cast("intptr_t", self._state)))
