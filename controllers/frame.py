@@ -53,10 +53,11 @@ class Numbers(Generic[N]):
 
 @dataclass(frozen=True)
 class Sample(Generic[N]):
-    """What one axis is given in one sample: accepted angle, scheduling elevation, feed-forward voltage."""
+    """What one axis is given in one sample: accepted angle, scheduling elevation, filtered elevation reference, feed-forward."""
 
     angle_rad: N
     schedule_rad: N
+    region_rad: N
     u_ff_V: N
 
 
@@ -134,12 +135,17 @@ def law_step(
     filtered: Any = prefilter  # takes any axis with a filter's gain and a range
     elevation = filtered(law.elevation, arithmetic, state.elevation, psi_ref_rad)
     azimuth = filtered(law.azimuth, arithmetic, state.azimuth, phi_ref_rad)
+    region_rad = elevation.reference_2_rad
     u_M_ff_V = polynomial(law.elevation.feedforward_V, elevation.reference_2_rad, law.zero)
     u_T_ff_V = polynomial(law.azimuth.feedforward_V, elevation.reference_2_rad, law.zero)
 
     step = equations.axis_step
-    elevation, u_M_V = step(law.elevation, arithmetic, law.zero, elevation, Sample(psi_rad, schedule_rad, u_M_ff_V))
-    azimuth, u_T_V = step(law.azimuth, arithmetic, law.zero, azimuth, Sample(phi_rad, schedule_rad, u_T_ff_V))
+    elevation, u_M_V = step(
+        law.elevation, arithmetic, law.zero, elevation, Sample(psi_rad, schedule_rad, region_rad, u_M_ff_V)
+    )
+    azimuth, u_T_V = step(
+        law.azimuth, arithmetic, law.zero, azimuth, Sample(phi_rad, schedule_rad, region_rad, u_T_ff_V)
+    )
     return LawState(elevation, azimuth, psi_rad, phi_rad, psi_ref_rad, phi_ref_rad), LawOutput(u_M_V, u_T_V)
 
 

@@ -22,6 +22,8 @@ _AXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
 def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> Mapping[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c; `template` is a file of controllers/templates for law.c."""
     axes = {"elevation": table.elevation, "azimuth": table.azimuth}
+    feedforwards = {name: float32_polynomial(axis.feedforward_V) for name, axis in axes.items()}
+    degrees = {len(entry) - 1 for entry in (*feedforwards.values(), *_polynomials(table.elevation.gains).values())}
     context = shared_context(table, "float32") | {
         "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "least_schedule_rad": LEAST_SCHEDULE_RAD,
@@ -33,8 +35,9 @@ def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> M
         "last_accepted_fields": LAST_ACCEPTED_FIELDS,
         "axes": [_axis(name, axis, table.sample_period_s) for name, axis in axes.items()],
         "filters": {_filter(axis) for axis in axes.values()},
-        "feedforwards": {name: float32_polynomial(axis.feedforward_V) for name, axis in axes.items()},
-        "degrees": sorted({len(float32_polynomial(axis.feedforward_V)) - 1 for axis in axes.values()} - {0}),
+        "feedforwards": feedforwards,
+        "degrees": sorted(degrees - {0}),
+        "at": _values(table.elevation.gains),
         "gain_fields": [
             (field.name, _shape(getattr(table.elevation.gains, field.name))) for field in fields(table.elevation.gains)
         ],
@@ -53,9 +56,27 @@ def initialiser(value: Any) -> str:
     return c_float32(value)
 
 
+def _polynomials(gains: Any) -> dict[str, tuple[float, ...]]:
+    """The gains that are polynomials in the elevation: tuples of numbers."""
+    values = {field.name: getattr(gains, field.name) for field in fields(gains)}
+    return {
+        name: value
+        for name, value in values.items()
+        if isinstance(value, tuple) and all(isinstance(entry, float) for entry in value)
+    }
+
+
+def _values(gains: Any) -> dict[str, str]:
+    """Their C expressions at `psi_rad`."""
+    return {
+        name: f"polynomial_{len(value) - 1}(gains->{name}, psi_rad)" if len(value) > 1 else f"gains->{name}[0]"
+        for name, value in _polynomials(gains).items()
+    }
+
+
 def _shape(value: Any) -> str:
     """The C dimensions of a gain: "" for a number, "[4][3]" for a tuple of tuples."""
-    return f"[{len(value)}]{_shape(value[0])}" if isinstance(value, tuple) else ""
+    return f"[{len(value)}]{_shape(value[0])}" if isinstance(value, tuple) and value else ""
 
 
 def _filter(axis: AxisTable[Any]) -> str:

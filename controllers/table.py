@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from controllers import pid, scheduled
+from controllers import fuzzy, lqg, pid, scheduled
 from controllers.controller import Controller
 
 CONTROLLERS: Mapping[str, Controller] = {
@@ -10,5 +10,7 @@ CONTROLLERS: Mapping[str, Controller] = {
     for row in (
         scheduled.CONTROLLER,
         pid.CONTROLLER,
+        fuzzy.CONTROLLER,
+        lqg.CONTROLLER,
     )
 }

@@ -19,6 +19,8 @@ from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
 from verification.comparison.manoeuvres import FIGURES
 
+RUNS, SEED = 100, 1
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--plant, --controllers, --runs, --seed, --effects, --steps, --out, --json."""
@@ -27,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--controllers", nargs="+", choices=tuple(CONTROLLERS), default=tuple(CONTROLLERS), metavar="NAME",
         help=f"which of them: {', '.join(CONTROLLERS)}; default: all",
     )  # fmt: skip
-    parser.add_argument("--runs", type=options.count, default=100, help="spread plants; default: %(default)s")
-    parser.add_argument("--seed", type=options.count, default=1, help="of the spread; default: %(default)s")
+    parser.add_argument("--runs", type=options.count, default=RUNS, help="spread plants; default: %(default)s")
+    parser.add_argument("--seed", type=options.count, default=SEED, help="of the spread; default: %(default)s")
     parser.add_argument(
         "--effects", nargs="*", choices=EFFECTS, default=EFFECTS, metavar="EFFECT",
         help=f"added one at a time, each at its reference size: {', '.join(EFFECTS)}; default: all",
@@ -48,7 +50,7 @@ def run(chosen: argparse.Namespace) -> int:
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
     for name in FIGURES:
         write_atomic(chosen.out / f"controllers-{name}.svg", comparison_tables.figure_plot(rows, name))
-    command = f"twinlaw compare --plant {shlex.quote(str(chosen.plant))} --out {shlex.quote(str(chosen.out))}"
+    command = _command(chosen)
     write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, command, str(chosen.out)))
     if chosen.json:
         print(json.dumps(content))
@@ -60,3 +62,16 @@ def run(chosen: argparse.Namespace) -> int:
         print(f"\n{verdict(rows)}\n{chosen.out / 'controllers.md'}")
     demand_equal(rows)
     return 0
+
+
+def _command(chosen: argparse.Namespace) -> str:
+    """The command that was typed, as far as it differs from the defaults."""
+    words = ["twinlaw", "compare", "--plant", str(chosen.plant), "--out", str(chosen.out)]
+    if tuple(chosen.controllers) != tuple(CONTROLLERS):
+        words += ["--controllers", *chosen.controllers]
+    for name, default in (("runs", RUNS), ("seed", SEED), ("steps", STEPS)):
+        if getattr(chosen, name) != default:
+            words += [f"--{name}", str(getattr(chosen, name))]
+    if tuple(chosen.effects) != EFFECTS:
+        words += ["--effects", *chosen.effects]
+    return shlex.join(words)

@@ -1,0 +1,266 @@
+"""LQG of each axis: a Kalman filter that knows the rotor's lag and estimates what voltage is missing, and an LQR on its estimate.
+
+    m <- m + alpha (u - m)                                   the rotor's lag in volts, u the limited voltage            (C.8)
+    p = m + d - u_ff(Psi)                                    what drives the arm beyond its rest at this elevation      (C.9)
+    x <- x + beta_p p + beta_v v + beta_u (u - m)            angle                                                     (C.10)
+    v <- v + gamma_p p + gamma_v v + gamma_u (u - m)         its rate;   d, the missing voltage, stays                   (C.11)
+    x, v, d <- x, v, d + (l_x, l_v, l_d) (angle - x)         the steady-state Kalman filter                              (C.12)
+    u = u_ff(r) - d - k_m (m + d - u_ff(r)) - k_x (x - r) - k_v (v - r')                                                 (C.13)
+
+(C.8) to (C.11) are the linearised rotor and arm of (4)-(9), sampled with a zero-order hold; u_ff is the feed-forward of eq (28),
+of which gravity's stiffness is the slope, so the model is right at every elevation and not only near one. d takes up whatever the
+plant file does not know - weight, thrust, friction, the other axis - and is the integral action; as the filter is given the limited
+voltage, nothing winds up. The coefficients are polynomials in the elevation, fitted over the operating points, each of the lowest degree
+that is within 8 %. Gains: discrete Riccati equations (Anderson and Moore, Optimal Control, 1990, chapters 3 and 8); weights by
+Bryson's rule from WEIGHTS.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_are
+
+from codegen.law_equations import polynomial
+from controllers.designing import Points, axis_table, law_table
+from controllers.equation_controller import EquationController
+from controllers.frame import AxisNumbers, Decisions, Sample
+from design.discretise import exponential_minus_identity
+from design.linearise import LinearPlant
+from design.schedule import fit
+from design.settings import AXES
+from design.table import SENSORS
+from records.law_table import LawTable
+from records.table import Polynomial
+
+N = TypeVar("N")
+Array = NDArray[np.float64]
+
+ANGLE_MAX_RAD, RATE_MAX_RAD_S, MISSING_MAX_V = 8.0, 50.0, 10.0  # beyond: a broken state
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Errors worth a volt of `voltage_V` (Bryson), the noise assumed on rate and missing voltage, and the reference's filter.
+
+    `rate_noise_rad_s2` and `missing_noise_V_s` are per square root of a second; the encoder's noise is its step / sqrt(12).
+    """
+
+    angle_rad: float
+    rate_rad_s: float
+    voltage_V: float
+    rate_noise: float
+    missing_noise: float
+    prefilter_s: float
+
+
+WEIGHTS = {
+    "elevation": Weights(0.03, 0.3, 0.7, 0.15, 1.0, 0.33),
+    "azimuth": Weights(0.05, 0.5, 1.5, 0.15, 2.0, 0.39),
+}
+
+
+@dataclass(frozen=True)
+class LqgGains:
+    """Polynomials in Psi of (C.8) to (C.13), 1/T of the reference's filter, and the ends of the state."""
+
+    alpha: Polynomial
+    beta_p: Polynomial
+    beta_v: Polynomial
+    beta_u: Polynomial
+    gamma_p: Polynomial
+    gamma_v: Polynomial
+    gamma_u: Polynomial
+    l_x: Polynomial
+    l_v: Polynomial
+    l_d: Polynomial
+    k_m: Polynomial
+    k_x: Polynomial
+    k_v: Polynomial
+    reference_rate: float
+    angle_max_rad: float
+    rate_max_rad_s: float
+    missing_max_V: float
+
+
+@dataclass(frozen=True)
+class LqgState(Generic[N]):
+    """What one axis remembers: filtered reference, the rotor's lag, angle, rate, missing voltage."""
+
+    reference_1_rad: N
+    reference_2_rad: N
+    rotor_V: N
+    angle_rad: N
+    rate_rad_s: N
+    missing_V: N
+
+
+class Lqg:
+    """The equations of one axis, name by name and operation by operation as in templates/lqg.c.j2."""
+
+    AxisState = LqgState
+
+    def axis_rest(
+        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, reference_rad: N, angle_rad: N
+    ) -> LqgState[N]:
+        """The rotor still, the arm at rest, nothing missing."""
+        limit_rad = axis.gains.angle_max_rad
+        return LqgState(
+            reference_rad, reference_rad, zero, arithmetic.clamp(angle_rad, -limit_rad, limit_rad), zero, zero
+        )
+
+    def axis_step(
+        self, axis: AxisNumbers[Any], arithmetic: Decisions[Any], zero: Any, state: LqgState[Any], sample: Sample[Any]
+    ) -> tuple[LqgState[Any], Any]:
+        """(C.12), (C.13), the limits, (C.8) to (C.11)."""
+        gains, psi_rad = axis.gains, sample.schedule_rad
+
+        def at(coefficients: Any) -> Any:
+            return polynomial(coefficients, psi_rad, zero)
+
+        innovation_rad = sample.angle_rad - state.angle_rad
+        x_rad = state.angle_rad + at(gains.l_x) * innovation_rad
+        v_rad_s = state.rate_rad_s + at(gains.l_v) * innovation_rad
+        d_V = state.missing_V + at(gains.l_d) * innovation_rad
+        d_V = arithmetic.saturate(d_V, -gains.missing_max_V, gains.missing_max_V, zero)
+
+        m_V = arithmetic.saturate(state.rotor_V, axis.u_min_V, axis.u_max_V, zero)
+        reference_rate_rad_s = (state.reference_1_rad - state.reference_2_rad) * gains.reference_rate
+        feedback_V = (
+            at(gains.k_m) * (m_V + d_V - sample.u_ff_V)
+            + at(gains.k_x) * (x_rad - state.reference_2_rad)
+            + at(gains.k_v) * (v_rad_s - reference_rate_rad_s)
+        )
+        u_V = sample.u_ff_V - d_V - feedback_V
+        limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
+
+        step_V = limited_V - m_V
+        p_V = m_V + d_V - polynomial(axis.feedforward_V, psi_rad, zero)
+        x_rad = x_rad + (at(gains.beta_p) * p_V + at(gains.beta_v) * v_rad_s + at(gains.beta_u) * step_V)
+        v_rad_s = v_rad_s + (at(gains.gamma_p) * p_V + at(gains.gamma_v) * v_rad_s + at(gains.gamma_u) * step_V)
+        remembered = LqgState(
+            state.reference_1_rad,
+            state.reference_2_rad,
+            m_V + at(gains.alpha) * step_V,
+            arithmetic.saturate(x_rad, -gains.angle_max_rad, gains.angle_max_rad, zero),
+            arithmetic.saturate(v_rad_s, -gains.rate_max_rad_s, gains.rate_max_rad_s, zero),
+            d_V,
+        )
+        return remembered, limited_V
+
+
+def design(points: Points) -> LawTable[LqgGains]:
+    """Both axes from Riccati equations at each operating point, fitted over the elevation."""
+    values = {axis: _values(points, axis) for axis in AXES}
+    degrees = {name: max(_degree(points, values[axis][name]) for axis in AXES) for name in NAMES}
+    axes = {
+        axis: axis_table(points, axis, _gains(points, axis, values[axis], degrees), WEIGHTS[axis].prefilter_s)
+        for axis in AXES
+    }
+    return law_table("lqg", points, axes, {axis: vars(WEIGHTS[axis]) for axis in AXES})
+
+
+NAMES = tuple(LqgGains.__dataclass_fields__)[:13]
+FIT = 0.08
+
+
+def _values(points: Points, axis: str) -> dict[str, Array]:
+    """Each coefficient at the operating points (points,)."""
+    resolution_rad = points.bound.plant.sensors[SENSORS[axis]]
+    Ts_s, weights = points.settings.sample_period_s, WEIGHTS[axis]
+    designs = [_at_point(plant, weights, Ts_s, resolution_rad) for plant in points.axis(axis)]
+    return {name: np.array([entry[name] for entry in designs]) for name in NAMES}
+
+
+def _degree(points: Points, values: Array) -> int:
+    """The lowest degree that fits the values to FIT of their largest: every power costs cycles, and most coefficients hardly vary."""
+    most = points.settings.coefficient_degree
+    for degree in range(most):
+        error = np.max(np.abs(polyval(points.psi_rad, fit(points.psi_rad, values, degree)) - values))
+        if error <= FIT * np.max(np.abs(values)):
+            return degree
+    return most
+
+
+def _gains(points: Points, axis: str, values: dict[str, Array], degrees: dict[str, int]) -> LqgGains:
+    return LqgGains(
+        **{name: fit(points.psi_rad, values[name], degrees[name]) for name in NAMES},
+        reference_rate=1.0 / WEIGHTS[axis].prefilter_s,
+        angle_max_rad=ANGLE_MAX_RAD,
+        rate_max_rad_s=RATE_MAX_RAD_S,
+        missing_max_V=MISSING_MAX_V,
+    )
+
+
+def _at_point(plant: LinearPlant, weights: Weights, Ts_s: float, resolution_rad: float) -> dict[str, float]:
+    """All coefficients at one operating point."""
+    A, B = plant.A, plant.B[:, 0]
+    lag = -A[0, 0]
+    k, a, b = A[2, 0] * B[0] / lag, A[2, 1], -A[2, 2]
+    model = sampled(lag, k, a, b, Ts_s)
+    alpha, beta_p, beta_v, beta_u, gamma_p, gamma_v, gamma_u = (model[name] for name in NAMES[:7])
+    phi = np.array(
+        [
+            [1.0 - alpha, 0.0, 0.0],
+            [beta_p - beta_u, 1.0 + beta_p * a / k, beta_v],
+            [gamma_p - gamma_u, gamma_p * a / k, 1.0 + gamma_v],
+        ]
+    )
+    gamma = np.array([[alpha], [beta_u], [gamma_u]])
+    K = _regulator(phi, gamma, weights)
+    seen = np.block([[phi[1:, 1:], np.array([[beta_p], [gamma_p]])], [np.zeros((1, 2)), np.ones((1, 1))]])
+    L = _filter(seen, weights, Ts_s, resolution_rad)
+    return {**model, "l_x": L[0], "l_v": L[1], "l_d": L[2], "k_m": K[0], "k_x": K[1], "k_v": K[2]}
+
+
+def sampled(lag: float, k: float, a: float, b: float, Ts_s: float) -> dict[str, float]:
+    """(C.8) to (C.11) of m' = lag (u - m), x'' = k (m + d - u_ff) + a (x - x_0) - b x' by one matrix exponential."""
+    M = np.zeros((5, 5))  # of q = m - m_0, x - x_0, v, p, u - m_0; the last two are constant over a sample
+    M[0, 0], M[0, 4] = -lag, lag
+    M[1, 2] = 1.0
+    M[2] = [k, a, -b, k, 0.0]
+    step = exponential_minus_identity(M * Ts_s)
+    return {
+        "alpha": step[0, 4],
+        "beta_p": step[1, 3],
+        "beta_v": step[1, 2],
+        "beta_u": step[1, 4],
+        "gamma_p": step[2, 3],
+        "gamma_v": step[2, 2],
+        "gamma_u": step[2, 4],
+    }
+
+
+def _regulator(phi: Array, gamma: Array, weights: Weights) -> Array:
+    """K of u = -K x that minimises sum x'Qx + R u^2."""
+    Q = np.diag([0.0, weights.angle_rad**-2, weights.rate_rad_s**-2])
+    R = np.array([[weights.voltage_V**-2]])
+    X = solve_discrete_are(phi, gamma, Q, R)
+    return np.asarray(np.linalg.solve(R + gamma.T @ X @ gamma, gamma.T @ X @ phi)[0])
+
+
+def _filter(phi: Array, weights: Weights, Ts_s: float, resolution_rad: float) -> Array:
+    """L of x <- x + L (y - C x): the steady-state Kalman filter of angle, rate and missing voltage."""
+    C = np.array([[1.0, 0.0, 0.0]])
+    Q = np.diag([0.0, weights.rate_noise**2, weights.missing_noise**2]) * Ts_s
+    R = np.array([[resolution_rad**2 / 12.0]])
+    P = solve_discrete_are(phi.T, C.T, Q, R)
+    return np.asarray((P @ C.T / (C @ P @ C.T + R))[:, 0])
+
+
+CONTROLLER = EquationController(
+    name="lqg",
+    title="LQG: Kalman filter and LQR, scheduled",
+    source="ours: what the papers' controllers are to be beaten by",
+    note=(
+        "is a Kalman filter, which knows the rotor's lag and estimates the voltage that is missing for whatever the plant file "
+        "does not know, and an LQR on its estimate, both from Riccati equations at the 17 operating points and scheduled by "
+        "polynomials in the elevation. That estimate is the integral action, and as the filter is told the limited voltage "
+        "nothing winds up."
+    ),
+    equations=Lqg(),
+    tables=design,
+    template="lqg.c.j2",
+)
