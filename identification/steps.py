@@ -67,7 +67,7 @@ def shift_sd(problem: Problem, point: Point) -> float:
     if not all(np.all(np.isfinite(entry)) for entry in apart):
         return np.inf
     A, g = leaned(problem, point, apart)
-    return float(np.sqrt(max(0.0, g @ np.linalg.solve(A, g)))) if g.size else 0.0
+    return float(np.sqrt(max(0.0, float(g @ np.linalg.solve(A, g))))) if g.size else 0.0
 
 
 def finer(runs: Sequence[Run], point: Point) -> tuple[Run, ...]:
