@@ -8,6 +8,7 @@ The page stays on this computer. Ctrl-C disarms and ends.
 import argparse
 import json
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -58,8 +59,7 @@ def run(chosen: argparse.Namespace) -> int:
         server = Server(Site(session, source.facts(), page_bytes()), chosen.http_port)
         end = serve(server)
         try:
-            _tell(server.url, chosen)
-            _run_until_told(session)
+            _run_until_told(session, lambda: _tell(server.url, chosen))
         finally:
             end()
     finally:
@@ -73,10 +73,11 @@ def page_bytes() -> bytes:
     return environment.get_template("watch.html.j2").render().encode()
 
 
-def _run_until_told(session: Session) -> None:
-    """Until Ctrl-C or a request to end: between two samples, never in the middle of a frame."""
+def _run_until_told(session: Session, announce: Callable[[], None]) -> None:
+    """Until Ctrl-C or a request to end, from when the address is told: between two samples, never in the middle of a frame."""
     former = {number: signal.signal(number, lambda *_: session.stop()) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
+        announce()
         session.run()
     finally:
         for number, handler in former.items():
