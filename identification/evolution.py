@@ -11,7 +11,7 @@ from identification.solve import Problem
 
 Array = NDArray[np.float64]
 GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each parameter
-HUGE = 1e300
+HUGE = 1e100  # of a motion that leaves all bounds; SciPy squares it
 
 
 def evolution(
@@ -35,7 +35,7 @@ def evolution(
             total = sum(
                 float(np.sum(((run.y - predicted(run, problem.names, theta)) / run.sd) ** 2)) for run in problem.runs
             )
-        return total if np.isfinite(total) else HUGE
+        return min(total, HUGE) if np.isfinite(total) else HUGE
 
     bounds = [(np.log(a), np.log(b)) if log else (a, b) for a, b, log in zip(lower, upper, logarithmic, strict=True)]
     started = np.where(logarithmic, np.log(np.maximum(problem.start[places], 1e-300)), problem.start[places])

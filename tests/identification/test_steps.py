@@ -6,7 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from identification.belief import NOTHING
+from identification.estimate import problem_of
+from identification.evolution import evolution
+from identification.log_run import log_run
 from identification.logs import identify_logs, prediction_tests
+from identification.ranges import ranges_of
 from records.errors import BadInput
 from records.log import RunLog
 from records.plant import load_plant
@@ -54,3 +59,14 @@ def test_a_log_held_out_is_predicted_in_as_many_steps():
 def test_what_no_steps_can_follow_is_refused():
     with pytest.raises(BadInput, match="leaves all bounds, in 64 steps"):
         identify_logs(arm(b=80.0, d=2e4, k=15.66), {"log": flown(arm(b=80.0, d=28.0, k=15.66))}, NAMES)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_search_over_motions_that_leave_all_bounds_goes_on_in_silence():
+    """In one step per sample all of the range but its lower end breaks down; the search ends there and warns of nothing."""
+    start = arm(b=80.0, d=28.0, k=15.66)
+    run = log_run(start, flown(start), "log", 10.0)
+    problem = problem_of((run,), ("d",), ranges_of(start, ("d",), {"d": (10.0, 1e4)}), NOTHING)
+    values, best = evolution(problem, [0], 1, lambda _: None)
+    assert values[0] == pytest.approx(28.0, rel=0.02)
+    assert np.isfinite(best).all()
