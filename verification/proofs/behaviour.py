@@ -8,7 +8,7 @@ EVA encloses every value that any run can reach (abstract interpretation; Frama-
 
 Law in fixed point, where every word is a number:
 
-    inputs of any words: no overflow, no undefined behaviour, outputs and duties within their limits;
+    state and inputs of any words: no overflow, no undefined behaviour, outputs and duties within their limits;
     the decisions by masks, any words: the same.
 """
 
@@ -28,7 +28,7 @@ NAME = "no undefined behaviour"
 _OPTIONS = ("-c11", "-eva", "-eva-precision", "3", "-machdep", "gcc_x86_32")
 _TOLD = {
     "float32": "in range all numbers finite, with any bits",
-    "fixed": "with any words nothing overflows,",
+    "fixed": "from any state, with any words nothing overflows,",
 }
 _SPECIAL_FLOATS = ("-warn-special-float", "none")
 
@@ -63,7 +63,7 @@ def analyses(subject: Subject) -> tuple[Analysis, ...]:
 def _fixed_analyses(subject: Subject) -> tuple[Analysis, ...]:
     law_h, law_c = subject.generated["law.h"], subject.generated["law.c"]
     return (
-        Analysis("inputs of any words", {"law.h": law_h, "law.c": decision_view(law_c), "driver.c": DRIVER}),
+        Analysis("state and inputs of any words", {"law.h": law_h, "law.c": decision_view(law_c), "driver.c": DRIVER}),
         Analysis("decisions on any words", {"law.h": law_h, "law.c": law_c, "driver.c": DECISIONS_DRIVER}),
     )
 

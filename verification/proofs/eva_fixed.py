@@ -72,16 +72,22 @@ DRIVER = f"""#include "law.h"
 {_ANY_WORD}
 int main(void)
 {{
-    law_state state;
+    union {{
+        law_state state;
+        int32_t words[sizeof(law_state) / sizeof(int32_t)];
+    }} memory;
     law_input input;
     law_output output;
-    law_reset(&state, any_word(), any_word());
+    law_reset(&memory.state, any_word(), any_word());
     while (1) {{
+        for (uint32_t i = 0u; i < sizeof(law_state) / sizeof(int32_t); i++) {{
+            memory.words[i] = any_word();
+        }}
         input.psi_ref_rad = any_word();
         input.phi_ref_rad = any_word();
         input.psi_rad = any_word();
         input.phi_rad = any_word();
-        law_step(&state, &input, &output);
+        law_step(&memory.state, &input, &output);
         /*@ assert main_within: LAW_U_M_MIN_V <= output.u_M_V <= LAW_U_M_MAX_V; */
         /*@ assert tail_within: LAW_U_T_MIN_V <= output.u_T_V <= LAW_U_T_MAX_V; */
         const int32_t main_ticks = law_duty_main(any_word());
