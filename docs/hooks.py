@@ -1,5 +1,6 @@
 """What the site has beside the pages of this folder: README.md as its first page, and a reference made from the sources."""
 
+import os
 import re
 import tomllib
 from pathlib import Path
@@ -36,6 +37,7 @@ def first_page() -> str:
 
 def verbs_page() -> str:
     """What every verb says of itself with --help."""
+    os.environ["COLUMNS"] = "100"  # else the help is as wide as the terminal of whoever builds
     parser = build_parser(tuple(VERBS))
     verbs = next(action.choices for action in parser._actions if isinstance(action.choices, dict))
     parts = [f"## {word}\n\n```text\n{verbs[word].format_help().rstrip()}\n```\n" for word in VERBS]

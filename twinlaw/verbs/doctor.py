@@ -22,6 +22,7 @@ from twinlaw import console, options
 EXTRAS: Mapping[str, str] = {
     "peers": "bench: the tools it compares with",
     "test": "make test",
+    "docs": "make docs",
     "mdf4": "import: logs in MDF4",
     "proofs": "verify --proofs",
 }
