@@ -18,7 +18,8 @@ test: $(VENV)/.test  ## the whole test suite, style and types included
 	$(BIN)/python -m pytest
 
 docs: $(VENV)/.docs  ## the documentation as a site that needs no network, build/site/index.html
-	$(BIN)/mkdocs build --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo build/site/index.html
 
 soak: $(VENV)/.test  ## faults at full length: every byte, every bit of the state, 100 seeds, a million frames
 	TWINLAW_SOAK=1 $(BIN)/python -m pytest tests/rig/test_hostile_*.py tests/firmware/test_faults_*.py

@@ -23,6 +23,7 @@ from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
 
 PLANT = Path("plants/ce150.toml")
+PATIENT_S = 30.0  # a page that is slow because the computer is busy with other tests is not lost
 
 
 @pytest.fixture(scope="session")
@@ -63,7 +64,7 @@ def watch(carried: Path) -> Iterator[Open]:
 def running(asked: Watched, clock: Callable[[], float] | None) -> Iterator[Watch]:
     bound, source, locked = open_watched(asked)
     clocked = {} if clock is None else {"clock": clock}
-    session = Session(source, Lookahead(bound, locked), Events(), **clocked)
+    session = Session(source, Lookahead(bound, locked), Events(), lost_s=PATIENT_S, **clocked)
     server = Server(Site(session, source.facts(), page_bytes()), 0)
     end = serve(server)
     mover = threading.Thread(target=session.run)

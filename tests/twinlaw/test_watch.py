@@ -19,7 +19,7 @@ from rig.client import BoardClient
 from rig.emulator.pty_port import PtyBoard
 from sim.columns import log_columns
 from sim.plants import MODELS
-from tests.twinlaw.conftest import Open, Watch
+from tests.twinlaw.conftest import PATIENT_S, Open, Watch
 from twinlaw.command import main
 
 PATIENCE_S = 60.0
@@ -235,7 +235,7 @@ def test_a_page_that_is_open_but_no_longer_answers_disarms(watch: Open) -> None:
     assert page.wish(do="arm")[0] == 200
     page.next("status", lambda status: status["armed"])
     page.lives = False
-    late_s[0] = 3.0
+    late_s[0] = PATIENT_S + 1.0
     assert page.next("status", lambda status: not status["armed"])["state"] == "DISARMED"
 
 

@@ -1,6 +1,6 @@
 """The one thread that moves what is watched; pages leave wishes, and read events.
 
-Who arms is the pilot: one page at a time. Anyone may stop. A pilot's page that closes, or is not heard for LOST_S, disarms.
+Who arms is the pilot: one page at a time. Anyone may stop. A pilot's page that closes, or is not heard for `lost_s`, disarms.
 """
 
 import contextlib
@@ -38,8 +38,14 @@ class Session:
     """Source, prediction and events; `run` until `stop`. `ask`, `opened`, `heard` and `gone` may be called from any thread."""
 
     def __init__(
-        self, source: Source, lookahead: Lookahead, events: Events, clock: Callable[[], float] = time.monotonic
+        self,
+        source: Source,
+        lookahead: Lookahead,
+        events: Events,
+        clock: Callable[[], float] = time.monotonic,
+        lost_s: float = LOST_S,
     ) -> None:
+        self._lost_s = lost_s
         self.events = events
         self.source = source
         self._lookahead, self._clock = lookahead, clock
@@ -107,7 +113,7 @@ class Session:
     def _look_after_the_pilot(self) -> None:
         if not self.source.armed:
             self._pilot = None
-        if self._pilot is not None and self._clock() - self._heard.get(self._pilot, -LOST_S) > LOST_S:
+        if self._pilot is not None and self._clock() - self._heard.get(self._pilot, -self._lost_s) > self._lost_s:
             self._carry_out(Wish(self._pilot, {"do": "stop"}))
 
     def _obey_until(self, next_s: float) -> None:
