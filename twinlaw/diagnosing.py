@@ -15,16 +15,15 @@ from records.errors import BadInput
 from records.files import write_atomic
 from records.log import RunLog, load_log
 from records.log_csv import rows_text
-from records.plant import plant_text
+from records.plant import load_plant, plant_text
 from records.units import unit_suffix
-from sim.bind import BoundPlant
+from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.effects.api import library, without_effects
 from toolchain.memory import keep_freed_memory
 from twinlaw import diagnosis_page
 from twinlaw.console import stage
 from twinlaw.page import Page, page_text
-from twinlaw.stages import load_bound
 
 BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with what was found
 
@@ -33,7 +32,7 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
     """Diagnose log files against a plant file and write all results into `out`; raises BadInput."""
     keep_freed_memory()
     with stage("reading the logs and looking at them"):
-        bound = load_bound(plant)
+        bound = bind(load_plant(plant))
         nominal = without_effects(bound) if bound.effects else bound
         material = _material(nominal, logs, holdout)
     with stage("searching for what the model lacks"):
