@@ -14,7 +14,7 @@ from design.settings import read_settings
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.protocol import PROTOCOL
-from records.verification import Equality, TargetCost, equality_table
+from records.verification import Equality, equality_table
 from rig.emulator.board import EmulatedBoard
 from rig.image import build_firmware
 from rig.target_law import TargetLaw
@@ -26,7 +26,6 @@ from verification.comparison.measures import Merit
 from verification.equality import compare
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
-from verification.static_bound import kept_bound
 from verification.stimuli import standard_stimuli
 
 SCHEMA = "comparison/1"
@@ -40,6 +39,16 @@ class Wanted:
     steps: int
 
 
+@dataclass(frozen=True)
+class BoardCost:
+    """What one control step took at most, of all that were compared, and the image's memory; flash without wait states."""
+
+    cycles_max: int
+    stack_bytes: int
+    flash_bytes: int
+    ram_bytes: int
+
+
 @dataclass(frozen=True, eq=False)
 class Compared:
     """One controller: its table's digest, equality and cost on the board, and its flights with their merits by axis."""
@@ -48,7 +57,7 @@ class Compared:
     digest: str
     equality: tuple[Equality, ...]
     self_test_mismatches: int
-    cost: TargetCost
+    cost: BoardCost
     flights: Mapping[str, Flown]
     figures: Mapping[str, Mapping[str, Merit]]
     spread: Sequence[Mapping[str, Merit]]
@@ -80,13 +89,9 @@ def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Pat
     with stage(f"{name}: stepping twin, host and target side by side"):
         equality = tuple(compare(one, other, stimuli).equality for one, other in ((twin, host), (host, target)))
         mismatches = host.self_test() + target.self_test()
-    with stage(f"{name}: bounding cycles and stack"):
-        bounded = kept_bound(image.elf, "law_step")
-    cost = TargetCost(
-        arithmetic="float32",
+    cost = BoardCost(
         cycles_max=target.cycles_max,
-        cycles_bound=bounded.cycles_bound,
-        stack_bytes=bounded.stack_bytes,
+        stack_bytes=target.stack_bytes,
         flash_bytes=image.sizes.flash_bytes,
         ram_bytes=image.sizes.ram_bytes,
     )
