@@ -30,7 +30,8 @@ class LoopSession:
             try:
                 return self._last()
             except Refused as refusal:
-                if refusal.reason != "NOT_ARMED":
+                # A board that has not lost its host and is not armed was reset: that is no pause of the computer.
+                if refusal.reason != "NOT_ARMED" or not self._client.counters()["host_losses"]:
                     raise
                 self._is_armed = False
                 self.losses += 1

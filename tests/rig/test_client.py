@@ -227,17 +227,17 @@ def test_telemetry_that_came_while_a_reply_was_awaited_is_not_lost():
     assert ticks == [1, 2, 3, 4, 5]
 
 
-def test_a_board_that_lost_its_host_refuses_samples_with_the_remedy():
+def test_a_board_that_lost_its_host_refuses_samples_with_the_remedy_and_its_controller_arms_it_again():
     port = BoxPort()
-    controller = BoardController(client_over(port))
+    client = client_over(port)
+    controller = BoardController(client)
     controller.reset(0.0, 0.0)
     controller.step(0.0, 0.0, 0.0, 0.0)
     for _ in range(LOSS + RAMP):
         port.tick()
-    error = refusal(lambda: controller.step(0.0, 0.0, 0.0, 0.0))
+    error = refusal(lambda: client.sample(0.0, 0.0, 0.0, 0.0))
     assert "arm it first" in error.remedy
     assert "host was lost" in error.got
-    controller.reset(0.0, 0.0)
     assert controller.step(0.25, 0.0, 0.125, 0.0)[0] == 1.25
 
 
