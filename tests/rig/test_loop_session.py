@@ -66,3 +66,13 @@ def test_round_trips_and_ticks_are_measured_with_the_power_stage_off():
     )  # this port lets time pass by whole ticks
     assert timing.tick_jitter_s == timing.tick_latency_max_s - timing.tick_latency_min_s
     assert port.box.state == "DISARMED"
+
+
+def test_a_board_that_is_not_armed_without_having_lost_its_host_is_told():
+    client = connect(TimedBox())
+    session = LoopSession(client, 0.0, 0.0)
+    session.step((0.0, 0.0, 0.0, 0.0))
+    client.disarm()  # as a reset would
+    with pytest.raises(Refused, match="arm it first"):
+        session.step((0.0, 0.0, 0.0, 0.0))
+    assert session.losses == 0
