@@ -221,7 +221,8 @@ CONTROLLER = EquationController(
     note=(
         "has the rules of Tables I-VI, max-min inference and the centroid. The paper's stored text has the figures' labels and "
         "axes, not their curves: universes, output peaks, regions and rules are read from it; the widths of the error's sets "
-        "and the time of the derivative are set by flying the design plant. Mended are rule 2 (positive error, positive "
+        "and the time of the derivative are ours, the best of some forty variants flown on the design plant: what fails below may be our "
+        "reading and not the paper's controller. Mended are rule 2 (positive error, positive "
         "output), the outputs' names, the missing set Bneg, the output that is 0 where hovering takes half of the range (it is "
         "added to the feed-forward) and the scale of the output's axis; `controllers/fuzzy_sets.py` names each. The reference "
         "is not filtered, as in the paper."

@@ -258,7 +258,9 @@ CONTROLLER = EquationController(
         "is a Kalman filter, which knows the rotor's lag and estimates the voltage that is missing for whatever the plant file "
         "does not know, and an LQR on its estimate, both from Riccati equations at the 17 operating points and scheduled by "
         "polynomials in the elevation. That estimate is the integral action, and as the filter is told the limited voltage "
-        "nothing winds up."
+        "nothing winds up. Its weights are the best of seven sets that were flown on spread plants of this page's own seed and manoeuvre, "
+        "and its references are filtered faster than the scheduled law's (0.33 and 0.39 s instead of 0.4 and 0.5 s), which alone lowers "
+        "the IAE; so where it leads the scheduled law by little, that is no proof."
     ),
     equations=Lqg(),
     tables=design,
