@@ -28,13 +28,15 @@ Array = NDArray[np.float64]
 class Noise:
     """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances.
 
-    `drive` (states,) is the variance that a command which nobody knows gives each state in a second, by the second squared.
+    `drive` (states,) is the variance that a command which nobody knows gives each state in a second, by the second squared; `rest_s` the
+    usual step from row to row, for which friction keeps a resting axis in doubt.
     """
 
     q: Array
     rub: Array
     p0: Array
     drive: Array
+    rest_s: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +119,7 @@ class Filter:
             address = self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
             setattr(request, name, address)
         request.steps, request.columns, request.slots = steps, len(columns), width
+        request.rest_s = noise.rest_s
         if self.lib.filter_run(request) != steps:
             return None
         gains = (arrays["F"], arrays["K"], arrays["H"]) if keep_gains else None

@@ -78,7 +78,8 @@ def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed, r
     for axis, unrest in zip(kit.bound.model.axes, supposed.unrest, strict=True):
         q[kit.states.index(str(axis.velocity))] = 10.0 ** (2.0 * unrest)
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive)
+    rest_s = float(np.median(np.diff(flight.log.t_s)))
+    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive, rest_s)
 
 
 def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:

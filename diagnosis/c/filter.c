@@ -230,7 +230,7 @@ static void stir(filter_state *at, double *noise)
 }
 
 /* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. At rest, where the
- * speed's row is emptied, the doubt is the same however long the step, so that instants more or less change nothing. */
+ * speed's row is emptied, the doubt is that of `rest_s` however long the step, so that instants more or less change nothing. */
 static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
 {
     double level[AXES] = {0.0}, sign[AXES];
@@ -240,8 +240,8 @@ static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
     for (int a = 0; a < N_AXES; a++) {
         const int v = AXIS_VELOCITY[a];
         const double rub = at->request->rub[a], square = level[a] * level[a];
-        const double width = square * 0.25 * rub * rub + at->P[v][v];
-        const double lasts_s = at->body.move[a] == 0.0 ? 0.5 * rub : h_s;
+        const double rest_s = at->request->rest_s, width = square * rest_s * rest_s + at->P[v][v];
+        const double lasts_s = at->body.move[a] == 0.0 ? rest_s : h_s;
         if (square > 0.0 && rub > 0.0)
             noise[v] += square * lasts_s * rub * exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
     }

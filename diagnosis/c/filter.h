@@ -22,6 +22,7 @@ typedef struct {
     double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
     double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements, or NULL */
     double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
+    double rest_s;                           /* the usual step from row to row */
     double log_likelihood;
 } filter_request;
 
