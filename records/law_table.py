@@ -8,12 +8,11 @@ controller's own `gains`, a frozen record of numbers and tuples of numbers.
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
-from records.table import Polynomial, canonical_text
+from records.table import Polynomial, canonical_text, lag_gain
 
 SCHEMA = "law-table/1"
 G = TypeVar("G")
@@ -64,9 +63,8 @@ class AxisTable(Generic[G]):
     resolution_rad: float
 
     def prefilter_gain(self, sample_period_s: float) -> float:
-        """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
-        T_s = self.prefilter_time_constant_s
-        return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+        """b of the axis' reference filter, see `lag_gain`."""
+        return lag_gain(self.prefilter_time_constant_s, sample_period_s)
 
 
 @dataclass(frozen=True)

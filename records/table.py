@@ -36,6 +36,11 @@ PLAUSIBLE_V = 2.0**20
 LEAST_SCHEDULE_RAD = 2.0**-30
 
 
+def lag_gain(T_s: float, sample_period_s: float) -> float:
+    """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
+    return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+
+
 @dataclass(frozen=True)
 class AxisLaw:
     """The law of one axis; `q_V_rad` has 4 polynomials, `p` 3, `a` 3 numbers; voltages in V, angles in rad."""
@@ -53,9 +58,8 @@ class AxisLaw:
     resolution_rad: float
 
     def prefilter_gain(self, sample_period_s: float) -> float:
-        """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
-        T_s = self.prefilter_time_constant_s
-        return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+        """b of the axis' reference filter, see `lag_gain`."""
+        return lag_gain(self.prefilter_time_constant_s, sample_period_s)
 
 
 @dataclass(frozen=True)
