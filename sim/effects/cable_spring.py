@@ -1,9 +1,13 @@
-"""A cable that is bent pulls back.
+"""A cable that is bent pulls back, the harder the further it is bent.
 
-(1)  torque - k (angle - angle_0)
+(1)  torque - k x (1 + h x^2),  x = angle - angle_0
+
+Eq (1) with h = 0 is Hooke's law; a cable near the end of its slack is stiffer, and a straight spring would leave that to other effects.
 """
 
 from collections.abc import Iterator
+
+import sympy
 
 from sim.effects.edits import axis_of, short, with_torque
 from sim.effects.effect import Effect, EffectParameter
@@ -29,12 +33,17 @@ def effects(model: Model) -> Iterator[Effect]:
             parameters=(
                 EffectParameter("k", f"{entry.torque_unit} {unit}^-1", -0.5 * size, 2.0 * size, 0.05 * size, 0.0),
                 EffectParameter("angle_0", unit, -4.0, 4.0, 0.0, starts=(0.0, -0.5, 0.5)),
+                EffectParameter("h", f"{unit}^-2", 0.0, 1.0, 0.0, None, (0.1,), refining=True),
             ),
-            equation=f"- k ({angle} - angle_0)",
+            equation=f"- k x (1 + h x^2), x = {angle} - angle_0",
             story="The cables to the moving part bend and pull it back to one angle.",
-            source="Hooke's law",
-            edit=lambda model, k, angle_0, axis=axis: with_torque(
-                model, axis, -k * (axis_of(model, axis).position - angle_0)
+            source="Hooke's law; the cubic term is that of Duffing's spring",
+            edit=lambda model, k, angle_0, h, axis=axis: with_torque(
+                model, axis, -k * _bent(axis_of(model, axis).position - angle_0, h)
             ),
             twins=twins,
         )
+
+
+def _bent(x: sympy.Expr, h: sympy.Symbol) -> sympy.Expr:
+    return x * (1 + h * x**2)

@@ -22,7 +22,7 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"dead band of {u}",
             parameters=(
                 EffectParameter("d", entry.unit, 0.0, 0.4 * entry.size, 0.02 * entry.size, 0.0, _starts(entry.size)),
-                EffectParameter("w", "1", 0.0, 3.0, 0.0, None, (0.5,)),
+                EffectParameter("w", "1", 0.0, 3.0, 0.0, None, (0.5,), refining=True),
             ),
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",

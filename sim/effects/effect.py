@@ -17,7 +17,8 @@ class EffectParameter:
     """A number of an effect's formula, under the formula's symbol.
 
     `zero` is the value at which the effect vanishes, None for a number that only shapes it; `reference` is a size that one may meet
-    on such a rig. `starts` are the values from which a fit begins where one is not enough; all lie within [lower, upper].
+    on such a rig. `starts` are the values from which a fit begins where one is not enough; all lie within [lower, upper]. One that is
+    `refining` is 0 in the effect's plain formula, and a plant file may leave it out.
     """
 
     symbol: str
@@ -27,6 +28,7 @@ class EffectParameter:
     reference: float
     zero: float | None = None
     starts: tuple[float, ...] = ()
+    refining: bool = False
 
     @property
     def is_size(self) -> bool:

@@ -14,7 +14,8 @@ from sim.model import Model
 NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent
 
 SHARP = 1e-9  # V: the least width of a corner
-ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,))  # of a corner, as a share of where it lies
+# Of a corner, as a share of where it lies.
+ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,), refining=True)
 
 
 def effects(model: Model) -> Iterator[Effect]:

@@ -31,7 +31,7 @@ def effects(model: Model) -> Iterator[Effect]:
                     0.08 * speed,
                     starts=(0.03 * speed, 0.1 * speed, 0.3 * speed),
                 ),
-                EffectParameter("e", "1", 0.0, 20.0, 0.0, starts=(0.0, 3.0)),
+                EffectParameter("e", "1", 0.0, 20.0, 0.0, starts=(0.0, 3.0), refining=True),
             ),
             equation=f"- b_s exp(-x^2/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",

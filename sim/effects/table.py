@@ -79,9 +79,13 @@ def _check_place(place: str, model: Model, where: str) -> None:
 
 def _read(effect: Effect, section: Any, where: str) -> Mapping[str, Parameter]:
     table = checks.table(section, where)
-    checks.keys(table, where, (parameter.symbol for parameter in effect.parameters))
+    refining = [parameter.symbol for parameter in effect.parameters if parameter.refining]
+    checks.keys(table, where, [symbol for symbol in effect.parameter if symbol not in refining], refining)
     entries = {}
     for parameter in effect.parameters:
+        if parameter.symbol not in table:
+            entries[parameter.symbol] = Parameter(0.0, 0.0, parameter.unit, "the plain formula")
+            continue
         entry = parameter_entry(table[parameter.symbol], f"{where}.{parameter.symbol}")
         _check(effect, parameter, entry, where)
         entries[parameter.symbol] = entry

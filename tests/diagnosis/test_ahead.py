@@ -15,7 +15,7 @@ from sim.effects.api import with_effects
 from tests.diagnosis.conftest import Fly
 
 STEP_RAD = 1.534e-3
-SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0}}
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0, "h": 0.0}}
 
 
 def rows_of(log: RunLog) -> list[LiveRow]:

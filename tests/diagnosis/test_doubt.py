@@ -16,7 +16,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 
-SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}}
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) 
 
 @pytest.fixture(scope="module")
 def spring(plant: BoundPlant, fly: Fly) -> Result:
-    return result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}})
+    return result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}})
 
 
 def test_a_spring_is_found_with_its_stiffness(spring: Result) -> None:
@@ -54,7 +54,7 @@ def test_the_answer_is_a_valid_record_and_its_plant_binds(spring: Result) -> Non
 
 
 def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, spring: Result) -> None:
-    again = result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}})
+    again = result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}})
     assert diagnosis_text(again.diagnosis) == diagnosis_text(spring.diagnosis)
 
 

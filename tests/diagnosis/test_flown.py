@@ -46,7 +46,7 @@ def readings(law: HostLaw, rig: Flown | SteppedPlant, samples: int = 500) -> np.
     "effects",
     [
         {},
-        {"azimuth.cable_spring": {"k": 0.003, "angle_0": 0.1}},
+        {"azimuth.cable_spring": {"k": 0.003, "angle_0": 0.1, "h": 0.0}},
         {"main_input.delay": {"tau": 0.013}, "psi_sensor.delay": {"tau": 0.033}},
     ],
 )

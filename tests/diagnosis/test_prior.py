@@ -26,7 +26,7 @@ def test_a_common_effect_goes_before_a_rare_one_of_the_same_form() -> None:
 
 
 def test_a_spring_that_pushes_away_is_less_probable_than_one_that_pulls() -> None:
-    pulls, pushes = (tried(elevation__cable_spring={"k": k, "angle_0": 0.0}) for k in (0.002, -0.002))
+    pulls, pushes = (tried(elevation__cable_spring={"k": k, "angle_0": 0.0, "h": 0.0}) for k in (0.002, -0.002))
     assert prior_odds(pulls) > prior_odds(pushes)
 
 

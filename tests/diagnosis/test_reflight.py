@@ -18,7 +18,7 @@ from sim.manoeuvres import Leg, Manoeuvre, manoeuvre
 from tests.law_tables import ce150_table
 from verification.host_law import host_law
 
-SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}}
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 STEP_RAD = 2.0 * np.pi / 4096.0
 
 
@@ -55,7 +55,7 @@ def test_the_true_model_flies_the_log_and_one_without_the_spring_does_not(case: 
 
 def test_a_flight_that_leaves_the_log_is_called_diverged(case: Case) -> None:
     without = nothing_supposed(case, -4.0)
-    runaway = without.with_effects({"azimuth.cable_spring": {"k": -0.05, "angle_0": -1.0}})
+    runaway = without.with_effects({"azimuth.cable_spring": {"k": -0.05, "angle_0": -1.0, "h": 0.0}})
     found = closed_loop(case, ["hold"], [ce150_table()], {"nominal": runaway, "before": without, "after": without})
     assert found is not None
     assert found.diverged == ("nominal",)

@@ -11,7 +11,7 @@ from sim.effects.api import with_effects
 from tests.diagnosis.conftest import Fly
 
 RIG = 7
-SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2}}
+SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from tests.diagnosis.conftest import Fly
 
 SECONDS = 10.0
 EFFECTS = [
-    {"azimuth.cable_spring": {"k": 0.01, "angle_0": 0.2}},
+    {"azimuth.cable_spring": {"k": 0.01, "angle_0": 0.2, "h": 0.0}},
     {"azimuth.coulomb": {"b": 0.004}},
     {"tail_rotor.reverse_asymmetry": {"r": 0.4}},
 ]

@@ -59,8 +59,17 @@ def test_the_contract_s_table_is_there_with_its_symbols() -> None:
         name, *symbols = entry.split()
         own, further = library[name].parameters[: len(symbols)], library[name].parameters[len(symbols) :]
         assert [parameter.symbol for parameter in own] == symbols
-        # What the contract's formula does not have leaves it as it is: a shape that may be 0.
-        assert all(parameter.first == 0.0 and not parameter.is_size for parameter in further), name
+        # What the contract's formula does not have leaves it as it is: a shape that is 0 where a plant file does not give it.
+        assert not any(parameter.refining for parameter in own), name
+        assert all(parameter.refining for parameter in further), name
+
+
+def test_what_refines_a_formula_is_a_shape_that_may_be_0(model: Model) -> None:
+    for effect in effects_for(model).values():
+        for parameter in effect.parameters:
+            if parameter.refining:
+                assert parameter.first == parameter.lower == 0.0, effect.name
+                assert not parameter.is_size, effect.name
 
 
 @pytest.mark.parametrize("plant", list(OTHERS))

@@ -37,7 +37,7 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "azimuth.inertia_shape": {"J_0": 0.0005},
     "azimuth.tilt": {"Phi_0": 0.7},
     "azimuth.wind": {"Phi_w": -0.6},
-    "azimuth.cable_spring": {"angle_0": 0.3},
+    "azimuth.cable_spring": {"angle_0": 0.3, "h": 0.2},
     "main_input.delay": {"tau": 0.0125},
     "tail_input.delay": {"tau": 0.0125},
     "loop.delay": {"tau": 0.0275},
@@ -179,7 +179,7 @@ def test_all_effects_at_next_to_no_size_have_derivatives_by_their_sizes() -> Non
 def test_values_are_changed_without_touching_the_equations(everything: BoundPlant) -> None:
     other = with_values(everything, {"azimuth.cable_spring": {"k": 0.003}})
     assert other.model is everything.model
-    assert effect_values(other)["azimuth.cable_spring"] == {"k": 0.003, "angle_0": 0.0}
+    assert effect_values(other)["azimuth.cable_spring"] == {"k": 0.003, "angle_0": 0.0, "h": 0.0}
     assert effect_values(everything)["azimuth.cable_spring"]["k"] == 0.0
 
 
