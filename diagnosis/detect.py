@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
+from diagnosis.abreast import each
 from diagnosis.case import Case
 from diagnosis.fit import Fit, away, size_scale, strain
 from diagnosis.generic import Form, forms
@@ -80,20 +81,24 @@ def _events(case: Case, ground: Ground, drawn: Array) -> tuple[list[float], Arra
     """
     kit = case.kit
     targets = {target_of(case, kit.effects[name]) for name in kit.candidates}
-    seen, found = [], [np.zeros(drawn.shape[1])]
-    for target in sorted(target for target in targets if target is not None):
-        answers = ground.answers_to_steps(target)
-        _, scores = ground.steps(target)
-        share = ground.solve @ (ground.slopes.T @ answers)
-        score = answers.T @ drawn - share.T @ (ground.slopes.T @ drawn)
-        gram = scores.gram
-        first, last = _spans(len(gram))
-        norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)
-        null = 0.5 * (score[first] - score[last]) ** 2 / norm[:, None]
-        usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
-        seen.append(float(np.max(0.5 * (scores.score[first] - scores.score[last]) ** 2 / norm / usual)))
-        found.append(np.max(null / usual[:, None], axis=0))
-    return seen, np.array(found)
+    known = sorted(target for target in targets if target is not None)
+    pairs = each(lambda target: _pulses(ground, drawn, target), known)
+    return [seen for seen, _ in pairs], np.array([np.zeros(drawn.shape[1]), *(null for _, null in pairs)])
+
+
+def _pulses(ground: Ground, drawn: Array, target: int) -> tuple[float, Array]:
+    """The largest gain of steps and pulses of one target, in the log and in each replica."""
+    answers = ground.answers_to_steps(target)
+    _, scores = ground.steps(target)
+    share = ground.solve @ (ground.slopes.T @ answers)
+    score = answers.T @ drawn - share.T @ (ground.slopes.T @ drawn)
+    gram = scores.gram
+    first, last = _spans(len(gram))
+    norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)
+    null = 0.5 * (score[first] - score[last]) ** 2 / norm[:, None]
+    usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
+    seen = float(np.max(0.5 * (scores.score[first] - scores.score[last]) ** 2 / norm / usual))
+    return seen, np.max(null / usual[:, None], axis=0)
 
 
 def _spans(count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

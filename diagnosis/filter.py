@@ -21,6 +21,8 @@ MAX_COLUMNS = 256
 SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c"))
 HEADERS = tuple(c_text(path) for folder in (C_DIR, SIM_C) for path in sorted(folder.glob("*.h")))
 DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.h")
+# Unlike the simulation's kernels nothing must be equal to the bit here.
+FLAGS = (*FAST_FLAGS, "-ffp-contract=fast")
 Array = NDArray[np.float64]
 
 
@@ -171,7 +173,7 @@ def compiled_filter(model: Model) -> Filter:
 def build_filter(model: Model) -> Path:
     """Compile the filter of `model`; returns the library's path."""
     made = (CText("model.h", model_header(model)), CText("sincos_coefficients.h", sincos_header()))
-    return build_shared(f"filter-{model.name}", (*made, *SOURCES, *HEADERS), flags=FAST_FLAGS)
+    return build_shared(f"filter-{model.name}", (*made, *SOURCES, *HEADERS), flags=FLAGS)
 
 
 def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...]) -> Filter:

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.abreast import each
 from diagnosis.case import Case
 from diagnosis.filter import Filter, Pass
 from diagnosis.fit import Fit, flat_slopes, stacked
-from diagnosis.hypothesis import FLIGHTS, passes, tape_under
+from diagnosis.hypothesis import passes, tape_under
 from diagnosis.tape import Tape
 
 Array = NDArray[np.float64]
@@ -60,6 +61,15 @@ class Ground:
         """Scores of columns (rows, k)."""
         return self.scores(columns.T @ columns, self.slopes.T @ columns, columns.T @ self.w)
 
+    def gains_of(self, columns: Array) -> Array:
+        """Gain of the log likelihood (k,) by each of columns (rows, k) alone, in its own direction only."""
+        cross = self.slopes.T @ columns
+        share = self.solve @ cross
+        own = self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta)
+        norm = np.einsum("ij,ij->j", columns, columns) - np.einsum("ij,ij->j", cross, share)
+        score = share.T @ own - columns.T @ self.w
+        return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
+
     def answer(self, values: Sequence[Array], target: int) -> Array:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target, see filter.py."""
         own = len(self.case.kit.states)
@@ -70,7 +80,7 @@ class Ground:
             dw = self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots)
             return dw.reshape(-1, value.shape[1])
 
-        return np.concatenate(list(FLIGHTS.map(over, self.tapes, self.runs, values)))
+        return np.concatenate(each(over, self.tapes, self.runs, values))
 
     def steps(self, target: int) -> tuple[Array, Scores]:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""

@@ -1,13 +1,13 @@
 """What one supposes of a plant: its coefficients, effects with their parameters, and how restless it is; and how the logs fit that."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.abreast import each
 from diagnosis.case import Case, Flight
 from diagnosis.filter import Noise, Pass
 from diagnosis.inputs import commanded
@@ -19,7 +19,6 @@ from sim.effects.effect import Values
 Array = NDArray[np.float64]
 SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
 START_SD = 0.05  # of states that effects brought, in their own units
-FLIGHTS = ThreadPoolExecutor(2)  # the filter leaves Python alone while it runs
 LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an axis' speeds, times their square
 
 
@@ -64,7 +63,7 @@ def tape_under(case: Case, variant: Variant, flight: Flight, effects: Mapping[st
     return _sent(case.kit, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]) -> Tape:
     given = {name: dict(values) for name, values in effects}
     return sensed(kit, commanded(kit, flight.tape, given), given)
@@ -126,6 +125,6 @@ def passes(
         )
         return None if run is None else replace(run, log_likelihood=run.log_likelihood + tape.known)
 
-    runs = list(FLIGHTS.map(over, case.flights) if len(case.flights) > 1 else map(over, case.flights))
+    runs = each(over, case.flights)
     found = [run for run in runs if run is not None and np.isfinite(run.log_likelihood)]
     return found if len(found) == len(runs) else None

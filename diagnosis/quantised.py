@@ -41,8 +41,7 @@ def _gains(ground: Ground, column: int, target: int, steps: Array) -> Array:
         h = np.append(np.diff(tape.t_s), 0.0)[:, None]
         values.append((steps * np.round(u / steps) - u) * h)
     # Errors that the rig has move the innovations as its answer says; what the model would add moves them the other way.
-    scores = ground.scores_of(-ground.answer(values, target))
-    return np.asarray(0.5 * np.maximum(scores.score, 0.0) ** 2 / np.maximum(np.diag(scores.gram), 1e-12))
+    return ground.gains_of(-ground.answer(values, target))
 
 
 def _target(ground: Ground, variable: sympy.Symbol) -> int | None:

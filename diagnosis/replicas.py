@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.abreast import each
 from diagnosis.ground import Ground
 from diagnosis.hypothesis import noise_of
 
@@ -38,7 +39,8 @@ def tail_of(largest: Array) -> Tail:
 def replicas(ground: Ground, count: int = COUNT) -> Array:
     """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
     rng = np.random.default_rng(SEED)
-    parts = [_flight(ground, index, count, rng) for index in range(len(ground.tapes))]
+    flights = range(len(ground.tapes))
+    parts = each(lambda index: _flight(ground, index, count, np.random.default_rng((SEED, index))), flights)
     drawn = rng.standard_normal((ground.slopes.shape[1], count))
     spread = ground.case.spread
     return np.asarray(np.concatenate(parts) + ground.slopes @ (drawn if spread is None else spread @ drawn))

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.abreast import each
 from diagnosis.case import Case
 from diagnosis.filter import Pass
 from diagnosis.fit import likelihood, size_scale, stacked
@@ -47,19 +48,14 @@ def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | Non
     """
     supposed = ground.fit.supposed
     wanted = [name for name in names if name not in supposed.effects]
-    costly = [name for name in wanted if worth is None or name in worth or case.kit.effects[name].kind == "saturation"]
-    others = [name for name in wanted if name in case.kit.wide_names]
-    found = [
-        *_smooth(
-            case,
-            ground,
-            [n for n in wanted if n in case.kit.names and (n in costly or not is_event(case.kit.effects[n]))],
-        ),
-        *_smooth(case, ground, others),
-    ]
-    found += [*_first_order(case, ground, costly), *_finite(case, ground, costly)]
+    kit = case.kit
+    costly = [name for name in wanted if worth is None or name in worth or kit.effects[name].kind == "saturation"]
+    stateless = [n for n in wanted if n in kit.names and (n in costly or not is_event(kit.effects[n]))]
+    others = [name for name in wanted if name in kit.wide_names]
+    kinds, chosen = (_finite, _smooth, _smooth, _first_order), (costly, others, stateless, costly)
+    found = each(lambda kind, names: kind(case, ground, names), kinds, chosen)
     best: dict[str, Look] = {}
-    for entry in found:
+    for entry in chain.from_iterable(found):
         if entry.effect not in best or entry.gain > best[entry.effect].gain:
             best[entry.effect] = entry
     return sorted(best.values(), key=lambda entry: -entry.gain)
@@ -148,17 +144,16 @@ def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]
 
 def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
-    found = []
-    for name in names:
-        effect = case.kit.effects[name]
-        if effect.on_equations and not _limited(effect):
-            continue
-        for value in _sizes(case, ground, effect):
-            for shapes in shape_starts(effect):
-                entry = _tried(case, ground, effect, {**shapes, effect.size.symbol: value})
-                if entry is not None:
-                    found.append(entry)
-    return found
+    effects = [case.kit.effects[name] for name in names]
+    finite = [effect for effect in effects if not effect.on_equations or _limited(effect)]
+    sizes = each(lambda effect: _sizes(case, ground, effect), finite)
+    starts = [
+        (effect, {**shapes, effect.size.symbol: value})
+        for effect, values in zip(finite, sizes, strict=True)
+        for value in values
+        for shapes in shape_starts(effect)
+    ]
+    return [entry for entry in each(lambda start: _tried(case, ground, *start), starts) if entry is not None]
 
 
 def _sizes(case: Case, ground: Ground, effect: Effect) -> list[float]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.abreast import each
 from diagnosis.calm import awake, calmed
 from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
@@ -96,11 +97,9 @@ def search(
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
-        grown = _partners(case, best[0], names, worth) if best else []
-        if not grown:
-            break
-        grown += [job for tried in best[1:] for job in _partners(case, tried, names, worth)]
-        if not _fit_all(case, grown, found, best[0]):
+        partners = each(lambda tried: _partners(case, tried, names, worth), best)
+        grown = [job for jobs in partners for job in jobs]
+        if not partners or not partners[0] or not _fit_all(case, grown, found, best[0]):
             break
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry.fit)]
@@ -136,7 +135,7 @@ def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
 def _settle(case: Case, found: dict[frozenset[str], Tried]) -> None:
     """Once more the best of all, until effect and unrest agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry.fit)), key=lambda entry: -entry.evidence)
-    for entry in [refined(case, entry) for entry in best[:SETTLED]]:
+    for entry in each(lambda tried: refined(case, tried), best[:SETTLED]):
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
 
@@ -173,13 +172,14 @@ def _fit_all(
     for job in jobs:
         fresh.setdefault(frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job)
     wanted = [job for names, job in fresh.items() if names not in found]
-    rough = [entry for job in wanted if (entry := _rough(case, job))]
+    rough = [entry for entry in each(lambda job: _rough(case, job), wanted) if entry]
     if not rough:
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
     good = [entry for entry in rough if entry.evidence - first >= WORTH_REFINING * (best - first)]
-    done = sorted((entry for tried in good if (entry := refined(case, tried))), key=lambda entry: -entry.evidence)
-    done[:ONCE_MORE] = [_once_more(case, entry) for entry in done[:ONCE_MORE]]
+    ends = [entry for entry in each(lambda tried: refined(case, tried), good) if entry]
+    done = sorted(ends, key=lambda entry: -entry.evidence)
+    done[:ONCE_MORE] = each(lambda entry: _once_more(case, entry), done[:ONCE_MORE])
     found.update({frozenset(entry.effects): entry for entry in (*rough, *done)})
     return True
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.abreast import each
 from diagnosis.case import Case, Flight, start_of
 from diagnosis.fit import Fit
 from diagnosis.tape import READINGS
@@ -51,8 +52,9 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     """Another reading of the columns, with what it gains in nats, under which the plant follows the logs without strain."""
     short = case.with_flights([_begin(flight) for flight in case.flights])
     usual = _fitted(short, fitted)
-    others = [(wiring, _fitted(_rewired(short, wiring), fitted)) for wiring in wirings(case)]
-    found = [(wiring, fit) for wiring, fit in others if fit is not None]
+    slips = list(wirings(case))
+    fits = each(lambda wiring: _fitted(_rewired(short, wiring), fitted), slips)
+    found = [(wiring, fit) for wiring, fit in zip(slips, fits, strict=True) if fit is not None]
     if usual is None or not found:
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
