@@ -10,11 +10,15 @@ and under a loss with probability p in every frame the log evidence of all is th
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis.abreast import each
 from diagnosis.case import Case, Flight
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
@@ -22,11 +26,12 @@ from diagnosis.hypothesis import Supposed, coefficients
 from diagnosis.inputs import LOST_FRAMES, lost_with
 from diagnosis.tape import Tape
 from diagnosis.unrest import with_unrest
+from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
 NEAR = range(-2, 4)  # rows about one behind which others are missing
 APART = 60  # rows after which the filter has forgotten a frame
-SWEEPS, FIRST_SHARE = 3, 0.1
+SWEEPS, FIRST_SHARE = 12, 0.1
 LITTLE = 0.02  # of what losses gain, below which another round is not worth its time
 ROUNDS = 5  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
@@ -40,7 +45,8 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         return case, None
     if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
         return case, None
-    answers = [_unit_answers(case, ground, index) for index in range(len(case.flights))]
+    flights = range(len(case.flights))
+    answers = each(partial(_unit_answers, case, ground), flights)
     found = _with_ratios(case, ground, answers, 0)
     if evidence(found, likely_share(found)) < WORTH:
         return case, None
@@ -49,7 +55,7 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         return case, None
     for _ in range(ROUNDS):
         calmer = ground_of(found, fitted)
-        answers = [_unit_answers(found, calmer, index) for index in range(len(found.flights))]
+        answers = each(partial(_unit_answers, found, calmer), flights)
         again, better = _fitted(found, calmer, answers)
         if better is None or better.log_posterior < fitted.log_posterior + WORTH:
             break
@@ -110,8 +116,7 @@ def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: i
 
 
 def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
-    """Answers (rows, slots, drives, APART) to a unit step of each drive's input that lasts one frame: frames APART rows apart share a
-    column."""
+    """Answers (rows, APART, slots, drives) of the innovations from a frame's own row on to a unit of each drive's input over that frame."""
     tape, run, supposed = ground.tapes[index], ground.runs[index], ground.fit.supposed
     p = coefficients(case, case.kit.variant(supposed.effects), supposed)
     known = {symbol: p[place] for place, symbol in enumerate(case.kit.bound.model.parameter_symbols)}
@@ -122,7 +127,15 @@ def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
         values = np.zeros((len(rows), 1, APART))
         values[rows, 0, rows % APART] = h * float(sympy.sympify(gain).subs(known))
         found.append(ground.filter.respond(tape, run, values, [state], case.slots))
-    return np.stack(found, axis=2)
+    return _unfolded(np.stack(found, axis=2))
+
+
+def _unfolded(answers: Array) -> Array:
+    """Answers by frame and lag, 0 beyond the end, from columns (rows, slots, drives, APART) that frames APART rows apart share."""
+    rows = np.arange(len(answers))[:, None]
+    later = rows + np.arange(APART)
+    own = answers[np.minimum(later, len(answers) - 1), :, :, rows % APART]
+    return np.where((later < len(answers))[:, :, None, None], own, 0.0)
 
 
 def _supposed(tape: Tape, supposed: Supposed) -> Array:
@@ -132,35 +145,45 @@ def _supposed(tape: Tape, supposed: Supposed) -> Array:
     return lost_with(tape.lost, supposed.effects[LOST_FRAMES]["p"])
 
 
-def _judged(tape: Tape) -> list[int]:
-    """Rows of frames that can be judged: not about rows that the log lacks, as nobody knows what was commanded there."""
-    beside = {int(row) + near for row in np.flatnonzero(tape.untold_s) for near in NEAR}
-    return [row for row in range(1, tape.rows) if row not in beside]
+def _judged(tape: Tape) -> NDArray[np.uint8]:
+    """Whether each frame can be judged (rows,): not about rows that the log lacks, as nobody knows what was commanded there."""
+    judged = np.ones(tape.rows, dtype=np.uint8)
+    for row in np.flatnonzero(tape.untold_s):
+        judged[max(row + NEAR.start, 0) : row + NEAR.stop] = 0
+    return judged
 
 
 def _ratios(
-    u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: Sequence[int], sweeps: int
+    u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: NDArray[np.uint8], sweeps: int
 ) -> Array:
     """L of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of all
     others taken out. Frames that are not `judged` count as arrived."""
-    rows, left, lost = len(u), w.copy(), before.copy()
-    found, arrived = np.zeros(rows), u.copy()
-    taken = np.zeros((rows, len(columns)))
-    for row in range(1, rows):
-        taken[row] = lost[row] * (arrived[row - 1] - u[row])[columns]
-        arrived[row, columns] += taken[row]
-    fresh = not before.any()
-    for sweep in range(sweeps + 1):
-        share = float(np.clip(np.mean(lost), 0.003, 0.8)) if sweep or not fresh else FIRST_SHARE
-        for row in judged:
-            unit = answers[row : row + APART, :, :, row % APART]
-            held = (arrived[row - 1] - u[row])[columns]
-            a = unit @ held
-            free = left[row : row + APART] + unit @ taken[row]
-            found[row] = np.sum(a * free) - 0.5 * np.sum(a * a) if held.any() else 0.0
-            if sweeps:
-                lost[row] = lost_with(found[row], share) if held.any() else share
-                taken[row] = lost[row] * held
-                left[row : row + APART] = free - unit @ taken[row]
-                arrived[row, columns] = u[row, columns] + taken[row]
-    return found
+    ffi, lib = _library()
+    arrays: dict[str, NDArray[Any]] = {
+        "u": np.ascontiguousarray(u),
+        "answers": np.ascontiguousarray(answers),
+        "column": np.array(columns, dtype=np.int64),
+        "judged": judged,
+        "left": w.copy(),
+        "lost": before.copy(),
+        "arrived": u.copy(),
+        "taken": np.zeros((len(u), len(columns))),
+        "found": np.zeros(len(u)),
+    }
+    request = ffi.new("loss_request *")
+    for name, array in arrays.items():
+        setattr(request, name, ffi.cast("void *", array.ctypes.data))
+    request.rows, request.inputs, request.drives = len(u), u.shape[1], len(columns)
+    request.slots, request.apart, request.sweeps = w.shape[1], APART, sweeps
+    request.fresh, request.first_share = not before.any(), FIRST_SHARE
+    lib.loss_ratios(request)
+    return np.asarray(arrays["found"])
+
+
+@cache
+def _library() -> tuple[Any, Any]:
+    folder = Path(__file__).parent / "c"
+    header = (folder / "lost_frames.h").read_text(encoding="utf-8")
+    declarations = "\n".join(line for line in header.splitlines() if not line.startswith("#"))
+    path = build_shared("lost-frames", [folder / "lost_frames.c", folder / "lost_frames.h"])
+    return load_shared(declarations, path)

@@ -7,7 +7,7 @@ from diagnosis.engine import nominal_fit
 from diagnosis.fit import Fit
 from diagnosis.ground import ground_of
 from diagnosis.kit import make_kit
-from diagnosis.lost_frames import with_losses
+from diagnosis.lost_frames import APART, _ratios, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths_input import uniform
@@ -39,3 +39,42 @@ def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> Non
     case, fitted = losses(plant, fly(41))
     assert fitted is None
     assert not any(flight.tape.lost.any() for flight in case.flights)
+
+
+def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
+    """L = a'(w + pi a) - a'a / 2 with a from what arrived before, written out frame by frame; to rounding."""
+    rng = np.random.default_rng(5)
+    rows, slots, columns = 150, 2, [0, 2]
+    u, w = rng.standard_normal((rows, 3)), rng.standard_normal((rows, slots))
+    answers = 0.1 * rng.standard_normal((rows, APART, slots, len(columns)))
+    before = rng.uniform(0.0, 1.0, rows)
+    judged = np.ones(rows, dtype=np.uint8)
+    judged[[0, 40, 41]] = 0
+    found = _ratios(u, columns, answers, w, before, judged, 0)
+
+    arrived = u[:, columns].copy()
+    for row in range(1, rows):
+        held = arrived[row - 1] - u[row, columns]
+        arrived[row] += before[row] * held
+        a = (answers[row] @ held)[: rows - row]
+        expected = np.sum(a * (w[row : row + APART] + before[row] * a)) - 0.5 * np.sum(a * a)
+        np.testing.assert_allclose(found[row], expected if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
+
+
+def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
+    """Losses whose answers overlap are all found where together they explain the innovations without rest."""
+    rng = np.random.default_rng(6)
+    rows = 200
+    u, lost = rng.standard_normal((rows, 1)), np.zeros(rows)
+    lost[[20, 22, 23, 90, 91, 150]] = 1.0
+    answers = np.zeros((rows, APART, 1, 1))
+    answers[:, :, 0, 0] = 10.0 * np.exp(-np.arange(APART) / 5.0)
+    arrived, w = u.copy(), np.zeros((rows, 1))
+    for row in range(1, rows):
+        held = lost[row] * (arrived[row - 1] - u[row])
+        arrived[row] += held
+        end = min(rows, row + APART)
+        w[row:end, 0] += answers[row, : end - row, 0, 0] * held
+    ratios = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
+    clear = np.append(False, np.abs(arrived[:-1, 0] - u[1:, 0]) > 0.2)
+    np.testing.assert_array_equal(ratios[clear] > 0.0, lost[clear] > 0.5)

@@ -1,0 +1,17 @@
+/* Frames of one flight: inputs u (rows, inputs), of which `column` drive something; answers (rows, apart, slots, drives) of the whitened
+ * innovations to a unit of each drive's input over each frame; `left` (rows, slots) the innovations, found with losses `lost` (rows)
+ * supposed before; `arrived` (rows, inputs), at first u, and `taken` (rows, drives), at first 0, what losses make of the inputs; `found`
+ * (rows) the log ratios. `sweeps` 0 takes every frame for itself; `fresh` is set where no loss was supposed before. */
+#include <stdint.h>
+
+typedef struct {
+    int64_t rows, inputs, drives, slots, apart, sweeps;
+    int32_t fresh;
+    double first_share;
+    const double *u, *answers;
+    const int64_t *column;
+    const uint8_t *judged;
+    double *left, *lost, *arrived, *taken, *found;
+} loss_request;
+
+void loss_ratios(const loss_request *request);
