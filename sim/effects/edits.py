@@ -94,7 +94,10 @@ def positive(expression: Expression) -> Expression:
 
 
 def knee(expression: Expression, width: Expression) -> Expression:
-    """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there; the width must not be 0."""
+    """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there.
+
+    The width must be a positive number whatever its symbols are: SymPy else searches whole equations for imaginary parts.
+    """
     beyond = positive(expression - width)
     return beyond + (positive(expression + width) - beyond) ** 2 / (4 * width)
 

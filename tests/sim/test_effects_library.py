@@ -1,6 +1,7 @@
 """The library of effects is whole and consistent: the contract's table, places, bounds, twins, words."""
 
 import pytest
+import sympy
 
 from records.plant import load_plant
 from records.units import dimension
@@ -145,3 +146,11 @@ def test_the_same_set_in_any_order_is_the_same_object() -> None:
     one = model_with("ce150", ("azimuth.tilt", "elevation.coulomb", "loop.delay"))
     assert one is model_with("ce150", ("elevation.coulomb", "azimuth.tilt"))
     assert model_with("ce150", ()) is MODELS["ce150"]()
+
+
+def test_what_arrives_of_an_input_is_known_to_be_real(model: Model) -> None:
+    """Where it is not, SymPy searches the equations for imaginary parts, minutes long once several effects act on one input."""
+    for effect in effects_for(model).values():
+        if effect.applied is not None:
+            for expression in effect.applied(*effect.symbols).values():
+                assert sympy.sympify(expression).is_extended_real, effect.name
