@@ -7,10 +7,14 @@ with |eps_k| <= 1, so that the word is x + D. Sums and products are exact; a flo
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
+from typing import Protocol, TypeVar
 
 from flint import arb
 
+from codegen.fixed_arithmetic import Words
 from verification.affine import upper_bound
+
+W = TypeVar("W")
 
 # The symbol of an error form that is no unknown: its eps is 1.
 _KNOWN = -1
@@ -57,6 +61,19 @@ class TrackedWord:
         return upper_bound(sum((abs(c) for c in self.errors.values()), arb(0)))
 
 
+class ErrorWords(Words[W], Protocol[W]):
+    """Words of which a proof tells how far they are from real numbers."""
+
+    def constant(self, value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> W:
+        """A number of the table: real as the table states it, with terms left out of it; the word is the nearest."""
+
+    def within(self, low: float, high: float) -> W:
+        """Any word of low..high, the same in both laws."""
+
+    def restricted(self, number: W, low: float, high: float) -> W:
+        """The number where its real value is within low..high."""
+
+
 class TrackedWords:
     """The law's decisions on tracked words, of which only those within declared ranges occur."""
 
@@ -64,7 +81,6 @@ class TrackedWords:
         self._symbols = count()
 
     def constant(self, value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> TrackedWord:
-        """A number of the table: real as the table states it, with terms left out of it; the word is the nearest."""
         steps = arb(value) * arb(2) ** places
         word = round(value * 2.0**places + made_up)
         real = steps + arb(0, neglected * 2.0**places) if neglected else steps
@@ -72,8 +88,10 @@ class TrackedWords:
         return TrackedWord(real, {_KNOWN: arb(word) - steps, **left_out}, self._symbols)
 
     def within(self, low: float, high: float) -> TrackedWord:
-        """Any word of low..high, the same in both laws."""
         return TrackedWord(arb(low).union(arb(high)), {}, self._symbols)
+
+    def restricted(self, number: TrackedWord, low: float, high: float) -> TrackedWord:
+        return replace(number, value=number.value.max(arb(low)).min(arb(high)))
 
     def word(self, name: str, value: TrackedWord) -> TrackedWord:
         return value

@@ -1,19 +1,21 @@
 """The rounding bound of both outputs, proved by Gappa over the same ranges as the ball arithmetic, and held against it.
 
-Gappa (G. Melquiond, https://gappa.gitlabpages.inria.fr) finds an enclosure of float32 minus real and checks its own derivation;
-the ball arithmetic (verification/rounding.py) is another program on another principle. Each bound is sound by itself, so that
-the smaller one holds.
+Gappa (G. Melquiond, https://gappa.gitlabpages.inria.fr) finds an enclosure of the rounded minus the real number and checks its own
+derivation; the ball arithmetic (verification/rounding.py, fixed_rounding.py) is another program on another principle. Each bound is
+sound by itself, so that the smaller one holds.
 """
 
 import math
 import re
 
+from codegen.fixed_formats import law_formats
 from codegen.law_constants import law_constants
 from codegen.law_equations import LawInput, state_from_words, words_from_state
 from records.table import ControllerTable
 from records.verification import ProofResult, RoundingBound
-from verification.fixed_rounding import fixed_rounding_bound
-from verification.proofs.gappa_script import GappaArithmetic
+from verification import fixed_rounding
+from verification.proofs.gappa_script import GappaArithmetic, Pair
+from verification.proofs.gappa_words import GappaWords
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
 from verification.ranges import Motion, declared_ranges
@@ -26,27 +28,27 @@ _ENCLOSURE = re.compile(r" in \[([^ ,\]]+)[^,\]]*?(?:\{[^}]*\})?, ([^ ,\]]+)")
 
 def prove(subject: Subject) -> ProofResult:
     """Both bounds in volt; fails where Gappa finds none."""
+    by_gappa, by_balls = _BOUNDS[subject.arithmetic]
     try:
-        gappa = gappa_bound(subject.table, subject.motion)
+        gappa = by_gappa(subject.table, subject.motion)
     except ValueError as error:
         return ProofResult(NAME, "failed", str(error))
-    balls = rounding_bound(subject.table, subject.motion)
+    balls = by_balls(subject.table, subject.motion)
     figures = {"u_M_V": gappa.u_M, "u_T_V": gappa.u_T, "balls_u_M_V": balls.u_M, "balls_u_T_V": balls.u_T}
-    tighter = "Gappa" if max(gappa.u_M / balls.u_M, gappa.u_T / balls.u_T) <= 1.0 else "not both by Gappa"
     told = f"u_M within {1e3 * gappa.u_M:.2f} mV, u_T within {1e3 * gappa.u_T:.2f} mV by Gappa"
-    against = f"{1e3 * balls.u_M:.2f} and {1e3 * balls.u_T:.2f} mV by ball arithmetic; tighter: {tighter}"
+    against = (
+        f"{1e3 * balls.u_M:.2f} and {1e3 * balls.u_T:.2f} mV by ball arithmetic; tighter: {_tighter(gappa, balls)}"
+    )
     return ProofResult(NAME, "proved", f"{told}, {against}", figures=figures)
 
 
-def prove_fixed(subject: Subject) -> ProofResult:
-    """Both bounds of the fixed-point law in volt, by ball arithmetic, which needs no tool."""
-    bound = fixed_rounding_bound(subject.table, subject.motion)
-    told = f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV by ball arithmetic"
-    return ProofResult(NAME, "proved", told, (bound.method,), {"u_M_V": bound.u_M, "u_T_V": bound.u_T})
+def _tighter(gappa: RoundingBound, balls: RoundingBound) -> str:
+    better = {gappa.u_M <= balls.u_M, gappa.u_T <= balls.u_T}
+    return "one each" if len(better) == 2 else "Gappa" if True in better else "ball arithmetic"
 
 
 def gappa_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
-    """The bound per output [V]; raises ValueError where Gappa finds none or a voltage may be implausible."""
+    """The bound of the float32 law per output [V]; raises ValueError where Gappa finds none or a voltage may be implausible."""
     arithmetic = GappaArithmetic(ask_gappa)
     ranges = declared_ranges(table, motion)
     output = restricted_voltages(
@@ -57,9 +59,21 @@ def gappa_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
         ranges,
         arithmetic.restricted,
     )
-    if output.u_M_V.error is None or output.u_T_V.error is None:
+    return _limited_bound((output.u_M_V, output.u_T_V), 1.0, motion)
+
+
+def gappa_fixed_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
+    """The bound of the fixed-point law per output [V]; raises ValueError where Gappa finds none or words may not hold a number."""
+    words = GappaWords(ask_gappa)
+    outputs = fixed_rounding.restricted_voltages(table, words, declared_ranges(table, motion))
+    return _limited_bound(outputs, 2.0 ** -law_formats(table).voltage_places, motion)
+
+
+def _limited_bound(outputs: tuple[Pair, Pair], step_V: float, motion: Motion) -> RoundingBound:
+    u_M, u_T = outputs
+    if u_M.error is None or u_T.error is None:
         raise ValueError("an output left the law without a limit")
-    return RoundingBound(output.u_M_V.error, output.u_T_V.error, METHOD.format(motion=stated_motion(motion)))
+    return RoundingBound(u_M.error * step_V, u_T.error * step_V, METHOD.format(motion=stated_motion(motion)))
 
 
 def tighter_bound(bound: RoundingBound, result: ProofResult) -> RoundingBound:
@@ -84,3 +98,10 @@ def _size(dyadic: str) -> float:
     mantissa, _, exponent = dyadic.partition("b")
     size = math.ldexp(abs(int(mantissa)), int(exponent or 0))
     return math.nextafter(size, math.inf) if size else 0.0
+
+
+# By arithmetic: Gappa's bound and that of the ball arithmetic.
+_BOUNDS = {
+    "float32": (gappa_bound, rounding_bound),
+    "fixed": (gappa_fixed_bound, fixed_rounding.fixed_rounding_bound),
+}

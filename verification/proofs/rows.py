@@ -4,11 +4,8 @@ from verification.proofs import behaviour, cost, coverage, misra, mutation, roun
 from verification.proofs.subject import Proof
 from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA, PYCPARSER
 
-_FLOAT32, _FIXED = ("float32",), ("fixed",)
-
 PROOFS: tuple[Proof, ...] = (
-    Proof(rounding.NAME, "what float32 can differ from real numbers in one step", (GAPPA,), rounding.prove, _FLOAT32),
-    Proof(rounding.NAME, "what words can differ from real numbers in one step", (), rounding.prove_fixed, _FIXED),
+    Proof(rounding.NAME, "what rounding can change of real numbers in one step", (GAPPA,), rounding.prove),
     Proof(
         behaviour.NAME,
         "no undefined behaviour, overflow or NaN from any step, for all time",

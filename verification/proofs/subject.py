@@ -27,23 +27,16 @@ class Subject:
 
 @dataclass(frozen=True)
 class Proof:
-    """A row of the table of proofs: its name, what it shows, the tools it needs and the function that runs it.
-
-    `arithmetics` are those of the law that it can speak about.
-    """
+    """A row of the table of proofs: its name, what it shows, the tools it needs and the function that runs it."""
 
     name: str
     shows: str
     tools: tuple[Tool, ...]
     run: Callable[[Subject], ProofResult]
-    arithmetics: tuple[str, ...] = ("float32", "fixed")
 
 
 def run_proof(proof: Proof, subject: Subject) -> ProofResult:
-    """The result of `proof`; skipped, with what to do, where a tool is absent or the arithmetic is not covered."""
-    if subject.arithmetic not in proof.arithmetics:
-        covered = " and ".join(proof.arithmetics)
-        return ProofResult(proof.name, "skipped", f"covers the law in {covered}, not in {subject.arithmetic}")
+    """The result of `proof`; skipped, with what to do, where a tool is absent."""
     for tool in proof.tools:
         if not tool.found():
             return ProofResult(proof.name, "skipped", f"{tool.name} is not installed ({tool.remedy})")
