@@ -30,11 +30,18 @@ def test_every_finding_in_the_product_is_justified_and_every_justification_used(
     assert result.outcome == "proved", "\n".join(result.detail)
 
 
+BACKWARDS = (
+    "void again(int n);\nvoid again(int n)\n{\nback:\n    n--;\n    if (n > 0) {\n        goto back;\n    }\n}\n"
+)
+
+
 @needs_cppcheck
-def test_a_jump_backwards_is_found() -> None:
-    """Rule 15.2: goto shall jump to a label declared later."""
-    text = "void again(int n);\nvoid again(int n)\n{\nback:\n    n--;\n    if (n > 0) {\n        goto back;\n    }\n}\n"
-    found = findings_in(Subject(ce150_table(), {"again.c": text, "law.h": subject().generated["law.h"]}, b""))
+@pytest.mark.parametrize("path", ["as it is", "/nowhere"])
+def test_a_jump_backwards_is_found_whatever_is_on_the_path(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rule 15.2: goto shall jump to a label declared later. The addon is a Python program of its own."""
+    if path == "/nowhere":
+        monkeypatch.setenv("PATH", path)
+    found = findings_in(Subject(ce150_table(), {"again.c": BACKWARDS, "law.h": subject().generated["law.h"]}, b""))
     assert any(finding.file == "again.c" and finding.rule == "15.2" for finding in found)
 
 

@@ -17,7 +17,9 @@ from verification.proofs.tools import run_tool
 
 NAME = "MISRA C:2012"
 DEVIATIONS = Path(__file__).with_name("misra_deviations.toml")
-_OPTIONS = ("--addon=misra", "--enable=style", "--std=c11", "--platform=arm32-wchar_t4", "--quiet", "--inline-suppr")
+_OPTIONS = ("--addon=misra", "--enable=style", "--std=c11", "--platform=arm32-wchar_t4", "--quiet")
+# The addon is a program of its own, which cppcheck would else look for on the path.
+_PYTHON = f"--addon-python={sys.executable}"
 _SAID = re.compile(r"^@@(?P<file>[^:]*):(?P<line>\d+):(?P<rule>.*)$", re.MULTILINE)
 
 
@@ -38,7 +40,7 @@ def findings_in(subject: Subject) -> list[Finding]:
     with tempfile.TemporaryDirectory() as work:
         names = lay_out(subject.generated, Path(work))
         template = "--template=@@{file}:{line}:{id}"
-        arguments = ["-m", "cppcheck", *_OPTIONS, template, f"-I{work}", *(f"{work}/{name}" for name in names)]
+        arguments = ["-m", "cppcheck", *_OPTIONS, _PYTHON, template, f"-I{work}", *(f"{work}/{name}" for name in names)]
         said = run_tool(sys.executable, arguments).stderr.replace(f"{work}/", "")
         lines = {path.name: path.read_text(encoding="utf-8").splitlines() for path in Path(work).glob("*.[ch]")}
     found = {(m["file"], int(m["line"]), m["rule"].removeprefix("misra-c2012-")) for m in _SAID.finditer(said)}
