@@ -2,28 +2,26 @@
 
     r_k = u_k - C(y_0..y_k, r_0..r_k)
 
-with C the generated law, compiled for this computer. Where r is not zero in every bit, other firmwares are run as code until one
-leaves nothing (firmware_replay_search.py). One that leaves anything is no cause: then it says that none was found.
+with C the generated law, compiled for this computer, in the arithmetic that flew (firmware_replay_words.py). Where r is not zero in
+every bit, other firmwares are run as code until one leaves nothing (firmware_replay_search.py). One that leaves anything is no
+cause: then it says that none was found. Other firmwares are known in floating point only.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codegen.law import generate_law
 from diagnosis.firmware_replay_flight import Flight, flight_of, has_replayable_columns
 from diagnosis.firmware_replay_search import LOG_ROUNDING, explain
+from diagnosis.firmware_replay_words import FIXED, Replayed, replayed
 from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
-from verification.host_law import HostLaw
-
-Array = NDArray[np.float64]
 
 NOT_FOUND = "not_found"
+IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 ANGLES_ROUNDED = "the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees"
 
@@ -73,12 +71,14 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         sentence = "the log lacks a reference or an angle that the law takes"
         return FirmwareReplay(False, False, None, "not_replayable", sentence)
     flight = flight_of(log, table)
-    replayed_V = _replayed(flight, table)
-    residuals = _residuals(log, flight, replayed_V)
-    first = _first_difference(flight, replayed_V)
-    if first is None and not flight.missing:
+    run = replayed(flight, table)
+    residuals = _residuals(log, flight, run)
+    rows = np.flatnonzero(run.differs.any(axis=1))
+    at_s = float(flight.t_s[rows[0]]) if rows.size else None
+    if run.arithmetic == FIXED:
+        return _in_fixed_point(flight, residuals, at_s)
+    if at_s is None and not flight.missing:
         return FirmwareReplay(True, True, None, None, None, residuals)
-    at_s = None if first is None else float(flight.t_s[first])
     told = explain(flight, table, others)
     if told is None:
         return FirmwareReplay(True, False, at_s, NOT_FOUND, _unexplained(residuals), residuals)
@@ -100,30 +100,24 @@ def _demand_own(log: RunLog, table: ControllerTable) -> None:
         )
 
 
-def _replayed(flight: Flight, table: ControllerTable) -> Array:
-    """The generated C on the log: u (n, 2) in V."""
-    host = HostLaw(generate_law(table))
-    inputs = np.hstack([flight.reference_rad, flight.angle_rad]).astype(np.float32)[:, np.newaxis].view(np.uint32)
-    _, outputs = host.run(host.start(np.ascontiguousarray(inputs[0, :, 2:])), np.ascontiguousarray(inputs))
-    return outputs[:, 0].view(np.float32).astype(float)
+def _in_fixed_point(flight: Flight, residuals: tuple[Residual, ...], at_s: float | None) -> FirmwareReplay:
+    """What is told of a log whose law computed in fixed point: the table's own firmware, or no cause."""
+    if at_s is None:
+        return FirmwareReplay(True, True, None, None, IN_FIXED_POINT, residuals)
+    behind = " behind rows that the log lacks" if any(flight.t_s[first] < at_s for first, _ in flight.missing) else ""
+    sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other firmware is tried"
+    return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals)
 
 
-def _first_difference(flight: Flight, replayed_V: Array) -> int | None:
-    """The first sample whose logged input is another float32 than the replayed one."""
-    differs = (flight.logged_V.astype(np.float32) != replayed_V.astype(np.float32)) & ~np.isnan(flight.logged_V)
-    rows = np.flatnonzero(differs.any(axis=1))
-    return int(rows[0]) if rows.size else None
-
-
-def _residuals(log: RunLog, flight: Flight, replayed_V: Array) -> tuple[Residual, ...]:
+def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ...]:
     present = ~np.isnan(flight.logged_V[:, 0])
     result = []
-    for name, logged, own in zip(log.columns.inputs, flight.logged_V[present].T, replayed_V[present].T, strict=True):
+    columns = (flight.logged_V[present].T, run.u_V[present].T, run.differs[present].T)
+    for name, logged, own, differs in zip(log.columns.inputs, *columns, strict=True):
         error = logged - own
         ulp = np.abs(error) / np.spacing(np.abs(own).astype(np.float32)).astype(float)
-        different = int(np.sum(logged.astype(np.float32) != own.astype(np.float32)))
         rms_V = float(np.sqrt(np.mean(error**2)))
-        result.append(Residual(name, different, float(np.abs(error).max()), rms_V, float(ulp.max())))
+        result.append(Residual(name, int(np.sum(differs)), float(np.abs(error).max()), rms_V, float(ulp.max())))
     return tuple(result)
 
 

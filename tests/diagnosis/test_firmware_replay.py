@@ -68,6 +68,22 @@ def test_a_log_of_the_tables_own_law_is_bit_exact(table: ControllerTable) -> Non
     assert [entry.samples_different for entry in found.residuals] == [0, 0]
 
 
+@pytest.mark.parametrize("table", [TABLE, TIGHT])
+def test_a_log_of_the_law_in_fixed_point_is_bit_exact_and_said_to_be(table: ControllerTable) -> None:
+    found = _replayed(host_law(table, "fixed"), table)
+    assert found.record() == Firmware(True, True, None, None)
+    assert [entry.samples_different for entry in found.residuals] == [0, 0]
+    assert "fixed point" in (found.sentence or "")
+
+
+def test_a_sample_lost_by_a_law_in_fixed_point_is_found_at_its_time_and_not_explained() -> None:
+    lost = Lossy(host_law(TABLE, "fixed"), lambda k: "law" if k == 1500 else None)
+    found = _replayed(lost)
+    assert (found.bit_exact, found.first_difference_s) == (False, pytest.approx(15.0, abs=0.02))
+    assert found.cause == "not_found"
+    assert "fixed point" in (found.sentence or "")
+
+
 @pytest.mark.parametrize(
     ("columns", "samples", "words"),
     [((2, 3), 1, "both angles"), ((2,), 1, "the elevation"), ((3,), 2, "the azimuth measured two samples")],
