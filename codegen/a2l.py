@@ -67,8 +67,8 @@ def _module_parameters(table: ControllerTable, arithmetic: str) -> Iterator[str]
     yield f'EPK "{table.digest}"'
     yield 'CPU_TYPE "Cortex-M0+"'
     yield f'SYSTEM_CONSTANT "LAW_ARITHMETIC" "{arithmetic}"'
-    for constant in constants(table):
-        yield f'SYSTEM_CONSTANT "{constant.name}" "{constant.c_text.rstrip("f")}"'
+    for constant in constants(table, arithmetic):
+        yield f'SYSTEM_CONSTANT "{constant.name}" "{constant.literal.number}"'
     yield "/end MOD_PAR"
     yield '/begin MOD_COMMON "ARMv6-M"'
     yield "BYTE_ORDER MSB_LAST"

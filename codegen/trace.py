@@ -66,9 +66,11 @@ class Trace:
     table_digest: str
 
 
-def trace(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, name: str) -> Trace:
+def trace(
+    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, name: str, arithmetic: str = "float32"
+) -> Trace:
     """The trace of the constant `name`; raises BadInput for a name that the C does not have, or a table without its origin."""
-    constant = find_constant(table, name)
+    constant = find_constant(table, name, arithmetic)
     origin = table.origin
     if "operating_points" not in origin:
         what = "no record of operating points"
@@ -80,7 +82,7 @@ def trace(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, n
     own = origin[constant.axis] if constant.letter in ("q", "p") else {}
     return Trace(
         name=constant.name,
-        c_text=constant.c_text,
+        c_text=constant.literal.text,
         value=constant.value,
         unit=constant.unit,
         made_as=constant.made_as,
@@ -95,9 +97,9 @@ def trace(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, n
     )
 
 
-def names(table: ControllerTable) -> tuple[Constant, ...]:
+def names(table: ControllerTable, arithmetic: str = "float32") -> tuple[Constant, ...]:
     """Every constant that can be traced, in the order of the C text."""
-    return tuple(constants(table))
+    return tuple(constants(table, arithmetic))
 
 
 def _points(table: ControllerTable, constant: Constant) -> Iterator[PointTrace]:

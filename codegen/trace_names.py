@@ -2,10 +2,10 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from codegen.law_constants import without_vanishing_powers
-from codegen.numbers import c_float32
+from codegen.trace_literals import LEFT_OUT, LITERALS, Literal
 from records.errors import BadInput
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
@@ -15,7 +15,7 @@ _OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^3 in powers of d
 
 @dataclass(frozen=True)
 class Constant:
-    """A constant of the C: its name and text there, its value in the table, how it was made.
+    """A constant of the C: its name there, its value in the table, how it was made; its literal in one arithmetic's C.
 
     `letter` is q, p, a or u_ff for a coefficient, empty otherwise; `parameter` names the plant parameter that it is.
     """
@@ -30,33 +30,21 @@ class Constant:
     power: int = 0
     polynomial: Polynomial = ()
     parameter: str | None = None
-
-    @property
-    def c_text(self) -> str:
-        """The literal in the float32 C."""
-        return c_float32(self.value)
+    literal: Literal = LEFT_OUT
 
 
-def constants(table: ControllerTable) -> Iterator[Constant]:
-    """Every constant of the law, in the order of law.c and law.h."""
-    for axis, law in (("elevation", table.elevation), ("azimuth", table.azimuth)):
-        yield from _coefficients(table, axis, law)
-    for axis, law, angle, voltage in (
-        ("elevation", table.elevation, "PSI", "U_M"),
-        ("azimuth", table.azimuth, "PHI", "U_T"),
-    ):
-        yield from _limits(table, axis, law, angle, voltage)
-    design = "wish of the plant file, [design]"
-    yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
-    yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
-    yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
-    yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
-    yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
+def constants(table: ControllerTable, arithmetic: str = "float32") -> Iterator[Constant]:
+    """Every constant that the law has in this arithmetic, in the order of law.c and law.h; raises BadInput where it has no law."""
+    write = LITERALS[arithmetic](table)
+    for constant in _constants(table):
+        literal = write(constant.name, constant.value)
+        if literal is not None:
+            yield replace(constant, literal=literal)
 
 
-def find_constant(table: ControllerTable, name: str) -> Constant:
+def find_constant(table: ControllerTable, name: str, arithmetic: str = "float32") -> Constant:
     """The constant called `name`, however it is spelled: LAW_ELEVATION_Q1[2] is elevation_q_1_V_rad[2]; raises BadInput."""
-    known = list(constants(table))
+    known = list(constants(table, arithmetic))
     for constant in known:
         if constant.name == name:
             return constant
@@ -70,6 +58,22 @@ def find_constant(table: ControllerTable, name: str) -> Constant:
         f"one of {len(known)}, {known[0].name} the first",
         "list them: twinlaw trace",
     )
+
+
+def _constants(table: ControllerTable) -> Iterator[Constant]:
+    for axis, law in (("elevation", table.elevation), ("azimuth", table.azimuth)):
+        yield from _coefficients(table, axis, law)
+    for axis, law, angle, voltage in (
+        ("elevation", table.elevation, "PSI", "U_M"),
+        ("azimuth", table.azimuth, "PHI", "U_T"),
+    ):
+        yield from _limits(table, axis, law, angle, voltage)
+    design = "wish of the plant file, [design]"
+    yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
+    yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
+    yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
+    yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
+    yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
 
 
 def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:

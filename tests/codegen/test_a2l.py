@@ -101,6 +101,18 @@ def test_fixed_point_words_are_told_with_their_places() -> None:
     assert limit is None or limit[2] == "VALUE"
 
 
+def test_coefficients_are_told_as_the_words_of_the_c_have_them() -> None:
+    """Truth: each constant of the C in fixed point, its word over its places; the table's own number is off by less than a place."""
+    _, _, text = image("fixed")
+    told = dict(re.findall(r'SYSTEM_CONSTANT "(\S+)" "(\S+)"', text))
+    law_c = generate_law(ce150_table(), "fixed")["law.c"]
+    word, places = re.findall(r"elevation_q_2\(.*?\[1\] = (-?\d+), /\* (\d+) places", law_c, flags=re.DOTALL)[0]
+    assert float(told["elevation_q_2_V_rad[1]"]) == int(word) / 2.0 ** int(places)
+    assert float(told["elevation_q_2_V_rad[1]"]) == pytest.approx(
+        ce150_table().elevation.q_V_rad[2][1], abs=2.0 ** -int(places)
+    )
+
+
 def test_members_lie_within_their_variable() -> None:
     _, elf, _ = image()
     place = image_symbols(elf, "image")["main.path"]

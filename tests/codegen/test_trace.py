@@ -11,6 +11,7 @@ import pytest
 
 from codegen.law import generate_law
 from codegen.trace import names, trace
+from codegen.trace_literals import LEFT_OUT
 from design.settings import read_settings
 from design.table import design
 from records.errors import BadInput
@@ -39,17 +40,46 @@ def test_every_coefficient_of_the_c_can_be_traced_and_has_its_literal_there() ->
     in_c = {}
     for array, body in re.findall(r"static const law_number (\w+)\[\d+\] = \{[^\n]*\n(.*?)\};", law_c, flags=re.DOTALL):
         in_c.update({f"{array}[{power}]": text for power, text in re.findall(r"\[(\d+)\] = (\S+),", body)})
-    known = {constant.name: constant.c_text for constant in names(table)}
+    known = {constant.name: constant.literal.text for constant in names(table)}
     assert len(in_c) > 40
     assert {name: known[name] for name in in_c} == in_c
 
 
-def test_limits_and_steps_of_the_header_can_be_traced() -> None:
+def test_in_fixed_point_every_word_of_the_c_can_be_traced_with_its_places() -> None:
     _, table = designed()
-    texts = generate_law(table)
-    for constant in names(table):
-        if constant.name.startswith("LAW_") and not constant.name.endswith("_US"):
-            assert f"#define {constant.name} ({constant.c_text})" in texts["law.h"]
+    law_c = generate_law(table, "fixed")["law.c"]
+    in_c = {}
+    for function, body in re.findall(r"static int32_t (\w+)\(const powers .*?\{(.*?)\n    \};", law_c, flags=re.DOTALL):
+        in_c[function] = re.findall(r"= (-?\d+), (/\* \d+ places \*/)", body)
+    known: dict[str, list[tuple[str, str]]] = {}
+    for constant in names(table, "fixed"):
+        function = constant.name.partition("[")[0].removesuffix("_V_rad")
+        if constant.letter and constant.literal is not LEFT_OUT:
+            word, places = constant.literal.text.split(" ", 1)
+            known.setdefault(function, []).append((word, places))
+    assert sum(len(words) for words in in_c.values()) > 40
+    assert known == in_c
+
+
+@pytest.mark.parametrize("arithmetic", ["float32", "fixed"])
+def test_limits_and_steps_of_the_header_can_be_traced(arithmetic: str) -> None:
+    _, table = designed()
+    texts = generate_law(table, arithmetic)
+    for constant in names(table, arithmetic):
+        number = constant.literal.text.partition(" ")[0]
+        if constant.name == "LAW_SAMPLE_PERIOD_US":
+            assert f"#define {constant.name} {number} " in texts["law.h"]
+        elif constant.name.endswith("RESOLUTION_RAD") and arithmetic == "fixed":
+            assert f", {number}, " in texts["law.c"]
+        elif constant.name.startswith("LAW_"):
+            assert f"#define {constant.name} ({number})" in texts["law.h"]
+
+
+def test_a_coefficient_below_the_last_place_says_that_it_was_left_out() -> None:
+    _, table = designed()
+    left_out = {constant.name for constant in names(table, "fixed") if constant.literal is LEFT_OUT}
+    assert "elevation_u_ff_V[1]" in left_out, "the plant is even in Psi there: the fit's odd term is a rounding error"
+    assert not {constant.name for constant in names(table) if constant.literal is LEFT_OUT}
 
 
 def test_a_coefficient_leads_to_poles_points_and_parameters_with_sources() -> None:
@@ -102,4 +132,6 @@ def test_the_verb_lists_traces_and_speaks_json(tmp_path: Path, capsys: pytest.Ca
     assert "equilibrium voltage" in told
     assert main(["trace", "azimuth_p_1[0]", "--table", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["name"] == "azimuth_p_1[0]"
+    assert main(["trace", "azimuth_p_1[0]", "--table", str(path), "--arithmetic", "fixed"]) == 0
+    assert "places */ [1]" in capsys.readouterr().out
     assert main(["trace", "nonsense", "--table", str(path)]) == 2

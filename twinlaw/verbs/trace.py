@@ -19,10 +19,11 @@ PARAMETER_HEADING = ("parameter", "value", "sd", "unit", "influence", "source")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """NAME, --plant, --table, --json."""
+    """NAME, --plant, --table, --arithmetic, --json."""
     parser.add_argument("name", metavar="NAME", nargs="?", help="a constant of law.c or law.h; left out: list them")
     options.plant(parser)
     options.table(parser)
+    options.arithmetic(parser)
     options.as_json(parser)
 
 
@@ -30,11 +31,12 @@ def run(chosen: argparse.Namespace) -> int:
     """List, or trace one."""
     table = load_table(chosen.table)
     if chosen.name is None:
-        rows = [(constant.name, f"{constant.value:.9g}", constant.unit, constant.made_as) for constant in names(table)]
+        known = names(table, chosen.arithmetic)
+        rows = [(constant.name, f"{constant.value:.9g}", constant.unit, constant.made_as) for constant in known]
         print(json.dumps([row[0] for row in rows]) if chosen.json else console.table(rows))
         return 0
     bound = load_bound(Path(chosen.plant))
-    found = trace(bound, read_settings(bound), table, chosen.name)
+    found = trace(bound, read_settings(bound), table, chosen.name, chosen.arithmetic)
     print(json.dumps(asdict(found)) if chosen.json else trace_text(found))
     return 0
 
