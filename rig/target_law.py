@@ -7,6 +7,7 @@ from codegen.law_equations import STATE_WORDS
 from rig.emulator.answers import CallsResult
 from rig.emulator.bench import Speed, measure
 from rig.emulator.board import EmulatedBoard
+from rig.numbers import Numbers
 
 Bits = NDArray[np.uint32]
 
@@ -47,10 +48,11 @@ class TargetLaw:
         """Mismatches that the emitted self-test finds on the target."""
         return self._board.call("law_self_test").result
 
-    def speed(self, steps: int) -> Speed:
+    def speed(self, steps: int, numbers: Numbers) -> Speed:
         """How fast the board steps the law, both axes on their way to a reference; its memory goes on from call to call."""
-        self._start_lane(*(int(angle) for angle in np.array([0.1, -0.2], np.float32).view(np.uint32)))
-        self._board.write_memory(self._input, np.array([0.3, 0.4, 0.1, -0.2], np.float32).tobytes())
+        given = [numbers.to_word(angle_rad, "rad") for angle_rad in (0.3, 0.4, 0.1, -0.2)]
+        self._start_lane(*given[2:])
+        self._board.write_memory(self._input, np.array(given, np.uint32).tobytes())
         return measure(self._board, "law_step", (self._state, self._input, self._output), steps)
 
     def table_digest(self) -> str:

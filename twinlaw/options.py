@@ -67,9 +67,10 @@ def differing(paths: Sequence[Path]) -> None:
             raise BadInput("logs", name, "two of this name", "names that differ", "leave one of them out, or rename it")
 
 
-def arithmetic(parser: argparse.ArgumentParser) -> None:
-    """--arithmetic NAME."""
-    parser.add_argument("--arithmetic", choices=ARITHMETICS, default="float32", help="of the law; default: %(default)s")
+def arithmetic(parser: argparse.ArgumentParser, *, design_too: bool = False) -> None:
+    """--arithmetic NAME, of the generated law; `design_too` adds the law in double precision and makes it the default."""
+    choices = ("float64", *ARITHMETICS) if design_too else ARITHMETICS
+    parser.add_argument("--arithmetic", choices=choices, default=choices[0], help="of the law; default: %(default)s")
 
 
 def count(text: str) -> int:

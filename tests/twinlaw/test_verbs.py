@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from twinlaw import verbs
+from twinlaw.arithmetics import ARITHMETICS
 from twinlaw.command import main
 from twinlaw.completion import command_tree
 from twinlaw.parser import build_parser
@@ -35,6 +36,19 @@ def test_the_list_of_verbs_loads_none_of_their_tools() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_every_verb_that_makes_or_runs_the_generated_law_takes_its_arithmetic_and_in_the_same_words() -> None:
+    # `flash` writes an image, whatever it holds; `diagnose` finds out what flew; `compare` has controllers that exist in float32 only.
+    offers = {}
+    for verb in command_tree(build_parser(tuple(VERBS))).commands:
+        flags = {flag: option for option in verb.options for flag in option.flags}
+        if "--arithmetic" in flags:
+            offers[verb.last] = flags["--arithmetic"].words
+        assert "--table" not in flags or "--arithmetic" in flags, verb.last
+    assert offers.pop("simulate") == ("float64", *ARITHMETICS)
+    assert set(offers) == {"run", "generate", "build", "verify", "trace", "validate", "watch", "bench"}
+    assert set(offers.values()) == {ARITHMETICS}
 
 
 def test_every_verb_that_tells_anything_tells_it_to_a_program_too() -> None:

@@ -20,6 +20,7 @@ from records.table import ControllerTable
 from rig.emulator.bench import Speed
 from rig.emulator.board import EmulatedBoard
 from rig.image import build_firmware
+from rig.numbers import numbers_of
 from rig.target_law import TargetLaw
 from sim import bench
 from sim.bench import BenchRow, StepAccuracy
@@ -33,8 +34,9 @@ HEADING = ("closed loop, one core", "simulated s / CPU s", "kernel is faster by"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --json."""
+    """--plant, --arithmetic, --json."""
     options.plant(parser)
+    options.arithmetic(parser)
     options.as_json(parser)
 
 
@@ -46,7 +48,7 @@ def run(chosen: argparse.Namespace) -> int:
     with console.stage("flying with finer steps"):
         accuracy = bench.step_accuracy(designed.bound, designed.table)
     with console.stage("stepping the law on the emulated board"):
-        board = _board_speed(designed.table)
+        board = _board_speed(designed.table, chosen.arithmetic)
     with console.stage("fitting by every tool"):
         fits = fit_bench.run(designed.bound)
     if chosen.json:
@@ -58,9 +60,9 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _board_speed(table: ControllerTable) -> Speed:
-    image = build_firmware(generate_law(table))
-    return TargetLaw(EmulatedBoard(image.elf)).speed(BOARD_STEPS)
+def _board_speed(table: ControllerTable, arithmetic: str) -> Speed:
+    image = build_firmware(generate_law(table, arithmetic))
+    return TargetLaw(EmulatedBoard(image.elf), arithmetic).speed(BOARD_STEPS, numbers_of(table, arithmetic))
 
 
 def _shown(row: BenchRow) -> tuple[str, ...]:

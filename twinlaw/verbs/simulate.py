@@ -19,9 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--plant, --table, --arithmetic, --out, --json."""
     options.plant(parser)
     parser.add_argument("--table", type=Path, metavar="TABLE.json", help="fly this table instead of designing one")
-    parser.add_argument(
-        "--arithmetic", choices=("float64", *ARITHMETICS), default="float64", help="of the law; default: %(default)s"
-    )
+    options.arithmetic(parser, design_too=True)
     options.out(parser)
     options.as_json(parser)
 
