@@ -79,9 +79,10 @@ class PoleMigration:
 
 @dataclass(frozen=True)
 class TargetCost:
-    """What one control step costs on the target: cycles measured and bounded, worst stack, and the image's memory."""
+    """What one control step costs on the target: least and most cycles measured, their bound, worst stack, and the image's memory."""
 
     arithmetic: str
+    cycles_min: int
     cycles_max: int
     cycles_bound: int
     stack_bytes: int

@@ -158,6 +158,7 @@ def _check(
         rounding=rounding,
         cost=TargetCost(
             arithmetic=arithmetic,
+            cycles_min=target.cycles_min,
             cycles_max=target.cycles_max,
             cycles_bound=cost.cycles_bound,
             stack_bytes=cost.stack_bytes,

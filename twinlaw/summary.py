@@ -112,7 +112,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     rows += [
         (
             f"control step on target, {row.arithmetic}",
-            f"{row.cycles_max} cycles measured, {row.cycles_bound} at most, stack {row.stack_bytes} B",
+            f"{row.cycles_min} to {row.cycles_max} cycles measured, {row.cycles_bound} at most, stack {row.stack_bytes} B",
             _held(row.cycles_max <= row.cycles_bound),
         )
         for row in verification.target

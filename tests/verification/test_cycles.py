@@ -1,0 +1,12 @@
+"""What a step costs on the emulated board when the law is flown, not given bits that no flight has."""
+
+import pytest
+
+from tests.law_tables import ce150_table
+from tests.verification.cycles import FLOWN, cycles
+
+
+@pytest.mark.parametrize(("arithmetic", "most"), [("float32", 10_000), ("fixed", 2_000)])
+def test_a_flown_step_stays_below_what_was_aimed_at(arithmetic: str, most: int) -> None:
+    dearest = {name: dearest for name, _, dearest in cycles(ce150_table(), arithmetic, 20_000)}
+    assert all(dearest[name] < most for name in FLOWN), dearest
