@@ -18,7 +18,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -118,11 +118,6 @@ def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
             "the table was changed by hand: design it again",
         )
     return table
-
-
-def with_origin(table: ControllerTable, origin: Mapping[str, Any]) -> ControllerTable:
-    """The same table with another record of where it came from."""
-    return replace(table, origin=origin)
 
 
 def canonical_text(content: Mapping[str, Any]) -> str:
