@@ -1,7 +1,9 @@
 """The report of `twinlaw envelope`: the tables and figures of seed 003 in our form."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from identification.envelope.by_hand import Tried
 from identification.envelope.criteria import outside_percent
 from identification.envelope.record import summary
 from identification.envelope.study import FINAL, Check, ConditionResult, Study
@@ -17,8 +19,8 @@ THEIL_AND_NOISE = (
 )
 
 
-def envelope_page(found: Study, origin: str) -> Page:
-    """The whole page; `origin` says where the flights came from."""
+def envelope_page(found: Study, origin: str, by_hand: Sequence[Tried] = ()) -> Page:
+    """The whole page; `origin` says where the flights came from, `by_hand` tells of starts that were typed in."""
     entry, told = found.at(SHOWN), summary(found)
     missed = sum(group["flights"] - group["held_three_seconds"] for group in told.values())
     return Page(
@@ -30,6 +32,7 @@ def envelope_page(found: Study, origin: str) -> Page:
             _inputs(entry, found),
             _open_loop(entry),
             _closed_loop(entry, found),
+            *([_by_hand(by_hand)] if by_hand else []),
             *(_validation(check, entry) for check in entry.checks[1:]),
             _all_conditions(found),
             _output_equation(entry, found),
@@ -88,11 +91,24 @@ def _closed_loop(entry: ConditionResult, found: Study) -> Section:
         "State equation, closed loop (2.3, Tables 2.2 and 2.3)",
         (
             "The model runs on the pilot's controls alone. Points outside the margins in per cent, by how the start was tuned: not at all, "
-            "state by state over a grid by hand, automatically within bounds, and automatically with the error of the trim.",
+            "by hand where starts were typed in, state by state over a grid, automatically within bounds, and automatically with the "
+            "error of the trim.",
             f"Identification of {entry.condition.name}, its validations, and the validations of all conditions:",
         ),
         tuple(tables.tunings(checks) for checks in (own, others, everywhere) if checks),
         (plots.states(entry.checks[0], entry),),
+    )
+
+
+def _by_hand(flights: Sequence[Tried]) -> Section:
+    checks = tuple(dict.fromkeys(entry.check for entry in flights))
+    return Section(
+        "Starts typed in (2.3.3.1, Table 2.2)",
+        (
+            "Of each flight whose start was typed in: the starts of all tunings, and the points outside the margins in per cent.",
+        ),
+        tuple(tables.by_hand(entry) for entry in flights),
+        tuple(plots.states(check, None, "by hand") for check in checks),
     )
 
 

@@ -4,11 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from identification.envelope.by_hand import Tried
 from identification.envelope.criteria import WEIGHTS, Match, error_margins, outside_percent, passed, score_percent
 from identification.envelope.flight import OUTPUTS, STATES
 from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.outputs import METHODS
-from identification.envelope.study import FINAL, TUNINGS, Check, ConditionResult, Study
+from identification.envelope.study import FINAL, Check, ConditionResult, Study
 from identification.margins import MARGINS, FOOT_m
 from twinlaw.page import Table
 
@@ -62,13 +63,28 @@ def open_loop(entry: ConditionResult) -> Table:
 def tunings(checks: Sequence[Check]) -> Table:
     """Tables 2.2 and 2.3: percentage of points outside the margins by state and way of tuning, mean over the checks."""
     rows = []
-    for how in TUNINGS:
+    for how in checks[0].states:
         shares = np.array([[match.outside_percent for match in check.states[how]] for check in checks])
         held, flights = sum(check.held[how] for check in checks), sum(len(check.data.x) for check in checks)
         rows.append(
             (how, *(f"{share:.1f}" for share in shares.mean(axis=0)), f"{shares.mean():.2f}", f"{held} of {flights}")
         )
     return Table(rows, ("start", *symbols(STATES), "mean", "flights held 3 s"))
+
+
+def by_hand(flight: Tried) -> Table:
+    """Table 2.2 of a flight whose start was typed in: by tuning the start, then the percentage of points outside it leads to."""
+    starts = [(f"start, {how}", *(f"{value:.4g}" for value in at.values()), "", "") for how, at in flight.start.items()]
+    shares = [
+        (
+            f"outside [%], {how}",
+            *(f"{match.outside_percent:.1f}" for match in found),
+            f"{outside_percent(found):.2f}",
+            "yes" if passed(found) else "no",
+        )
+        for how, found in flight.states.items()
+    ]
+    return Table([*starts, *shares], (flight.flight, *STATES, "mean", "held 3 s"))
 
 
 def conditions(found: Study) -> Table:
@@ -181,12 +197,12 @@ def interpolation(found: Study) -> tuple[Table, Table]:
 
 
 def _left_out(title: str, checks: Sequence[tuple[str, Check]]) -> Table:
-    rows = []
+    rows, tunings = [], tuple(checks[0][1].states)
     for name, check in checks:
-        shares = [f"{outside_percent(check.states[how]):.2f}" for how in TUNINGS]
+        shares = [f"{outside_percent(check.states[how]):.2f}" for how in tunings]
         held = f"{check.held[FINAL]} of {len(check.data.x)}"
         rows.append((name, *shares, held, f"{outside_percent(check.overall['linear']):.2f}"))
-    return Table(rows, (f"{title}: outside [%]", *TUNINGS, "held 3 s", "accelerations"))
+    return Table(rows, (f"{title}: outside [%]", *tunings, "held 3 s", "accelerations"))
 
 
 def margins() -> Table:

@@ -52,7 +52,7 @@ class Deviations:
     """Flights of one condition joined, each as deviations from its own trim: u (flights, n, 4), x (flights, n, 8), y (flights, n, 3).
 
     `trim` is (flights, 15): the inputs, states and outputs that were taken off. The flights stay apart in the first index, so that
-    nothing is ever predicted across a joint, where the records jump.
+    nothing is ever predicted across a joint, where the records jump. `names` are those of the flights.
     """
 
     sample_period_s: float
@@ -60,6 +60,7 @@ class Deviations:
     x: Array
     y: Array
     trim: Array
+    names: tuple[str, ...]
 
     @property
     def count(self) -> int:
@@ -86,10 +87,12 @@ def joined(flights: Sequence[Flight], quiet_s: float = 2.0) -> Deviations:
     whole = np.stack([np.hstack([flight.u[:rows], flight.x[:rows], flight.y[:rows]]) for flight in flights])
     trim = whole[:, :quiet].mean(axis=1)
     u, x, y = np.split(whole - trim[:, None, :], [4, 12], axis=2)
-    return Deviations(period_s, u, x, y, trim)
+    return Deviations(period_s, u, x, y, trim, tuple(flight.name for flight in flights))
 
 
 def one_by_one(data: Deviations) -> tuple[Deviations, ...]:
     """Each flight as a set of its own."""
-    parts = zip(data.u, data.x, data.y, data.trim, strict=True)
-    return tuple(replace(data, u=u[None], x=x[None], y=y[None], trim=trim[None]) for u, x, y, trim in parts)
+    parts = zip(data.u, data.x, data.y, data.trim, data.names, strict=True)
+    return tuple(
+        replace(data, u=u[None], x=x[None], y=y[None], trim=trim[None], names=(name,)) for u, x, y, trim, name in parts
+    )

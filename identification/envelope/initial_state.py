@@ -1,16 +1,17 @@
-"""Tuning of a free run's initial state to a flight, by hand and automatically (seed 003, 2.3.3): a "proof of match".
+"""Tuning of a free run's initial state to a flight, by hand, over a grid and automatically (seed 003, 2.3.3): a "proof of match".
 
 A free run depends linearly on its start: x(k) = x_0(k) + A^k d for a start moved by d. So the squared error in margins is a quadratic
 of d, and its minimum within bounds is found exactly, instead of by the sequential quadratic programming that the thesis uses.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from identification.envelope.flight import Deviations
+from identification.envelope.flight import INPUTS, STATES, Deviations
 from identification.envelope.free_run import Model, free_run
 from identification.margins import REQUIRED_s
 
@@ -18,7 +19,7 @@ Array = NDArray[np.float64]
 
 REACH = 0.25  # a start may move by so many margins from its measured value: some four sd of a good sensor
 TRIM_s = 10.0  # and an error of the trim by a margin in so many seconds
-GRID = 21  # places that are tried for one state by hand
+GRID = 21  # places that are tried for one state
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +36,19 @@ def as_measured(model: Model, flight: Deviations) -> Tuned:
     return _run(model, flight, flight.x[0, 0], np.zeros_like(flight.x[0, 0]))
 
 
-def by_hand(model: Model, flight: Deviations, margins: Array, rounds: int = 2) -> Tuned:
-    """One state after the other is moved over a grid within its margin to where the fewest points lie outside the margins.
+def by_hand(model: Model, flight: Deviations, typed: Mapping[str, float]) -> Tuned:
+    """The start as a person typed it in, whole signals by state; a state that is not among them starts as measured."""
+    start = flight.x[0, 0].copy()
+    for name, value in typed.items():
+        place = STATES.index(name)
+        start[place] = value - flight.trim[0, len(INPUTS) + place]
+    return _run(model, flight, start, np.zeros_like(start))
 
-    That is what a person does at the screen; equal counts are told apart by the squared error.
+
+def over_grid(model: Model, flight: Deviations, margins: Array, rounds: int = 2) -> Tuned:
+    """One state after the other is moved over a grid within its reach to where the fewest points lie outside the margins.
+
+    That is what a person does at the screen who has the patience; equal counts are told apart by the squared error.
     """
     x, start, effects = flight.x[0], flight.x[0, 0].copy(), _effects(model, flight.x.shape[1])
     base = free_run(model, flight.u, start[None])[0]

@@ -80,6 +80,11 @@ def _check(check: Check) -> dict[str, Any]:
         "name": check.name,
         "mission": check.mission,
         "flights": len(check.data.x),
+        "names": list(check.data.names),
+        "starts": {
+            how: [dict(zip(STATES, start, strict=True)) for start in starts.tolist()]
+            for how, starts in check.start.items()
+        },
         "held_three_seconds": dict(check.held),
         "open_loop": _matches(check.open_loop),
         "states": {how: _matches(found) for how, found in check.states.items()},

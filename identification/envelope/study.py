@@ -13,14 +13,14 @@ from identification.envelope.criteria import Match, flights_passed, matches
 from identification.envelope.flight import CONTROLS, OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
 from identification.envelope.free_run import Model, model_of, one_step
 from identification.envelope.fuzzy import Trained
-from identification.envelope.initial_state import as_measured, automatic, by_hand
+from identification.envelope.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
 from identification.envelope.outputs import METHODS, Equation, Linear, equations
 from identification.envelope.recursive import best, history, pairs
+from identification.envelope.starts import NONE, Starts
 from identification.margins import MARGINS
 
 Array = NDArray[np.float64]
-TUNINGS = ("measured", "by hand", "automatic", "with trim")
 STILL_percent = 0.1  # rms of a control's own motion, of its travel, below which it tells nothing
 FINAL = "with trim"  # whose states the output equation of the global model takes
 
@@ -29,6 +29,7 @@ FINAL = "with trim"  # whose states the output equation of the global model take
 class Check:
     """A model tried on flights of one mission: its states by tuning and its accelerations by method, and how both match.
 
+    `start` (flights, 8) are the tuned starts as whole signals, by tuning; "by hand" is among the tunings where any were typed in.
     `open_loop` is one step ahead, `open_loop_whole` the same with the trim put back, which flatters Theil's fit; `outputs` come from
     measured states (chapter 3), `overall` from the run's own (chapter 4). `held` counts the flights whose states all stay within their
     margins for three seconds, by tuning.
@@ -37,6 +38,7 @@ class Check:
     name: str
     mission: str
     data: Deviations
+    start: Mapping[str, Array]
     x: Mapping[str, Array]
     y: Mapping[str, Array]
     y_overall: Mapping[str, Array]
@@ -102,10 +104,11 @@ def study(
     forgetting: float = 1.0,
     stage: Callable[[str], AbstractContextManager[None]] = _silent,
     save: Callable[[Study], None] = _unsaved,
+    starts: Starts = NONE,
 ) -> Study:
     """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each.
 
-    `save` is told what is known after each, so that an interrupted study leaves what it has.
+    `starts` are those typed in by hand. `save` is told what is known after each, so that an interrupted study leaves what it has.
     Raises BadInput for flights that cannot be joined, and for a condition left out without neighbours on both sides.
     """
     found, left_out = list[ConditionResult](), list[Interpolated]()
@@ -115,13 +118,13 @@ def study(
     for condition in known:
         with stage(condition.name):
             mine = [entry for entry in flights if entry.condition == condition]
-            found.append(identify(condition, mine, forgetting))
+            found.append(identify(condition, mine, forgetting, starts))
         save(Study(tuple(found), (), len(flights)))
     models = {entry.condition: entry.model for entry in found}
     for condition in _conditions(flights, "interpolation"):
         with stage(f"{condition.name}, left out"):
             mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
-            left_out.append(_interpolated(condition, models, mine))
+            left_out.append(_interpolated(condition, models, mine, starts))
         save(Study(tuple(found), tuple(left_out), len(flights)))
     return Study(tuple(found), tuple(left_out), len(flights))
 
@@ -130,7 +133,9 @@ def _conditions(flights: Iterable[Flight], use: str) -> list[Condition]:
     return sorted({flight.condition for flight in flights if flight.use == use})
 
 
-def identify(condition: Condition, flights: Sequence[Flight], forgetting: float = 1.0) -> ConditionResult:
+def identify(
+    condition: Condition, flights: Sequence[Flight], forgetting: float = 1.0, starts: Starts = NONE
+) -> ConditionResult:
     """Chapters 2 to 4 for one condition; raises BadInput for flights that cannot be joined or a factor outside (0, 1]."""
     mine = [flight for flight in flights if flight.use == "identification"]
     data, mission = joined(mine), mine[0].mission
@@ -142,11 +147,11 @@ def identify(condition: Condition, flights: Sequence[Flight], forgetting: float 
     training = optimise(open_loop, data, margins_x)
     ways, trained = equations(data, margins_y)
     assert isinstance(ways["linear"], Linear)
-    checks = [check(f"{condition.name} identification", mission, data, open_loop, training.model, ways)]
+    checks = [check(f"{condition.name} identification", mission, data, open_loop, training.model, ways, starts)]
     for flight in flights:
         if flight.use == "validation":
             alone = joined([flight])
-            checks.append(check(flight.name, flight.mission, alone, open_loop, training.model, ways))
+            checks.append(check(flight.name, flight.mission, alone, open_loop, training.model, ways, starts))
     model = GlobalModel(training.model, ways["linear"])
     return ConditionResult(
         condition, poor(mine, data), row, potentials, open_loop, training, trained, model, tuple(checks)
@@ -176,17 +181,25 @@ def margins_of(mission: str) -> tuple[Array, Array]:
 
 
 def check(
-    name: str, mission: str, data: Deviations, open_loop: Model, model: Model, ways: Mapping[str, Equation]
+    name: str,
+    mission: str,
+    data: Deviations,
+    open_loop: Model,
+    model: Model,
+    ways: Mapping[str, Equation],
+    starts: Starts = NONE,
 ) -> Check:
     """Try `open_loop` one step ahead and `model` in free runs, tuned flight by flight."""
     margins_x, margins_y = margins_of(mission)
     period_s = data.sample_period_s
-    x = {how: _runs(how, model, data, margins_x) for how in TUNINGS}
+    tuned = _tuned(model, data, margins_x, starts)
+    x = {how: np.stack([flight.x for flight in flights]) for how, flights in tuned.items()}
     y = {way: equation(data, data.x) for way, equation in ways.items()}
     y_overall = {way: equation(data, x[FINAL]) for way, equation in ways.items()}
     ahead, trim = one_step(open_loop, data), data.trim[:, None, 4:12]
+    start = {how: np.stack([flight.start for flight in flights]) + trim[:, 0] for how, flights in tuned.items()}
     return Check(
-        name, mission, data, x, y, y_overall,
+        name, mission, data, start, x, y, y_overall,
         matches(STATES, data.x, ahead, margins_x, period_s),
         matches(STATES, data.x + trim, ahead + trim, margins_x, period_s),
         {how: flights_passed(data.x, run, margins_x, period_s) for how, run in x.items()},
@@ -196,24 +209,27 @@ def check(
     )  # fmt: skip
 
 
-def _runs(how: str, model: Model, data: Deviations, margins: Array) -> Array:
-    """Free runs (flights, n, 8), each flight tuned on its own."""
-    tune: Mapping[str, Callable[[Deviations], Array]] = {
-        "measured": lambda flight: as_measured(model, flight).x,
-        "by hand": lambda flight: by_hand(model, flight, margins).x,
-        "automatic": lambda flight: automatic(model, flight, margins).x,
-        "with trim": lambda flight: automatic(model, flight, margins, trim=True).x,
+def _tuned(model: Model, data: Deviations, margins: Array, starts: Starts) -> Mapping[str, Sequence[Tuned]]:
+    """The free run of each flight, by tuning; by hand only where starts were typed in, and then the other flights start as measured."""
+    ways: dict[str, Callable[[Deviations], Tuned]] = {
+        "measured": lambda flight: as_measured(model, flight),
+        "by hand": lambda flight: by_hand(model, flight, starts.get(flight.names[0], {})),
+        "grid": lambda flight: over_grid(model, flight, margins),
+        "automatic": lambda flight: automatic(model, flight, margins),
+        FINAL: lambda flight: automatic(model, flight, margins, trim=True),
     }
-    return np.stack([tune[how](flight) for flight in one_by_one(data)])
+    if not starts:
+        del ways["by hand"]
+    return {how: [tune(flight) for flight in one_by_one(data)] for how, tune in ways.items()}
 
 
 def _interpolated(
-    condition: Condition, models: Mapping[Condition, GlobalModel], flights: Sequence[Flight]
+    condition: Condition, models: Mapping[Condition, GlobalModel], flights: Sequence[Flight], starts: Starts
 ) -> Interpolated:
     data, mission = joined(flights), flights[0].mission
 
     def tried(model: GlobalModel) -> Check:
-        return check(condition.name, mission, data, model.state, model.state, {"linear": model.output})
+        return check(condition.name, mission, data, model.state, model.state, {"linear": model.output}, starts)
 
     model = between(models, condition)
     return Interpolated(condition, model, tried(model), tried(nearest(models, condition)))

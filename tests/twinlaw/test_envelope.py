@@ -8,10 +8,12 @@ import pytest
 
 from identification.envelope import study
 from identification.envelope.conditions import Condition
+from identification.envelope.flight import STATES
 from identification.envelope.flight_file import load_flight, load_flights, save_flight
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
+from identification.margins import MARGINS
 from twinlaw.command import main
 
 ENDS, BETWEEN = (Condition("HF", 3000, 50), Condition("HF", 3000, 70)), (Condition("HF", 3000, 60),)
@@ -45,6 +47,56 @@ def test_the_verb_identifies_interpolates_and_draws(folder: Path, tmp_path: Path
     for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
         assert words in page
     assert "HF3000ft-50kts, one step ahead" in capsys.readouterr().out
+
+
+VALIDATION = "HF3000ft-50kts-level-lateral-3"
+
+
+def typed_in(path: Path, text: str) -> list[str]:
+    path.write_text(f'schema = "starts/1"\n{text}')
+    return ["--starts", str(path)]
+
+
+def test_initial_states_typed_in_are_tried_beside_the_tuned_ones(folder: Path, tmp_path: Path, capsys) -> None:
+    """Truth: a start 0.9 of a margin off in bank leaves more points outside than any tuning; other flights start as measured."""
+    measured = float(load_flight(folder / f"{VALIDATION}.toml").x[0, STATES.index("phi_rad")])
+    phi_rad = measured + 0.9 * MARGINS["level"]["phi_rad"]
+    given = typed_in(tmp_path / "starts.toml", f"[{VALIDATION}]\nphi_rad = {phi_rad!r}\n")
+    assert main(["envelope", "--out", str(tmp_path), *given, str(folder)]) == 0
+    checks = {
+        check["name"]: check
+        for check in json.loads((tmp_path / "envelope.json").read_text())["conditions"][0]["checks"]
+    }
+    own, other = checks[VALIDATION], checks["HF3000ft-50kts-level-longitudinal-1"]
+    assert own["starts"]["by hand"][0]["phi_rad"] == pytest.approx(phi_rad, abs=1e-12)
+    assert own["starts"]["by hand"][0]["p_rad_s"] == own["starts"]["measured"][0]["p_rad_s"]
+    assert other["starts"]["by hand"] == other["starts"]["measured"]
+    outside = {how: found["phi_rad"]["outside_percent"] for how, found in own["states"].items()}
+    assert min(outside, key=lambda how: -outside[how]) == "by hand"
+    told = capsys.readouterr().out
+    assert "start, by hand" in told
+    assert f"{phi_rad:.4g}" in told
+    assert "Starts typed in (2.3.3.1, Table 2.2)" in (tmp_path / "report.html").read_text()
+
+
+def test_starts_that_cannot_be_meant_are_refused(folder: Path, tmp_path: Path, capsys) -> None:
+    flight = load_flight(folder / f"{VALIDATION}.toml")
+    u_m_s = flight.x[0, 0]
+    for text, words in (
+        ("", "no flight"),
+        ("[HF3000ft-50kts-level-lateral-4]\nu_m_s = 25.0", f"say '{VALIDATION}'"),
+        (f"[{VALIDATION}]", "no state"),
+        (f"[{VALIDATION}]\nu_kts = 50.0", "'u_kts': got an unknown key, expected one of 'u_m_s'"),
+        (f'[{VALIDATION}]\nu_m_s = "fast"', "finite number"),
+        (f"[{VALIDATION}]\nu_m_s = nan", "finite number"),
+        (f"[{VALIDATION}]\nu_m_s = 50.0", f"a margin to either side of the measured {u_m_s:.4g}; check its unit"),
+        (f"{VALIDATION} = 3.0", "key = value pairs"),
+    ):
+        given = typed_in(tmp_path / "starts.toml", text)
+        assert main(["envelope", "--out", str(tmp_path / "out"), *given, str(folder)]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert words in line
+    assert not (tmp_path / "out").exists()
 
 
 def test_what_is_wrong_with_a_flight_is_said(folder: Path, tmp_path: Path, capsys) -> None:

@@ -3,15 +3,18 @@
 Without FLIGHTS the tests are flown on a simulated helicopter: 22 conditions to identify, each with three flights to validate it, and nine
 between them that are only predicted. FLIGHTS is a folder of sidecars NAME.toml with their NAME.csv, as --keep-flights writes them. Writes
 DIR/envelope.json, after each condition, and DIR/report.html; models are judged by the FAA's margins and the three-second rule.
+Initial states are tuned automatically; --starts takes others, typed in by flight, to lay beside them.
 """
 
 import argparse
 import json
 from pathlib import Path
 
+from identification.envelope.by_hand import tried
 from identification.envelope.flight import Flight
 from identification.envelope.flight_file import load_flights, save_flight
 from identification.envelope.record import facts, summary
+from identification.envelope.starts import NONE, load_starts
 from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
@@ -20,12 +23,12 @@ from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw import console, options
 from twinlaw.envelope_report import SHOWN, envelope_page, notes_of, verdict
-from twinlaw.envelope_tables import conditions, interpolation, open_loop
+from twinlaw.envelope_tables import by_hand, conditions, interpolation, open_loop
 from twinlaw.page import Table, page_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--seed, --keep-flights, --forgetting, --out, --json, FLIGHTS."""
+    """--seed, --keep-flights, --forgetting, --starts, --out, --json, FLIGHTS."""
     parser.add_argument(
         "--seed",
         type=options.count,
@@ -38,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--forgetting", type=float, default=1.0, metavar="GAMMA", help="of the recursion, above 0; default: %(default)s"
     )
+    parser.add_argument(
+        "--starts", type=Path, metavar="STARTS.toml", help="initial states to try: sections [FLIGHT] of STATE = VALUE"
+    )
     options.out(parser)
     options.as_json(parser)
     parser.add_argument("flights", nargs="?", type=Path, metavar="FLIGHTS", help="folder of flight tests")
@@ -48,17 +54,21 @@ def run(chosen: argparse.Namespace) -> int:
     flights, origin = _flights(chosen)
     if not any(flight.use == "identification" for flight in flights):
         raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
+    starts = NONE if chosen.starts is None else load_starts(chosen.starts, flights)
 
     def save(so_far: Study) -> None:
         write_atomic(chosen.out / "envelope.json", json.dumps(facts(so_far), indent=1) + "\n")
 
-    found = study(flights, chosen.forgetting, console.stage, save)
+    found = study(flights, chosen.forgetting, console.stage, save, starts)
+    tries = tried(found, starts)
     with console.stage("drawing the report"):
-        write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin)))
+        write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries)))
     if chosen.json:
         print(json.dumps(summary(found)))
         return 0
     print(verdict(summary(found)))
+    for flight in tries:
+        print(f"\n{_shown(by_hand(flight))}")
     print(f"\n{found.at(SHOWN).condition.name}, one step ahead\n{_shown(open_loop(found.at(SHOWN)))}")
     print(f"\nPoints outside the margins, starts tuned\n{_shown(conditions(found))}")
     if found.left_out:

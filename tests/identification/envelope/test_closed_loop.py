@@ -7,7 +7,7 @@ from identification.envelope import initial_state
 from identification.envelope.closed_loop import optimise
 from identification.envelope.flight import Deviations
 from identification.envelope.free_run import Model, free_run, model_of, one_step, slopes
-from identification.envelope.initial_state import REACH, as_measured, automatic, by_hand
+from identification.envelope.initial_state import REACH, as_measured, automatic, by_hand, over_grid
 from identification.envelope.recursive import batch, pairs
 
 # A pair of eigenvalues of modulus 1.002 and a period of 2 pi / 0.06 samples, as a phugoid's.
@@ -23,7 +23,7 @@ def flown(noise, flights=3, rows=240, seed=1, drift=0.0):
     start = rng.standard_normal((flights, 2)) * MARGINS
     x = free_run(TRUTH, u, start, np.full((flights, 2), drift))
     x = x + noise * MARGINS * rng.standard_normal(x.shape)
-    return Deviations(0.05, u, x, np.zeros((flights, rows, 3)), np.zeros((flights, 6)))
+    return Deviations(0.05, u, x, np.zeros((flights, rows, 3)), np.zeros((flights, 6)), ("",) * flights)
 
 
 def test_slopes_are_those_of_differences():
@@ -76,7 +76,7 @@ def test_a_drift_is_not_taken_for_dynamics():
 def test_automatic_tuning_finds_a_shift_within_its_bounds():
     data, shift = flown(0.0, flights=1), np.array([0.2, -0.05])
     assert np.all(np.abs(shift) < REACH * MARGINS)
-    shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim)
+    shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim, data.names)
     shifted.x[0, 0] += shift
     assert automatic(TRUTH, shifted, MARGINS).start == pytest.approx(data.x[0, 0], abs=2e-3)
 
@@ -97,7 +97,7 @@ def test_late_errors_do_not_break_the_first_three_seconds(monkeypatch):
 def test_beyond_a_bound_it_stays_there_and_no_step_inwards_helps():
     """Karush, Kuhn and Tucker: the cost's slope points outwards at the active bound and vanishes for the free state."""
     data = flown(0.0, flights=1)
-    shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim)
+    shifted = Deviations(0.05, data.u, data.x.copy(), data.y, data.trim, data.names)
     shifted.x[0, 0] += [1.0, 0.0]
 
     def cost(start):
@@ -110,14 +110,27 @@ def test_beyond_a_bound_it_stays_there_and_no_step_inwards_helps():
     assert cost(found) <= min(cost(found + along), cost(found - along))
 
 
-def test_tuning_by_hand_leaves_no_more_points_outside_than_the_measured_start():
+def test_a_grid_leaves_no_more_points_outside_than_the_measured_start():
     data = flown(0.1, flights=1, seed=4)
 
     def outside(tuned):
         return np.mean(np.abs(tuned.x - data.x[0]) > MARGINS)
 
     model = Model(TRUTH.A * 1.001, TRUTH.B, 0.05)
-    assert outside(by_hand(model, data, MARGINS)) < outside(as_measured(model, data))
+    assert outside(over_grid(model, data, MARGINS)) < outside(as_measured(model, data))
+
+
+def test_by_hand_the_run_starts_where_it_was_typed_in_and_elsewhere_as_measured():
+    """Truth: a first row that is off; the true start typed in as a whole signal, so trim and all, gives the true motion back."""
+    true = flown(0.0, flights=1)
+    x, trim = true.x.copy(), np.array([[0.0, 0.0, 0.0, 0.0, 20.0, -3.0]])
+    x[0, 0] += [0.2, -0.05]
+    data = Deviations(0.05, true.u, x, true.y, trim, true.names)
+    u_m_s, v_m_s = true.x[0, 0] + [20.0, -3.0]
+    assert by_hand(TRUTH, data, {"u_m_s": u_m_s, "v_m_s": v_m_s}).x == pytest.approx(true.x[0], abs=1e-12)
+    one = by_hand(TRUTH, data, {"u_m_s": u_m_s})
+    assert one.start == pytest.approx([true.x[0, 0, 0], x[0, 0, 1]], abs=1e-12)
+    assert np.array_equal(by_hand(TRUTH, data, {}).x, as_measured(TRUTH, data).x)
 
 
 def test_a_wrong_trim_is_found_as_a_drift():

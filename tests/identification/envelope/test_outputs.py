@@ -90,7 +90,7 @@ def test_classical_equations_of_a_known_motion():
     trim = np.array([25.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.02, 0.01])
     at_rest = np.array([g * np.sin(0.01), -g * np.cos(0.01) * np.sin(0.02), -g * np.cos(0.01) * np.cos(0.02)])
     whole = np.concatenate([np.zeros(4), trim, np.zeros(3)])[None]
-    data = Deviations(0.05, np.zeros((1, 100, 4)), (x - trim)[None], truth[None], whole)
+    data = Deviations(0.05, np.zeros((1, 100, 4)), (x - trim)[None], truth[None], whole, ("",))
     inner = slice(SLOPE_ROWS // 2, -(SLOPE_ROWS // 2))  # the parabola needs rows on both sides
     assert classical(data, data.x)[0, inner] == pytest.approx((truth - at_rest)[inner], abs=1e-9)
 
@@ -99,7 +99,7 @@ def test_a_linear_output_equation_comes_back():
     rng = np.random.default_rng(4)
     x, u = rng.standard_normal((2, 50, 8)), rng.standard_normal((2, 50, 4))
     C, D = rng.standard_normal((3, 8)), rng.standard_normal((3, 4))
-    data = Deviations(0.05, u, x, x @ C.T + u @ D.T, np.zeros((2, 15)))
+    data = Deviations(0.05, u, x, x @ C.T + u @ D.T, np.zeros((2, 15)), ("", ""))
     found = linear(data)
     assert pytest.approx(C, abs=1e-12) == found.C
     assert pytest.approx(D, abs=1e-12) == found.D

@@ -19,7 +19,7 @@ def flights(starts, rows=40, seed=0):
     x[:, 0] = starts
     for k in range(rows - 1):
         x[:, k + 1] = x[:, k] @ A.T + u[:, k] @ B.T
-    return Deviations(0.05, u, x, np.zeros((len(starts), rows, 3)), np.zeros((len(starts), 6)))
+    return Deviations(0.05, u, x, np.zeros((len(starts), rows, 3)), np.zeros((len(starts), 6)), ("",) * len(starts))
 
 
 @pytest.mark.parametrize("forgetting", [1.0, 0.97])
