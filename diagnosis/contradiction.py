@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from diagnosis.case import Case
 from diagnosis.filter import Pass
@@ -28,7 +29,7 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     """The log that gains most by numbers of its own beside a joint fit, to first order; None for a single log.
 
     With g the slope of one log's misfit and I its information at the joint fit, numbers d of its own gain g' S^-1 g / 2 where
-    S = I + L - I (I_all + L)^-1 I and L is what was known before.
+    S = I + L - I (I_all + L)^-1 I and L is what was known before, correlation and all.
     """
     if len(case.flights) < 2:
         return None
@@ -39,7 +40,7 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     if runs is None:
         return None
     scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
-    before = np.concatenate([np.ones(len(case.free)), np.full(len(inside), WIDE**-2)])
+    before = block_diag(case.known, WIDE**-2 * np.eye(len(inside)))
     names = [str(case.kit.bound.model.parameter_symbols[place]) for place in case.free]
     names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]
     parts = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]
@@ -54,9 +55,9 @@ def parted_gain(case: Case, found: Fit) -> float:
 
 def _own_numbers(runs: Sequence[Pass], index: int, scale: Array, before: Array, names: Sequence[str]) -> Contradiction:
     grams = [run.gram * np.outer(scale, scale) for run in runs]
-    own, everything = grams[index], np.sum(grams, axis=0) + np.diag(before)
+    own, everything = grams[index], np.sum(grams, axis=0) + before
     pull = runs[index].pull * scale
-    curvature = own + np.diag(before) - own @ np.linalg.solve(everything, own)
+    curvature = own + before - own @ np.linalg.solve(everything, own)
     step = -np.linalg.solve(curvature, pull)
     order = np.argsort(-np.abs(step))[:3]
     return Contradiction(

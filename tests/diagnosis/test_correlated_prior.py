@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from diagnosis.case import Case, make_case
+from diagnosis.contradiction import contradiction
 from diagnosis.engine import nominal_fit
 from diagnosis.fit import log_prior, strain
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.improved import improved_plant
 from diagnosis.kit import make_kit
 from records.correlation import Correlation
+from records.log import RunLog
 from records.plant import plant_text
 from sim.bind import BoundPlant, bind
 from sim.equilibrium import equilibrium
@@ -27,16 +29,25 @@ T_S = 0.01 * np.arange(1000)
 @pytest.fixture(scope="module")
 def case(plant: BoundPlant) -> Case:
     """Ten seconds with the azimuth locked, on a rig whose J_E is one deviation up; J_A is stated as correlated with it."""
+    return case_of(plant, "J_A", [flown(plant, {"J_E": 1.0})])
+
+
+def case_of(plant: BoundPlant, other: str, logs: list[RunLog]) -> Case:
+    stated = Correlation(("J_E", other), ((1.0, HANG), (HANG, 1.0)))
+    return make_case(make_kit(bind(replace(plant.plant, correlation=stated))), logs)
+
+
+def flown(plant: BoundPlant, moved: dict[str, float]) -> RunLog:
+    """The flight on a rig with coefficients moved by so many of their standard deviations."""
     reference = np.column_stack([0.25 * np.sin(2.5 * T_S), np.zeros(len(T_S))])
     rig, x0 = plant.p.copy(), equilibrium(plant, 0.0).x0
-    rig[index(plant, "J_E")] += plant.sd[index(plant, "J_E")]
+    for name, by in moved.items():
+        rig[index(plant, name)] += by * plant.sd[index(plant, name)]
     run = simulate(plant, T_S, x0, ce150_table(), reference=reference, p=rig, keep="uy", locked=("azimuth",))
     assert run.u is not None
     assert run.y is not None
     log = closed_loop_log(plant, Manoeuvre("m", T_S, reference, x0), run.u, run.y, None)
-    stated = Correlation(("J_E", "J_A"), ((1.0, HANG), (HANG, 1.0)))
-    told = bind(replace(plant.plant, correlation=stated))
-    return make_case(make_kit(told), [replace(log, extra={}, locked=("azimuth",))])
+    return replace(log, extra={}, locked=("azimuth",))
 
 
 def index(plant: BoundPlant, name: str) -> int:
@@ -80,3 +91,14 @@ def test_without_a_stated_correlation_nothing_changes(plant: BoundPlant, case: C
     theta = np.linspace(-1.0, 1.0, len(plain.free))
     assert plain.pull_of(theta) is theta
     assert strain(plain, replace(nothing_supposed(plain, -3.0), theta=theta), ()) == float(theta @ theta)
+
+
+def test_two_rigs_that_differ_against_the_correlation_gain_less_by_numbers_of_their_own(plant: BoundPlant) -> None:
+    # Truth: each is one deviation off in both coefficients, to sides that the correlation holds for unlikely.
+    rigs = [{"J_E": sign, "b_vE": -sign} for sign in (1.0, -1.0)]
+    case = case_of(plant, "b_vE", [flown(plant, moved) for moved in rigs])
+    found = nominal_fit(case)
+    told, free = contradiction(case, found), contradiction(replace(case, spread=None), found)
+    assert told is not None
+    assert free is not None
+    assert told.gain < 0.99 * free.gain
