@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.information import inverse
 from identification.solve import Prior
 from sim.bind import BoundPlant
 
@@ -69,6 +70,5 @@ def prior(belief: Belief, theta: Array, scale: Array) -> Prior:
     known = belief.mean.size
     information = np.diag(np.concatenate([np.zeros(known), 1.0 / scale[known:] ** 2]))
     if known:
-        spread = np.outer(belief.sd, belief.sd)
-        information[:known, :known] = np.linalg.inv(belief.covariance / spread) / spread
+        information[:known, :known] = inverse(belief.covariance)
     return Prior(theta, information)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.information import inverse
 from identification.solve import Point, Problem, alone
 
 Array = NDArray[np.float64]
@@ -34,9 +35,7 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
     weak, prior = np.diag(1.0 / problem.scale**2), problem.prior
     parts = [alone(point, number) for number in range(len(point.runs))]
     found: list[Discord] = []
-    told = (
-        point.runs if len(point.runs) > 2 else point.runs[:1]
-    )  # of two, one is against the other as the other is against it
+    told = point.runs if len(point.runs) > 2 else point.runs[:1]  # of two, each is against the other
     pull = prior.information @ (prior.mean - point.theta)
     for number, run in enumerate(told):
         own, own_cov = _optimum(point.theta, parts[number][0] + weak, parts[number][1])
@@ -54,6 +53,5 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
 
 def _optimum(theta: Array, A: Array, g: Array) -> tuple[Array, Array]:
     """theta + A^-1 g and A^-1, of a badly scaled positive definite A."""
-    size = np.sqrt(np.diag(A))
-    inverse = np.linalg.inv(A / np.outer(size, size)) / np.outer(size, size)
-    return theta + inverse @ g, inverse
+    covariance = inverse(A)
+    return theta + covariance @ g, covariance

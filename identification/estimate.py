@@ -9,6 +9,7 @@ from scipy.stats import t as student
 
 from identification.belief import Belief, prior, widened
 from identification.discord import Discord, discords
+from identification.information import inverse, marginal
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
 from identification.search import Search, Searched, search, started
@@ -82,35 +83,52 @@ def estimate(
     residuals are correlated counts for fewer samples. `wanted` asks for a search over the whole range of `own` first.
     """
     problem = problem_of(tuple(runs), tuple(own), ranges, before)
-    places = [problem.names.index(name) for name in own]
-    searched = () if wanted is None else search(problem, places, wanted)
-    if searched:
-        problem = started(problem, places, searched[0])
+    problem, searched = _searched(problem, own, wanted)
     problem, point = _fitted(problem, len(before.names), watch)
-    H = point.H
-    covariance = _inverse(H + problem.prior.information)
-    after = Belief(problem.names, point.theta, covariance)
-    known = H + problem.prior.information - np.diag(_weak(problem, before))
+    return _estimate(problem, point, tuple(own), before, searched)
+
+
+def _searched(problem: Problem, own: Sequence[str], wanted: Search | None) -> tuple[Problem, tuple[Searched, ...]]:
+    """The problem from the start that a search found, where one is wanted, and what was found."""
+    if wanted is None:
+        return problem, ()
+    places = [problem.names.index(name) for name in own]
+    found = search(problem, places, wanted)
+    return started(problem, places, found[0]), found
+
+
+def _estimate(
+    problem: Problem, point: Point, own: tuple[str, ...], before: Belief, searched: tuple[Searched, ...]
+) -> Estimate:
+    """What the optimum tells."""
+    after = Belief(problem.names, point.theta, inverse(point.H + problem.prior.information))
+    fitted = zip(point.runs, point.blocks, strict=True)
     return Estimate(
         belief=after,
-        own=tuple(own),
+        own=own,
         dof=max(1.0, float(pieces(point) - len(own))),
         cost=point.cost,
         steps=point.steps,
-        unseen=unseen(tuple(own), _marginal(known, places, problem.scale), problem.scale[places]),
+        unseen=_unseen(problem, point, own, before),
         contradictions=_contradictions(before, after),
-        at_bound=tuple(
-            name
-            for name, value, lower, upper in zip(problem.names, point.theta, problem.lower, problem.upper, strict=True)
-            if value in (lower, upper)
-        ),
-        residuals=tuple(
-            test for run, blocks in zip(point.runs, point.blocks, strict=True) for test in residual_tests(run, blocks)
-        ),
+        at_bound=_at_bound(problem, point),
+        residuals=tuple(test for run, blocks in fitted for test in residual_tests(run, blocks)),
         runs=point.runs,
         searched=searched,
         discords=discords(problem, point),
     )
+
+
+def _unseen(problem: Problem, point: Point, own: tuple[str, ...], before: Belief) -> tuple[Direction, ...]:
+    """Directions of `own` that neither the data nor what was known before tell."""
+    known = point.H + problem.prior.information - np.diag(_weak(problem, before))
+    places = [problem.names.index(name) for name in own]
+    return unseen(own, marginal(known, places, problem.scale), problem.scale[places])
+
+
+def _at_bound(problem: Problem, point: Point) -> tuple[str, ...]:
+    bounds = zip(problem.names, point.theta, problem.lower, problem.upper, strict=True)
+    return tuple(name for name, value, lower, upper in bounds if value in (lower, upper))
 
 
 def _fitted(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem, Point]:
@@ -187,24 +205,6 @@ def _by_correlation(problem: Problem, point: Point) -> tuple[Run, ...]:
         with_sd(run, run.sd * np.sqrt(found)[run.channel])
         for run, found in zip(point.runs, inflations(point, weak), strict=True)
     )
-
-
-def _inverse(information: Array) -> Array:
-    """Inverse of a badly scaled positive definite matrix."""
-    size = np.sqrt(np.diag(information))
-    inverse = np.linalg.inv(information / np.outer(size, size))
-    return np.asarray((inverse + inverse.T) / 2.0 / np.outer(size, size))
-
-
-def _marginal(information: Array, places: Sequence[int], scale: Array) -> Array:
-    """Information on some parameters once the others are left to the data too: A - B D^-1 B^T."""
-    others = [place for place in range(information.shape[0]) if place not in places]
-    A = information[np.ix_(places, places)]
-    if not others:
-        return A
-    B, D = information[np.ix_(places, others)], information[np.ix_(others, others)]
-    floor = np.diag(1e-9 / scale[others] ** 2)
-    return np.asarray(A - B @ np.linalg.solve(D + floor, B.T))
 
 
 def _contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:

@@ -9,7 +9,7 @@ Where it is silent: mutation turns each bit with probability 0.1, as in the simp
 and the best string so far takes the first place of each new population.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -103,9 +103,3 @@ def _next(population: Bits, fitness: Array, settings: Settings, rng: Generator) 
             cut = int(rng.integers(1, length))
             children[[first, first + 1], cut:] = children[[first + 1, first], cut:]
     return np.asarray(children ^ (rng.random((count, length)) < settings.mutation), dtype=np.uint8)
-
-
-def steps(code: Code) -> Sequence[float]:
-    """The quantisation step of each parameter."""
-    spans = code.upper - code.lower
-    return [float(span / (2.0**n - 1.0)) for span, n in zip(spans, code.bits, strict=True)]

@@ -16,10 +16,8 @@ Array = NDArray[np.float64]
 SLOPE_ROWS = 4  # on either side, for a velocity guess
 FORGOTTEN = 0.002  # of a driven state's reach
 AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
-POSITION_STEPS, POSITION_SHARE = (
-    20.0,
-    0.05,
-)  # so many resolution steps, or so much of its range, a window's start may be off
+# A window's start may be off by so many resolution steps, or so much of its range.
+POSITION_STEPS, POSITION_SHARE = 20.0, 0.05
 
 
 def log_run(
@@ -31,13 +29,7 @@ def log_run(
     from those of `at_first` (states,) at the first row; where these are not given the log is used once they no longer matter. Raises
     BadInput for a log with less than two rows, or a plant with effects on the way of its inputs or outputs.
     """
-    if log.t_s.size < 2:
-        raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
-    if bound.input_path or bound.output_path:
-        raise BadInput(
-            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
-            "identify from the plant without them",
-        )  # fmt: skip
+    _check(bound, log, name)
     model = bound.model
     part = driven_model(model)
     carried = None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first))
@@ -69,6 +61,16 @@ def log_run(
         carried=carried,
         step=step,
     )
+
+
+def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
+    if log.t_s.size < 2:
+        raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
+    if bound.input_path or bound.output_path:
+        raise BadInput(
+            "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
+            "identify from the plant without them",
+        )  # fmt: skip
 
 
 def _carried_start(model: Model, part: Model, x0: ArrayLike | None) -> Array:

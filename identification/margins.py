@@ -39,17 +39,6 @@ MARGINS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {"level": _LEVEL, "descending": _LEVEL, "autorotation": _LEVEL, "ascending": _ASCENDING}
 )
 
-LEVEL_LIMIT_m_s = 750.0 * FOOT_m / 60.0
-
-
-def mission_of(altitude_rate_m_s: float, engines_on: bool = True) -> str:
-    """The mission of a flight by its mean altitude rate, (1.1) and 1.2.2: level up to 750 ft/min to either side."""
-    if abs(altitude_rate_m_s) <= LEVEL_LIMIT_m_s:
-        return "level"
-    if altitude_rate_m_s > 0.0:
-        return "ascending"
-    return "descending" if engines_on else "autorotation"
-
 
 def share_outside(measured: Array, estimated: Array, margin: float) -> float:
     """Share of the samples at which |estimated - measured| exceeds `margin` (0 to 1); NaN where no sample is left."""
@@ -61,18 +50,6 @@ def held_s(measured: Array, estimated: Array, margin: float, sample_period_s: fl
     """How long [s] the estimate stays within `margin` from the first sample on, until its first exit or the record's end."""
     out = np.flatnonzero(np.abs(estimated - measured) > margin)
     return sample_period_s * float(out[0] if out.size else len(measured))
-
-
-def share_of_windows_outside(
-    measured: Array, estimated: Array, margin: float, sample_period_s: float, window_s: float = REQUIRED_s
-) -> float:
-    """Share of the consecutive whole windows of `window_s` with a sample outside; NaN where the record holds no window."""
-    rows = max(1, round(window_s / sample_period_s))
-    count = len(measured) // rows
-    if count == 0:
-        return math.nan
-    error = np.abs(estimated - measured)[: count * rows].reshape(count, rows)
-    return float(np.mean(np.any(error > margin, axis=1)))
 
 
 def rms_error(measured: Array, estimated: Array) -> float:

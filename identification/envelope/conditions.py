@@ -7,16 +7,14 @@ from identification.margins import FOOT_m
 from records.errors import BadInput
 
 KNOT_m_s = 1852.0 / 3600.0
-POUND_kg = 0.45359237
-INCH_m = 0.0254
-LIGHT_lb, HEAVY_lb = 5600.0, 6000.0  # 1.2.3: light below, heavy above
-FORWARD_in, AFT_in = 220.0, 224.0  # station of the centre of gravity behind the datum: forward below, aft above
 _NAME = re.compile(r"([LH][AF])(\d+)ft-(\d+)kts")
 
 
 @dataclass(frozen=True, order=True)
 class Condition:
-    """One point of the envelope; `loading` is L or H (gross weight) followed by A or F (centre of gravity)."""
+    """One point of the envelope; `loading` is L or H (gross weight below 5600 lb, above 6000 lb) followed by F or A (centre of gravity
+    forward of 220 in, aft of 224 in), 1.2.3.
+    """
 
     loading: str
     altitude_ft: int
@@ -46,16 +44,6 @@ def condition_of(name: str) -> Condition:
             "flight condition", "name", repr(name), "LOADING ALTITUDEft-SPEEDkts as HA6000ft-50kts", "correct it"
         )
     return Condition(found[1], int(found[2]), int(found[3]))
-
-
-def loading_of(gross_weight_lb: float, centre_of_gravity_in: float) -> str:
-    """The loading's two letters by 1.2.3; raises BadInput between the limits, which the thesis leaves out."""
-    if LIGHT_lb <= gross_weight_lb <= HEAVY_lb or FORWARD_in <= centre_of_gravity_in <= AFT_in:
-        raise BadInput(
-            "loading", "flight", f"{gross_weight_lb:g} lb at {centre_of_gravity_in:g} in",
-            f"below {LIGHT_lb:g} or above {HEAVY_lb:g} lb, forward of {FORWARD_in:g} or aft of {AFT_in:g} in", "load it otherwise",
-        )  # fmt: skip
-    return ("H" if gross_weight_lb > HEAVY_lb else "L") + ("A" if centre_of_gravity_in > AFT_in else "F")
 
 
 def _row(loading: str, altitude_ft: int, speeds_kts: tuple[int, ...]) -> tuple[Condition, ...]:

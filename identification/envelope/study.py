@@ -15,7 +15,7 @@ from identification.envelope.free_run import Model, model_of, one_step
 from identification.envelope.fuzzy import Trained
 from identification.envelope.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
-from identification.envelope.outputs import METHODS, Equation, Linear, equations
+from identification.envelope.outputs import Equation, Linear, equations
 from identification.envelope.recursive import best, history, pairs
 from identification.envelope.starts import NONE, Starts
 from identification.margins import MARGINS
@@ -233,8 +233,3 @@ def _interpolated(
 
     model = between(models, condition)
     return Interpolated(condition, model, tried(model), tried(nearest(models, condition)))
-
-
-def methods_of(checked: Check) -> tuple[str, ...]:
-    """The output equations that a check holds, in the thesis' order."""
-    return tuple(way for way in METHODS if way in checked.outputs)

@@ -6,7 +6,7 @@ import pytest
 from identification.belief import NOTHING
 from identification.experiments.table import kinds_of, perform
 from identification.experiments.velagic import KINDS
-from identification.genetic import Code, Settings, evolve, steps
+from identification.genetic import Code, Settings, evolve
 from identification.population import absolute_error, predictions
 from identification.prediction import predicted
 from identification.search import Search, search
@@ -33,7 +33,8 @@ def test_the_chromosome_of_u1_has_94_bits_with_steps_of_a_millionth():
     code = coded("main_motor", ("a_1", "b_1", "B_psi", "tau_G", "I_inv"))
     assert code.bits == (17, 16, 20, 15, 26)
     assert code.length == 94
-    np.testing.assert_allclose(steps(code), 1e-6, rtol=1e-6)
+    step = (code.upper - code.lower) / (2.0 ** np.array(code.bits) - 1.0)
+    np.testing.assert_allclose(step, 1e-6, rtol=1e-6)
 
 
 def test_the_paper_s_values_lie_within_every_range():

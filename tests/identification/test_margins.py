@@ -11,8 +11,6 @@ from identification.margins import (
     correlation,
     fit_percent,
     held_s,
-    mission_of,
-    share_of_windows_outside,
     share_outside,
     theil,
 )
@@ -28,14 +26,6 @@ def test_the_margins_are_those_of_table_1_1() -> None:
     for mission, row in table.items():
         found = [value / (math.radians(1) if "rad" in name else FOOT_m) for name, value in MARGINS[mission].items()]
         assert found == pytest.approx(list(row.values()), rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("rate_ft_min", "engines_on", "mission"),
-    [(0, True, "level"), (-750, True, "level"), (751, True, "ascending"), (-751, True, "descending"), (-900, False, "autorotation")],
-)  # fmt: skip
-def test_a_mission_follows_from_the_altitude_rate(rate_ft_min: float, engines_on: bool, mission: str) -> None:
-    assert mission_of(rate_ft_min * FOOT_m / 60.0, engines_on) == mission
 
 
 def test_theil_and_fit_of_a_worked_example() -> None:
@@ -64,5 +54,3 @@ def test_the_three_seconds_count_from_the_start_to_the_first_exit() -> None:
     estimated = np.where(np.arange(100) == 40, 2.0, 0.0)
     assert held_s(measured, estimated, 1.0, 0.1) == pytest.approx(4.0)
     assert held_s(measured, np.zeros(100), 1.0, 0.1) == pytest.approx(10.0)
-    # Windows of 30 rows: 0-29 inside, 30-59 holds row 40, 60-89 inside; the last 10 rows are no whole window.
-    assert share_of_windows_outside(measured, estimated, 1.0, 0.1) == pytest.approx(1.0 / 3.0)

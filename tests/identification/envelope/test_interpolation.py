@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.envelope.conditions import IDENTIFIED, LEFT_OUT, Condition, condition_of, loading_of
+from identification.envelope.conditions import IDENTIFIED, LEFT_OUT, Condition, condition_of
 from identification.envelope.free_run import Model
 from identification.envelope.interpolation import GlobalModel, between, nearest
 from identification.envelope.outputs import Linear
@@ -54,9 +54,3 @@ def test_names_read_back_and_wrong_ones_are_refused():
     assert all(condition_of(at.name) == at for at in IDENTIFIED)
     with pytest.raises(BadInput, match="flight condition"):
         condition_of("HA6000m-50kts")
-
-
-def test_loadings_of_the_thesis_limits():
-    assert (loading_of(6390, 226), loading_of(5000, 218)) == ("HA", "LF")
-    with pytest.raises(BadInput, match="loading"):
-        loading_of(5800, 226)
