@@ -13,7 +13,7 @@ from identification.information import inverse, marginal
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
 from identification.search import Search, Searched, search, started
-from identification.solve import Point, Problem, Watch, solve
+from identification.solve import Point, Problem, Told, Watch, by_name, solve
 from identification.steps import MOST, SHIFT_SD, finer, shift_sd
 from identification.uncertainty import Direction, inflations, pieces, unseen
 
@@ -73,27 +73,31 @@ def estimate(
     own: Sequence[str],
     ranges: Mapping[str, Range],
     before: Belief,
-    watch: Watch | None = None,
+    told: Told | None = None,
     wanted: Search | None = None,
 ) -> Estimate:
     """Fit the parameters `own` to the runs, with those of `before` re-estimated from what is known of them.
 
     Earlier stages enter as a normal distribution, so the joint covariance carries their uncertainty on; after the last stage it is that
     of one fit to all runs, to first order. Channels are weighted by their own residuals, Q_V = diag(1 / rms^2), and a run whose
-    residuals are correlated counts for fewer samples. `wanted` asks for a search over the whole range of `own` first.
+    residuals are correlated counts for fewer samples. `wanted` asks for a search over the whole range of `own` first; `told` hears of
+    better parameters as soon as there are any.
     """
     problem = problem_of(tuple(runs), tuple(own), ranges, before)
-    problem, searched = _searched(problem, own, wanted)
-    problem, point = _fitted(problem, len(before.names), watch)
+    problem, searched = _searched(problem, own, wanted, told)
+    tell = by_name(problem.names, told)
+    problem, point = _fitted(problem, len(before.names), lambda better: tell(better.theta))
     return _estimate(problem, point, tuple(own), before, searched)
 
 
-def _searched(problem: Problem, own: Sequence[str], wanted: Search | None) -> tuple[Problem, tuple[Searched, ...]]:
+def _searched(
+    problem: Problem, own: Sequence[str], wanted: Search | None, told: Told | None
+) -> tuple[Problem, tuple[Searched, ...]]:
     """The problem from the start that a search found, where one is wanted, and what was found."""
     if wanted is None:
         return problem, ()
     places = [problem.names.index(name) for name in own]
-    found = search(problem, places, wanted)
+    found = search(problem, places, wanted, told)
     return started(problem, places, found[0]), found
 
 
@@ -131,7 +135,7 @@ def _at_bound(problem: Problem, point: Point) -> tuple[str, ...]:
     return tuple(name for name, value, lower, upper in bounds if value in (lower, upper))
 
 
-def _fitted(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem, Point]:
+def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
     """Fit, weigh, fit again; the same in half the steps while those move the estimates, and less each time."""
     before = np.inf
     while True:
@@ -142,7 +146,7 @@ def _fitted(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem,
         problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
 
 
-def _weighed_fit(problem: Problem, known: int, watch: Watch | None) -> tuple[Problem, Point]:
+def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
     """Fit, weigh by channel, fit, weigh by correlation, fit; the first `known` parameters are held by what is known of them."""
     point = solve(problem, watch)
     for weigh in (_by_channel, _by_correlation):

@@ -1,7 +1,8 @@
 """A plant from run logs: short windows first, which find the way from a bad start, then long ones, which hold the parameters tightly."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, coefficient_names, offset_names
 from identification.search import Search, search, started
 from identification.sizes import with_sizes
-from identification.solve import Prior, Problem, Watch, solve
+from identification.solve import Prior, Problem, Told, by_name, solve
 from identification.steps import followed
 from identification.subsystem import subsystem
 from records.errors import BadInput
@@ -30,7 +31,7 @@ WORSE, MOST_LEFT = 1.5, 0.3
 WINDOW_ROWS = (40, 160, 640)
 
 
-def identify_logs(
+def fits_of_logs(
     bound: BoundPlant,
     logs: Mapping[str, RunLog],
     names: Sequence[str],
@@ -40,41 +41,55 @@ def identify_logs(
     before: Belief = NOTHING,
     wanted: Search | None = None,
     offsets: bool = False,
-    watch: Watch | None = None,
-) -> Estimate:
+    told: Told | None = None,
+) -> Iterator[Estimate]:
     """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
 
-    By default several lengths are tried and the one that leaves the smallest uncertainty is kept: short ones where disturbances grow
-    into the prediction or the plant is unstable, long ones where the model holds. `wanted` asks for a search over the whole range
-    first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated. Raises BadInput for an unknown
-    coefficient or a start outside its limits.
+    By default one fit after the other over longer and longer windows, of which `best_fit` chooses. `wanted` asks for a search over the
+    whole range first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated; `told` hears of better
+    parameters as soon as there are any. Raises BadInput for an unknown coefficient or a start outside its limits.
     """
-    every = tuple(dict.fromkeys((*before.names, *names)))
-    ranges = ranges_of(bound, every, limits)
     coarse = _short_windows(bound, logs)
-    known = coefficient_names(bound.model)
-    absent = [
-        name for name in names if name in known and not bound.p[known.index(name)] and not bound.sd[known.index(name)]
-    ]
-    if offsets:
-        ranges |= _offset_ranges(bound, logs)
-        names = (*names, *offset_names(bound.model))
-    ranges = with_sizes(coarse, ranges, [name for name in absent if name not in (limits or {})])
-    start = _coarse(coarse, names, ranges, before, wanted, watch)
+    ranges = _ranges(bound, logs, coarse, (*before.names, *names), limits or {}, offsets)
+    names = (*names, *(offset_names(bound.model) if offsets else ()))
+    start = _coarse(coarse, names, ranges, before, wanted, told)
     period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
-    found: list[Estimate] = []
     for length in [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]:
         closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
         runs = [
             replace(run_of(bound, log, name, length), substeps=short.substeps)
             for short, (name, log) in zip(coarse, logs.items(), strict=True)
         ]
-        found.append(estimate(runs, names, closer, before, watch))
-        start = {name: found[-1].belief.value(name) for name in names}
-    return _best(found)
+        found = estimate(runs, names, closer, before, told)
+        start = {name: found.belief.value(name) for name in names}
+        yield found
 
 
-def _best(found: Sequence[Estimate]) -> Estimate:
+def identify_logs(bound: BoundPlant, logs: Mapping[str, RunLog], names: Sequence[str], **wishes: Any) -> Estimate:
+    """The best of `fits_of_logs`, which see for the wishes."""
+    return best_fit(list(fits_of_logs(bound, logs, names, **wishes)))
+
+
+def _ranges(
+    bound: BoundPlant,
+    logs: Mapping[str, RunLog],
+    coarse: Sequence[Run],
+    names: Sequence[str],
+    limits: Mapping[str, tuple[float, float]],
+    offsets: bool,
+) -> dict[str, Range]:
+    """Where each parameter may lie; one of value and sd 0 gets its size from what it would do to these logs."""
+    ranges = ranges_of(bound, tuple(dict.fromkeys(names)), limits)
+    places = {name: place for place, name in enumerate(coefficient_names(bound.model))}
+    absent = [
+        name for name in ranges if not bound.p[places[name]] and not bound.sd[places[name]] and name not in limits
+    ]
+    if offsets:
+        ranges |= _offset_ranges(bound, logs)
+    return with_sizes(coarse, ranges, absent)
+
+
+def best_fit(found: Sequence[Estimate]) -> Estimate:
     """Of fits over shorter and longer windows the one that leaves the least volume open.
 
     Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
@@ -178,13 +193,14 @@ def _coarse(
     ranges: Mapping[str, Range],
     before: Belief,
     wanted: Search | None,
-    watch: Watch | None,
+    told: Told | None,
 ) -> dict[str, float]:
     """A start for the fine fit."""
     problem = problem_of(runs, tuple(names), ranges, before)
     if wanted is not None:
         places = [problem.names.index(name) for name in names]
-        problem = started(problem, places, search(problem, places, replace(wanted, beside=()))[0])
-    point = solve(problem, watch, COARSE_SETTLED)
+        problem = started(problem, places, search(problem, places, replace(wanted, beside=()), told)[0])
+    tell = by_name(problem.names, told)
+    point = solve(problem, lambda better: tell(better.theta), COARSE_SETTLED)
     found = dict(zip(problem.names, point.theta.tolist(), strict=True))
     return {name: found[name] for name in names}

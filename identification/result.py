@@ -1,7 +1,7 @@
 """What an identification hands on: a plant file with earned sd and correlations, and all that is to be told about how it came about."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from records.plant import Parameter, Plant, coefficient_names
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
 LEAST_CHANCE = 1e-300
+INTERRUPTED = "the best so far of a fit that was interrupted"
 TOLD = 0.3  # a parameter known to less than so much of its size is not identified: what holds it is that it was given a size at all
 
 
@@ -37,7 +38,8 @@ class Estimated:
 @dataclass(frozen=True, eq=False)
 class Identification:
     """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
-    `holdout` how the identified plant predicts logs that were not used.
+    `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
+    come to; they are in the plant, without sd of their own.
     """
 
     plant: Plant
@@ -46,11 +48,21 @@ class Identification:
     stages: tuple[tuple[str, Estimate], ...]
     aids: tuple[Estimated, ...] = ()
     holdout: tuple[ResidualTest, ...] = ()
+    unfinished: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """One sentence for each thing that the data cannot tell or tell twice in different ways."""
-        return (*self._unidentified(), *(note for title, stage in self.stages for note in stage_notes(title, stage)))
+        return (
+            *self._interrupted(),
+            *self._unidentified(),
+            *(note for title, stage in self.stages for note in stage_notes(title, stage)),
+        )
+
+    def _interrupted(self) -> tuple[str, ...]:
+        if not self.unfinished:
+            return ()
+        return (f"{', '.join(self.unfinished)}: the best so far of a fit that was interrupted, without interval",)
 
     def _unidentified(self) -> tuple[str, ...]:
         return tuple(
@@ -170,6 +182,13 @@ def _parameter(name: str, entry: Parameter, told: Mapping[str, Estimated]) -> Pa
     return Parameter(values if many else values[0], sds if many else sds[0], entry.unit, source)
 
 
+def interrupted(result: Identification, values: Mapping[str, float]) -> Identification:
+    """The result with the best values so far of the fit at hand, of the coefficients that no finished fit has estimated."""
+    known = coefficient_names(result.plant.parameters)
+    own = {name: value for name, value in values.items() if name in known and name not in result.belief.names}
+    return replace(result, plant=with_values(result.plant, own, INTERRUPTED), unfinished=own)
+
+
 def with_values(plant: Plant, values: Mapping[str, float], source: str) -> Plant:
     """The plant with other values of some coefficients and `source` as where they come from; sd as they were."""
     found = dict(plant.parameters)
@@ -191,6 +210,7 @@ def facts(result: Identification) -> dict[str, Any]:
         "aids": [asdict(entry) for entry in result.aids],
         "correlation": {"names": list(result.belief.names), "rows": result.belief.correlation.round(9).tolist()},
         "stages": [_stage_facts(title, stage) for title, stage in result.stages],
+        "unfinished": dict(result.unfinished),
         "holdout": [asdict(test) for test in result.holdout],
         "notes": list(result.notes),
     }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from identification.evolution import evolution
 from identification.genetic import Code, evolve
 from identification.population import absolute_error
-from identification.solve import Problem, solve
+from identification.solve import Point, Problem, Tell, Told, by_name, solve
 
 Array = NDArray[np.float64]
 DRAWN = 50  # points, as many as a population of seed 001
@@ -20,16 +20,12 @@ BITS = 20  # of a parameter whose length nobody states: one step is a millionth 
 
 @dataclass(frozen=True)
 class Search:
-    """What is asked for: a method of `METHODS`, its seed, the code lengths of parameters by name (for `genetic`), methods to run beside.
-
-    `watch` is told the parameters whenever better ones are found, so that an interrupted search leaves them.
-    """
+    """What is asked for: a method of `METHODS`, its seed, the code lengths of parameters by name (for `genetic`), methods to run beside."""
 
     method: str
     seed: int = 1
     bits: Mapping[str, int] = field(default_factory=dict)
     beside: tuple[str, ...] = ()
-    watch: Callable[[Mapping[str, float]], None] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +47,11 @@ class Searched:
     bits: tuple[int, ...] = ()
 
 
-def search(problem: Problem, places: list[int], wanted: Search) -> tuple[Searched, ...]:
+def search(problem: Problem, places: list[int], wanted: Search, told: Told | None = None) -> tuple[Searched, ...]:
     """The wanted method's result for the parameters at `places`, the others held, and those of the methods beside it.
 
-    A parameter without bounds is looked for within some sizes of its start. The same seed gives the same values.
+    `told` hears of better parameters whenever the wanted method finds them. A parameter without bounds is looked for within some sizes
+    of its start. The same seed gives the same values.
     """
     reach = UNBOUNDED * problem.scale
     lower, upper = np.maximum(problem.lower, problem.start - reach), np.minimum(problem.upper, problem.start + reach)
@@ -63,7 +60,11 @@ def search(problem: Problem, places: list[int], wanted: Search) -> tuple[Searche
         lower=np.where(np.isfinite(problem.lower), problem.lower, lower),
         upper=np.where(np.isfinite(problem.upper), problem.upper, upper),
     )
-    return tuple(_one(finite, places, wanted, method) for method in (wanted.method, *wanted.beside))
+    tell = by_name([problem.names[place] for place in places], told)
+    return (
+        _one(finite, places, wanted, wanted.method, tell),
+        *(_one(finite, places, wanted, method, by_name((), None)) for method in wanted.beside),
+    )
 
 
 def started(problem: Problem, places: list[int], found: Searched) -> Problem:
@@ -71,9 +72,9 @@ def started(problem: Problem, places: list[int], found: Searched) -> Problem:
     return replace(problem, start=_with(problem, places, found.values))
 
 
-def _one(problem: Problem, places: list[int], wanted: Search, method: str) -> Searched:
+def _one(problem: Problem, places: list[int], wanted: Search, method: str, tell: Tell) -> Searched:
     begin = time.process_time()
-    theta, best, mean, bits = METHODS[method](problem, places, wanted)
+    theta, best, mean, bits = METHODS[method](problem, places, wanted, tell)
     took_s = time.process_time() - begin
     return Searched(
         method=method,
@@ -93,12 +94,12 @@ def _one(problem: Problem, places: list[int], wanted: Search, method: str) -> Se
 Trail = tuple[Array, tuple[float, ...], tuple[float, ...], tuple[int, ...]]
 
 
-def _evolution(problem: Problem, places: list[int], wanted: Search) -> Trail:
-    values, best = evolution(problem, places, wanted.seed, _better(problem, places, wanted))
+def _evolution(problem: Problem, places: list[int], wanted: Search, tell: Tell) -> Trail:
+    values, best = evolution(problem, places, wanted.seed, tell)
     return _with(problem, places, values), best, (), ()
 
 
-def _genetic(problem: Problem, places: list[int], wanted: Search) -> Trail:
+def _genetic(problem: Problem, places: list[int], wanted: Search, tell: Tell) -> Trail:
     """The algorithm of seed 001, whole populations in one call of the kernel."""
     names = [problem.names[place] for place in places]
     code = Code(problem.lower[places], problem.upper[places], tuple(wanted.bits.get(name, BITS) for name in names))
@@ -106,11 +107,11 @@ def _genetic(problem: Problem, places: list[int], wanted: Search) -> Trail:
     def cost(members: Array) -> Array:
         return absolute_error(problem, np.stack([_with(problem, places, values) for values in members]))
 
-    found = evolve(code, cost, wanted.seed, watch=_better(problem, places, wanted))
+    found = evolve(code, cost, wanted.seed, watch=tell)
     return _with(problem, places, found.values), found.best, found.mean, code.bits
 
 
-def _gradient(problem: Problem, places: list[int], wanted: Search) -> Trail:
+def _gradient(problem: Problem, places: list[int], wanted: Search, tell: Tell) -> Trail:
     """The compiled least squares from the best of some points drawn within the range: no more is known to it than to the others.
 
     From the middle alone it may find no way: an arm that does not lift off has no slopes.
@@ -121,19 +122,12 @@ def _gradient(problem: Problem, places: list[int], wanted: Search) -> Trail:
     start = points[int(np.argmin(absolute_error(problem, points)))]
     costs: list[float] = []
     blind = replace(problem, start=start, prior=replace(problem.prior, mean=start))
-    point = solve(blind, lambda _, cost: costs.append(cost))
-    return point.theta, tuple(costs), (), ()
 
+    def watch(point: Point) -> None:
+        costs.append(point.cost)
+        tell(point.theta[places])
 
-def _better(problem: Problem, places: list[int], wanted: Search) -> Callable[[Array], None]:
-    """Tells the one who watches of better values (parameters,), by name."""
-    names = [problem.names[place] for place in places]
-
-    def tell(values: Array) -> None:
-        if wanted.watch is not None:
-            wanted.watch(dict(zip(names, values.tolist(), strict=True)))
-
-    return tell
+    return solve(blind, watch).theta, tuple(costs), (), ()
 
 
 def _with(problem: Problem, places: list[int], values: Array) -> Array:
@@ -142,7 +136,7 @@ def _with(problem: Problem, places: list[int], values: Array) -> Array:
     return theta
 
 
-METHODS: Mapping[str, Callable[[Problem, list[int], Search], Trail]] = {
+METHODS: Mapping[str, Callable[[Problem, list[int], Search, Tell], Trail]] = {
     "evolution": _evolution,
     "genetic": _genetic,
     "gradient": _gradient,

@@ -7,7 +7,7 @@ xi appears in its own residuals alone and is eliminated from each step's normal 
 of theta, however many windows there are.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,10 @@ MAX_STEPS = 60
 SETTLED = 1e-3  # a step below this many standard deviations, squared and summed, changes nothing
 ROUNDING = 1e-12
 DAMPING_TOO_HIGH = 1e12
-Watch = Callable[[int, float], None]
+
+
+Tell = Callable[[Array], None]  # parameters (parameters,)
+Told = Callable[[Mapping[str, float]], None]  # the same by name
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +79,21 @@ class Point:
         return np.asarray((H + H.T) / 2.0 + ROUNDING * np.diag(np.diag(self.JtJ)))
 
 
+Watch = Callable[[Point], None]
+
+
+def by_name(names: Sequence[str], told: Told | None) -> Tell:
+    """Tells the parameters (parameters,) by name to the one who watches, if there is one."""
+
+    def tell(theta: Array) -> None:
+        if told is not None:
+            told(dict(zip(names, theta.tolist(), strict=True)))
+
+    return tell
+
+
 def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED) -> Point:
-    """Minimise V from the problem's start until a step is `settled`; `watch` is told each accepted step and its cost."""
+    """Minimise V from the problem's start until a step is `settled`; `watch` is told each better point."""
     point = at(problem, problem.start, problem.runs)
     damping, done = 1e-3, 0
     while done < MAX_STEPS and damping < DAMPING_TOO_HIGH:
@@ -88,7 +104,7 @@ def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED
         if trial.cost < point.cost:
             point, damping, done = replace(trial, steps=done + 1), max(damping / 10.0, 1e-12), done + 1
             if watch is not None:
-                watch(done, point.cost)
+                watch(point)
         else:
             damping *= 10.0
     return point

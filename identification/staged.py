@@ -13,6 +13,7 @@ from identification.experiments.table import kinds_of
 from identification.ranges import ranges_of
 from identification.run import Run, coefficient_names, known_names
 from identification.search import Search
+from identification.solve import Told
 from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant
@@ -84,13 +85,14 @@ def identify_stage(
     limits: Mapping[str, tuple[float, float]] | None = None,
     wanted: Search | None = None,
     free: Collection[str] | None = None,
+    told: Told | None = None,
 ) -> Stage:
     """One experiment added to what is known.
 
     A parameter that it needs but none before has informed is estimated with it from the plant's value, so a set of experiments with
     gaps works and says what it cannot tell. `wanted` asks for a search over the whole range of its parameters first. A parameter that
-    the plant states as exact is held, unless it is among those named `free`; then only these are estimated. Raises BadInput for a
-    wrong plant, mount or lock, also where only the motion shows it.
+    the plant states as exact is held, unless it is among those named `free`; then only these are estimated. `told` hears of better
+    parameters as soon as there are any. Raises BadInput for a wrong plant, mount or lock, also where only the motion shows it.
     """
     check_setup(experiment, bound)
     kind = _kind(experiment)
@@ -100,7 +102,7 @@ def identify_stage(
     coded = None if wanted is None else replace(wanted, bits={name: bits for name, (_, _, bits) in kind.code.items()})
     before = _with_aids(belief, kind, experiment)
     unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
-    result = estimate([run], (*own, *unknown), ranges, before, wanted=coded)
+    result = estimate([run], (*own, *unknown), ranges, before, told, coded)
     check_mount(run, kind, result, ranges, before)
     names = tuple(name for name in result.belief.names if name not in kind.aids)
     return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))

@@ -38,8 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"{place}: got {error.strerror or error}, expected room and leave to write; free the disk, or go elsewhere"
         )
         return 2
-    except KeyboardInterrupt:
-        console.fail("interrupted; files already written are whole, the others were not begun")
+    except KeyboardInterrupt as stop:
+        console.fail(f"interrupted; {str(stop) or 'files already written are whole, the others were not begun'}")
         return 128 + signal.SIGINT
 
 

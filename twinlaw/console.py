@@ -3,7 +3,7 @@
 import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TextIO
 
@@ -34,6 +34,15 @@ def stage(title: str) -> Iterator[None]:
     finally:
         sys.stderr.write(f"\r  {title:<60} {mark} {time.monotonic() - began:6.1f} s\n")
         sys.stderr.flush()
+
+
+@contextmanager
+def leaving(told: Callable[[], str]) -> Iterator[None]:
+    """Interrupted, the body leaves what `told` says in the one line of the error."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        raise KeyboardInterrupt(str(stop) or told()) from None
 
 
 def table(rows: Sequence[Sequence[str]], heading: Sequence[str] = ()) -> str:

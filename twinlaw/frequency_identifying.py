@@ -3,6 +3,7 @@
 import argparse
 import json
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from identification.frequency.models import LinearModel, operating_point_model
 from identification.frequency.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
 from identification.logs import trimmed
+from identification.solve import Told
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
@@ -24,8 +26,9 @@ from sim.columns import log_columns as plant_columns
 from twinlaw import console, options
 from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows, pictures
 from twinlaw.identify_summary import HEADING, estimate_rows
-from twinlaw.identifying import free_names, read_limits
+from twinlaw.identifying import free_names, read_limits, save_result, told_files
 from twinlaw.page import page_text
+from twinlaw.progress import progress
 
 OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
 
@@ -42,11 +45,15 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
                 "leave it out",
             )
     plant = load_plant(chosen.plant)
-    with console.stage("frequency responses, secant search, intervals"):
+    save = partial(save_result, chosen.out)
+    with (
+        progress(plant, save, told_files(chosen.out)) as so_far,
+        console.stage("frequency responses, secant search, intervals"),
+    ):
         found = (
-            _lateral(chosen, holdout, plant)
+            _lateral(chosen, holdout, plant, so_far.told)
             if plant.model == LATERAL
-            else _operating_point(chosen, holdout, bind(plant))
+            else _operating_point(chosen, holdout, bind(plant), so_far.told)
         )
     write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
     write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
@@ -58,11 +65,11 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
     return 0
 
 
-def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant) -> FrequencyIdentification:
+def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, told: Told) -> FrequencyIdentification:
     check_plant(plant)
     model = lateral_model(plant, _lateral_names(chosen.free, plant))
     logs, held = _read(chosen, holdout, log_columns())
-    return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant))
+    return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
 
 
 def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
@@ -78,7 +85,9 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
     return names
 
 
-def _operating_point(chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant) -> FrequencyIdentification:
+def _operating_point(
+    chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant, told: Told
+) -> FrequencyIdentification:
     if bound.input_path or bound.output_path:
         raise BadInput(
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
@@ -89,14 +98,19 @@ def _operating_point(chosen: argparse.Namespace, holdout: Sequence[Path], bound:
     records, others = ([record_of(log, name, outputs) for name, log in some.items()] for some in (logs, held))
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
     model = operating_point_model(bound, free_names(bound, chosen.free), means, read_limits(chosen.bounds))
-    return _matched(chosen, bound.plant, model, records, others)
+    return _matched(chosen, bound.plant, model, records, others, told)
 
 
 def _matched(
-    chosen: argparse.Namespace, plant: Plant, model: LinearModel, records: Sequence[Record], held: Sequence[Record]
+    chosen: argparse.Namespace,
+    plant: Plant,
+    model: LinearModel,
+    records: Sequence[Record],
+    held: Sequence[Record],
+    told: Told,
 ) -> FrequencyIdentification:
     band = None if chosen.band_rad_s is None else (chosen.band_rad_s[0], chosen.band_rad_s[1])
-    return frequency_identification(plant, match(model, records, band, seed=chosen.seed), held)
+    return frequency_identification(plant, match(model, records, band, seed=chosen.seed, told=told), held)
 
 
 def _read(

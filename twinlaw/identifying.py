@@ -1,15 +1,15 @@
 """What `twinlaw identify` does between its files: tell experiments from logs, go stage by stage, leave what was found so far."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
-from identification.belief import NOTHING, Belief, stated
+from identification.belief import NOTHING, stated
 from identification.estimate import Estimate
-from identification.logs import identify_logs, prediction_tests
-from identification.result import Identification, facts, identification, with_values
+from identification.logs import best_fit, fits_of_logs, prediction_tests
+from identification.result import Identification, facts
 from identification.search import Search
 from identification.staged import identify_stage, in_order, title
 from records import checks
@@ -23,13 +23,9 @@ from records.reading import read_toml
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from twinlaw import console, options
+from twinlaw.progress import Done, Progress, progress
 
 Limits = Mapping[str, tuple[float, float]]
-Save = Callable[[Identification], None]
-Done = tuple[
-    list[tuple[str, Estimate]], list[tuple[Belief, float]], Belief
-]  # stages, what they needed besides, the last belief
-INTERRUPTED = "the best so far of a search that was interrupted"
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,72 +129,68 @@ def free_names(bound: BoundPlant, wanted: str | None) -> tuple[str, ...]:
     return tuple(found)
 
 
-def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, save: Save) -> Identification:
-    """Stage by stage; `save` is told the result after each, so that an interrupted run leaves what it has."""
-    stages, aids, belief = _from_experiments(bound, inputs.experiments, wishes, save)
-    shifts: dict[str, float] = {}
-    if inputs.logs:
-        with _kept(bound, wishes.search, (stages, aids, belief), save) as wanted:
-            found = _from_logs(bound, inputs.logs, replace(wishes, search=wanted), belief)
-        trims = tuple(name for name in found.belief.names if name.startswith("offset."))
-        shifts = {name: found.belief.value(name) for name in trims}
-        belief = found.belief.part(tuple(name for name in found.belief.names if name not in trims))
-        stages.append((", ".join(inputs.logs), found))
-        if trims:
-            aids.append((found.belief.part(trims), found.dof))
-        save(identification(bound.plant, stages, belief, aids))
-    result = identification(bound.plant, stages, belief, aids)
+def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) -> Identification:
+    """Fit by fit; `folder` holds the result after each, so that an interrupted run leaves what it has."""
+    with progress(bound.plant, partial(save_result, folder), told_files(folder)) as so_far:
+        done = _from_experiments(bound, inputs.experiments, wishes, so_far)
+        if inputs.logs:
+            done = _from_logs(bound, inputs.logs, wishes, done, so_far)
+    result = so_far.finished(done)
     if not inputs.holdout:
         return result
     with console.stage("predicting the logs held out"):
+        shifts = {name: part.value(name) for part, _ in done.aids for name in part.names if name.startswith("offset.")}
         result = replace(result, holdout=prediction_tests(bind(result.plant), inputs.holdout, shifts))
-    save(result)
+    save_result(folder, result)
     return result
 
 
-@contextmanager
-def _kept(bound: BoundPlant, search: Search | None, done: Done, save: Save) -> Iterator[Search | None]:
-    """The search under watch: interrupted, it leaves the best so far beside what was done before."""
-    so_far: dict[str, float] = {}
-    try:
-        yield None if search is None else replace(search, watch=so_far.update)
-    except KeyboardInterrupt:
-        if so_far:
-            stages, aids, belief = done
-            save(identification(with_values(bound.plant, so_far, INTERRUPTED), stages, belief, aids))
-        raise
-
-
-def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, save: Save) -> Done:
-    """Estimates of all stages, what the experiments needed besides with its degrees of freedom, and the last belief."""
-    stages: list[tuple[str, Estimate]] = []
-    aids: list[tuple[Belief, float]] = []
-    belief = stated(bound) if wishes.keep_knowledge else NOTHING
+def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wishes: Wishes, so_far: Progress) -> Done:
+    """One stage for each experiment, in the paper's order."""
+    done = Done(belief=stated(bound) if wishes.keep_knowledge else NOTHING)
     for experiment in experiments:
-        with _kept(bound, wishes.search, (stages, aids, belief), save) as wanted, console.stage(title(experiment)):
-            stage = identify_stage(bound, experiment, belief, wishes.limits, wanted, wishes.only)
-        belief = stage.belief
-        stages.append((title(experiment), stage.result))
-        if stage.aids.names:
-            aids.append((stage.aids, stage.result.dof))
-        save(identification(bound.plant, stages, belief, aids))
-    return stages, aids, belief
+        with console.stage(title(experiment)):
+            stage = identify_stage(
+                bound, experiment, done.belief, wishes.limits, wishes.search, wishes.only, so_far.told
+            )
+        done = done.with_stage(title(experiment), stage.result, stage.belief, stage.aids)
+        so_far.finished(done)
+    return done
 
 
-def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, belief: Belief) -> Estimate:
-    """All logs at once, with what is known already."""
-    names = tuple(name for name in wishes.names if name not in belief.names) or belief.names
-    with console.stage(f"{len(logs)} run logs, {len(names) + len(belief.names)} parameters"):
-        return identify_logs(
+def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done: Done, so_far: Progress) -> Done:
+    """All logs at once, with what is known already; the best of the fits over windows of several lengths."""
+    names = tuple(name for name in wishes.names if name not in done.belief.names) or done.belief.names
+    fits: list[Estimate] = []
+    found = done
+    with console.stage(f"{len(logs)} run logs, {len(names) + len(done.belief.names)} parameters"):
+        for fit in fits_of_logs(
             bound,
             logs,
             names,
             window_s=wishes.window_s,
             limits=wishes.limits,
-            before=belief,
+            before=done.belief,
             wanted=wishes.search,
             offsets=wishes.offsets,
-        )
+            told=so_far.told,
+        ):
+            fits.append(fit)
+            found = _with_logs(done, ", ".join(logs), best_fit(fits))
+            so_far.finished(found)
+    return found
+
+
+def _with_logs(done: Done, data: str, fit: Estimate) -> Done:
+    """The offsets of the inputs are no parameters of the plant."""
+    trims = tuple(name for name in fit.belief.names if name.startswith("offset."))
+    kept = tuple(name for name in fit.belief.names if name not in trims)
+    return done.with_stage(data, fit, fit.belief.part(kept), fit.belief.part(trims))
+
+
+def told_files(folder: Path) -> str:
+    """The files that an interrupted run leaves."""
+    return f"{folder / 'plant.toml'} and {folder / 'identification.json'} hold"
 
 
 def save_result(folder: Path, result: Identification) -> None:

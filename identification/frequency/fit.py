@@ -15,6 +15,7 @@ from identification.frequency.record import Record, with_instruments
 from identification.frequency.responses import Responses, frequency_responses, replaced, responses_with
 from identification.frequency.secant import Found, Residual, restarted, secant_search
 from identification.frequency.sweep import RECORD_PERIODS, WINDOW_PERIODS, highest_rad_s
+from identification.solve import Tell, Told, by_name
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
@@ -64,12 +65,13 @@ def match(
     *,
     seed: int = 1,
     from_start: bool = True,
+    told: Told | None = None,
 ) -> FrequencyFit:
     """Match `model` with all records over a band, by default what their length and sampling allow.
 
-    The search begins at four points drawn by `seed` from a normal distribution of the model's spread and, `from_start`, at its own start.
-    Raises BadInput for records too short for the band, a band that is none, inputs that cannot be told apart, or coherence that is too
-    low everywhere.
+    The search begins at four points drawn by `seed` from a normal distribution of the model's spread and, `from_start`, at its own start;
+    `told` hears of better parameters as soon as there are any. Raises BadInput for records too short for the band, a band that is none,
+    inputs that cannot be told apart, or coherence that is too low everywhere.
     """
     swept = with_instruments(records)
     low, high = band_of(swept, band_rad_s)
@@ -84,7 +86,8 @@ def match(
         )  # fmt: skip
     size = np.maximum(np.abs(model.start), np.maximum(model.spread, 1e-12))
     period_s = swept[0].period_s
-    searches = restarted(_mismatch(model, points, omega, period_s), _starts(model, seed, from_start), size)
+    mismatch = _watched(_mismatch(model, points, omega, period_s), by_name(model.names, told))
+    searches = restarted(mismatch, _starts(model, seed, from_start), size)
     if not searches:
         raise BadInput("start", "frequency search", "no response there", "a model that has one", "mend the plant file")
     return _corrected(model, swept, measured, points, searches, size)
@@ -106,6 +109,21 @@ def _mismatch(model: LinearModel, points: Target, omega: Array, period_s: float)
         return r if np.all(np.isfinite(r)) else None
 
     return F
+
+
+def _watched(F: Residual, tell: Tell) -> Residual:
+    """The residual that tells each theta whose J is the least so far."""
+    least = np.inf
+
+    def watched(theta: Array) -> Array | None:
+        nonlocal least
+        r = F(theta)
+        if r is not None and float(r @ r) < least:
+            least = float(r @ r)
+            tell(theta)
+        return r
+
+    return watched
 
 
 def _corrected(

@@ -145,7 +145,7 @@ def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start
 
 def test_a_better_string_is_told_at_once(problem):
     told = []
-    found = search(problem, [0, 1, 2, 3], Search("genetic", 2, watch=lambda values: told.append(dict(values))))[0]
+    found = search(problem, [0, 1, 2, 3], Search("genetic", 2), lambda values: told.append(dict(values)))[0]
     assert told
     assert list(told[-1].values()) == pytest.approx(found.values.tolist())
     assert set(told[-1]) == set(problem.names)

@@ -6,6 +6,7 @@ import pytest
 
 from records.plant import load_plant
 from tests.plants import PLANTS
+from tests.twinlaw.interrupts import stops_when_told
 from twinlaw.command import main
 
 RAPTOR = ["--plant", str(PLANTS / "raptor50.toml")]
@@ -45,6 +46,19 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
     assert {path.name for path in tmp_path.glob("*.svg")} == {
         "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg",
     }  # fmt: skip
+
+
+def test_an_interrupted_match_leaves_the_best_so_far(monkeypatch, flown, tmp_path, capsys):
+    stops_when_told(monkeypatch, 5)
+    assert main([*FREQUENCY, "--out", str(tmp_path), "--band-rad-s", "0.4", "12", *swept(flown)]) == 130
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "hold the best values so far of Y_v, Y_p" in line
+    stated, left = (load_plant(path).parameters for path in (PLANTS / "raptor50.toml", tmp_path / "plant.toml"))
+    assert left["L_lat"].value != stated["L_lat"].value
+    assert "interrupted" in left["L_lat"].source
+    told = json.loads((tmp_path / "identification.json").read_text())
+    assert told["unfinished"]["L_lat"] == left["L_lat"].value
+    assert told["estimates"] == []
 
 
 def test_the_same_seed_flies_the_same_flight(flown, tmp_path):

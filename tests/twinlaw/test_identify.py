@@ -12,8 +12,10 @@ from identification.bench import task
 from records.log import save_log
 from records.plant import load_plant
 from sim.bind import bind
+from tests.twinlaw.interrupts import stops_when_told
 from twinlaw import identifying
 from twinlaw.command import main
+from twinlaw.progress import Progress
 
 ROTORS = ("01-main_rotor", "03-gravity", "04-elevation_swing")
 
@@ -68,6 +70,45 @@ def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tm
     found = json.loads((tmp_path / "identification.json").read_text())
     assert {entry["name"] for entry in found["estimates"]} >= {"K_M", "tau_gE"}
     assert load_plant(tmp_path / "plant.toml").correlation is not None
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    """Twenty seconds of flight, and the two coefficients to estimate from it."""
+    path = tmp_path_factory.mktemp("flown") / "flight.csv"
+    log = task(bind(load_plant(Path("plants/ce150.toml")))).log
+    save_log(path, replace(log, t_s=log.t_s[:2000], u=log.u[:2000], y=log.y[:2000]))
+    return ["--free", "J_A,b_vA", str(path)]
+
+
+def test_an_interrupted_fit_to_a_log_leaves_the_best_so_far(monkeypatch, flown, tmp_path, capsys):
+    told = stops_when_told(monkeypatch, 2)
+    assert main(["identify", "--out", str(tmp_path), *flown]) == 130
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith("identification.json hold the best values so far of J_A, b_vA, without intervals")
+    left, stated = (load_plant(path).parameters for path in (tmp_path / "plant.toml", Path("plants/ce150.toml")))
+    assert left["J_A"].value == told[-1]["J_A"]
+    assert left["J_A"].sd == stated["J_A"].sd
+    assert left["J_E"] == stated["J_E"]
+    notes = json.loads((tmp_path / "identification.json").read_text())["notes"]
+    assert notes == ["J_A, b_vA: the best so far of a fit that was interrupted, without interval"]
+
+
+def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is_done(
+    monkeypatch, flown, tmp_path, capsys
+):
+    original = Progress.finished
+
+    def stops(self, done):
+        original(self, done)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Progress, "finished", stops)
+    assert main(["identify", "--out", str(tmp_path), *flown]) == 130
+    assert "hold 1 finished fit\n" in capsys.readouterr().err
+    plant = load_plant(tmp_path / "plant.toml")
+    assert plant.correlation is not None
+    assert set(plant.correlation.names) == {"J_A", "b_vA"}
 
 
 def test_repetitions_tell_how_often_the_truth_lies_inside(tmp_path, capsys):

@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import genetic, search
+from identification import genetic
 from records.log import RunLog, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.simulate import simulate
+from tests.twinlaw.interrupts import stops_when_told
 from twinlaw.command import main
 
 PLANT = ["--plant", "plants/ce150_velagic.toml"]
@@ -89,20 +90,7 @@ def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch,
     x0[2] = -np.pi / 4
     y = simulate(bound, t_s, x0, u, locked=("azimuth",)).y
     save_log(tmp_path / "log.csv", RunLog(log_columns(bound.model), 0.01, "open", t_s, u, y, locked=("azimuth",)))
-    told, original = [], search._better
-
-    def stops_at_the_third(*given):
-        tell = original(*given)
-
-        def telling(values):
-            tell(values)
-            told.append(values)
-            if len(told) == 3:
-                raise KeyboardInterrupt
-
-        return telling
-
-    monkeypatch.setattr(search, "_better", stops_at_the_third)
+    told = stops_when_told(monkeypatch, 3)
     arguments = [
         "--search",
         "evolution",
@@ -114,7 +102,7 @@ def test_an_interrupted_evolution_over_a_log_leaves_the_best_so_far(monkeypatch,
     ]
     assert main(["identify", *PLANT, *arguments]) == 130
     left = load_plant(tmp_path / "out" / "plant.toml").parameters
-    assert [left[name].value for name in ("a_1", "I_inv")] == pytest.approx(told[-1].tolist())
+    assert {name: left[name].value for name in ("a_1", "I_inv")} == pytest.approx(told[-1])
     assert "interrupted" in left["a_1"].source
 
 

@@ -56,10 +56,14 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
     starts = NONE if chosen.starts is None else load_starts(chosen.starts, flights)
 
-    def save(so_far: Study) -> None:
-        write_atomic(chosen.out / "envelope.json", json.dumps(facts(so_far), indent=1) + "\n")
+    path, saved = chosen.out / "envelope.json", list[Study]()
 
-    found = study(flights, chosen.forgetting, console.stage, save, starts)
+    def save(so_far: Study) -> None:
+        write_atomic(path, json.dumps(facts(so_far), indent=1) + "\n")
+        saved.append(so_far)
+
+    with console.leaving(lambda: _left(path, saved)):
+        found = study(flights, chosen.forgetting, console.stage, save, starts)
     tries = tried(found, starts)
     with console.stage("drawing the report"):
         write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries)))
@@ -78,6 +82,13 @@ def run(chosen: argparse.Namespace) -> int:
         print(f"- {note}")
     print(f"\n{chosen.out / 'report.html'}")
     return 0
+
+
+def _left(path: Path, saved: list[Study]) -> str:
+    if not saved:
+        return ""
+    done = len(saved[-1].conditions)
+    return f"{path} holds {done} condition{'s' if done > 1 else ''} identified, and {len(saved[-1].left_out)} predicted between them"
 
 
 def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str]:

@@ -9,6 +9,7 @@ and DIR/repetitions.json tells how often the truth lay within the 95 % intervals
 import argparse
 import json
 from dataclasses import asdict
+from typing import Any
 
 from identification.experiments.table import kinds_of, perform
 from identification.monte_carlo import Repetition, coverage, other_rig, repetition
@@ -52,27 +53,32 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
+def _facts(found: list[Repetition]) -> dict[str, Any]:
+    covered = coverage(tuple(found))
+    return {
+        "coverage": covered,
+        "least": min(covered.values()),
+        "mean": sum(covered.values()) / len(covered),
+        "all_inside": sum(entry.all_inside for entry in found) / len(found),
+        "repetitions": [asdict(entry) for entry in found],
+    }
+
+
 def _repeat(bound: BoundPlant, chosen: argparse.Namespace) -> int:
-    found: list[Repetition] = []
-    for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
-        with console.stage(f"rig {seed}: all experiments"):
-            found.append(repetition(bound, seed))
-        covered = coverage(tuple(found))
-        facts = {
-            "coverage": covered,
-            "least": min(covered.values()),
-            "mean": sum(covered.values()) / len(covered),
-            "all_inside": sum(entry.all_inside for entry in found) / len(found),
-            "repetitions": [asdict(entry) for entry in found],
-        }
-        # After each rig, so that an interrupted count leaves what it has.
-        write_atomic(chosen.out / "repetitions.json", json.dumps(facts, indent=1) + "\n")
+    path, found = chosen.out / "repetitions.json", list[Repetition]()
+    with console.leaving(lambda: f"{path} holds {len(found)} of {chosen.repetitions} rigs" if found else ""):
+        for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
+            with console.stage(f"rig {seed}: all experiments"):
+                found.append(repetition(bound, seed))
+            facts = _facts(found)
+            write_atomic(path, json.dumps(facts, indent=1) + "\n")
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean", "all_inside")}))
         return 0
     print(
         console.table(
-            [(name, f"{share:.0%}") for name, share in covered.items()], ("parameter", "within its 95 % interval")
+            [(name, f"{share:.0%}") for name, share in facts["coverage"].items()],
+            ("parameter", "within its 95 % interval"),
         )
     )
     print(

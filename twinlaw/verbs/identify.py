@@ -3,7 +3,7 @@
 FILES are experiments (TOML of `twinlaw experiments`, or a folder of them) and run logs of the plant (CSV with sidecar). Experiments are
 taken in the order of the paper, each for its own subsystem, and what one tells goes on to the next with its covariance; logs come last
 and are cut into windows with free starts, so that closed loops and unstable plants are welcome. Writes DIR/plant.toml, which every verb
-takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what is done.
+takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what was found so far.
 --search looks through the whole range first (genetic: the algorithm of seed 001), and the report lays the gradient method beside it.
 With --truth the controller designed from the result flies that plant, and the report lays both flights over one another; for
 ce150_velagic it redraws Figs. 12 to 14 of seed 001.
@@ -27,7 +27,7 @@ from twinlaw.frequency_identifying import identify_by_frequency
 from twinlaw.identify_proof import proven
 from twinlaw.identify_report import identify_page
 from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
-from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits, save_result
+from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits
 from twinlaw.page import page_text
 from twinlaw.stages import load_bound
 
@@ -104,7 +104,7 @@ def run(chosen: argparse.Namespace) -> int:
     inputs = read_inputs(chosen.files, holdout, bound)
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
-    result = identify(bound, inputs, wishes, lambda found: save_result(chosen.out, found))
+    result = identify(bound, inputs, wishes, chosen.out)
     sections, pictures = proven(result, truth)
     for name, picture in pictures.items():
         write_atomic(chosen.out / f"fig-{name}.svg", picture)

@@ -11,6 +11,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -126,19 +127,13 @@ def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
 def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
-    found: list[Repetition] = []
-    for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
-        with console.stage(f"flights {seed}: sweeps, responses, match"):
-            found.append(repetition(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, seed))
-        shares = coverage(found)
-        facts = {
-            "coverage": dict(shares),
-            "least": min(shares.values()),
-            "mean": sum(shares.values()) / len(shares),
-            "repetitions": [asdict(entry) for entry in found],
-        }
-        # After each flight, so that an interrupted count leaves what it has.
-        write_atomic(chosen.out / "coverage.json", json.dumps(facts, indent=1) + "\n")
+    path, found = chosen.out / "coverage.json", list[Repetition]()
+    with console.leaving(lambda: f"{path} holds {len(found)} of {chosen.repetitions} sets of flights" if found else ""):
+        for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
+            with console.stage(f"flights {seed}: sweeps, responses, match"):
+                found.append(repetition(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, seed))
+            facts = _coverage_facts(found)
+            write_atomic(path, json.dumps(facts, indent=1) + "\n")
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean")}))
         return 0
@@ -147,6 +142,16 @@ def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     )
     print(f"\n{len(found)} sets of flights; least {facts['least']:.0%}, mean {facts['mean']:.1%}")
     return 0
+
+
+def _coverage_facts(found: list[Repetition]) -> dict[str, Any]:
+    shares = coverage(found)
+    return {
+        "coverage": dict(shares),
+        "least": min(shares.values()),
+        "mean": sum(shares.values()) / len(shares),
+        "repetitions": [asdict(entry) for entry in found],
+    }
 
 
 def _coverage_rows(plant: Plant, found: list[Repetition]) -> list[tuple[str, ...]]:
