@@ -27,7 +27,7 @@ def log_run(
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give no reading. States that only the inputs drive run on
     from those of `at_first` (states,) at the first row; where these are not given the log is used once they no longer matter. Raises
-    BadInput for a log with less than two rows, or a plant with effects on the way of its inputs or outputs.
+    BadInput for a log with less than two rows or without readings, or a plant with effects on the way of its inputs or outputs.
     """
     _check(bound, log, name)
     model = bound.model
@@ -66,6 +66,11 @@ def log_run(
 def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
     if log.t_s.size < 2:
         raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
+    if not np.any(np.isfinite(log.y)):
+        got = f"no number of {', '.join(log.columns.outputs)} in {log.t_s.size} rows"
+        raise BadInput(
+            "readings", name, got, "a reading of at least one output", "give a log in which something was measured"
+        )
     if bound.input_path or bound.output_path:
         raise BadInput(
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",

@@ -39,7 +39,7 @@ class Estimated:
 class Identification:
     """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
     `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
-    come to; they are in the plant, without sd of their own.
+    come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves.
     """
 
     plant: Plant
@@ -49,11 +49,13 @@ class Identification:
     aids: tuple[Estimated, ...] = ()
     holdout: tuple[ResidualTest, ...] = ()
     unfinished: Mapping[str, float] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     @property
     def notes(self) -> tuple[str, ...]:
         """One sentence for each thing that the data cannot tell or tell twice in different ways."""
         return (
+            *self.remarks,
             *self._interrupted(),
             *self._unidentified(),
             *(note for title, stage in self.stages for note in stage_notes(title, stage)),

@@ -48,7 +48,7 @@ class Score:
 def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece_s: float = PIECE_S) -> Score:
     """The score of one channel of a run at its optimum, with the windows' starts projected out: J - X C^-1 X^T J."""
     size = blocks[0].by_parameter.shape[1]
-    H, pieces = np.zeros((size, size)), []
+    H, pieces = np.zeros((size, size)), [np.zeros((0, size))]  # none of a channel that was never read
     follow = np.linalg.solve(starts.C, np.swapaxes(starts.B, 1, 2))
     for block, along in zip(blocks, follow, strict=True):
         mine = run.channel[block.place] == channel

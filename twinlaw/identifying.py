@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from diagnosis.integrity import demand, examine
 from identification.belief import NOTHING, stated
 from identification.estimate import Estimate
 from identification.logs import best_fit, fits_of_logs, prediction_tests
@@ -30,11 +31,12 @@ Limits = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict."""
+    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict; what is odd in these."""
 
     experiments: tuple[Experiment, ...]
     logs: Mapping[str, RunLog]
     holdout: Mapping[str, RunLog]
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,21 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
             raise BadInput("experiments", kind, "given twice", "each once", "leave one of them out")
     fitted, kept = ({path.stem: _log(path, bound) for path in each} for each in (logs, holdout))
     return Inputs(in_order(experiments), fitted, kept)
+
+
+def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
+    """The logs with what is odd in them; raises BadInput for what makes one worthless (a unit slip, no motion, nothing measured)."""
+    return replace(inputs, notes=oddities(inputs.logs, inputs.holdout, bound))
+
+
+def oddities(logs: Mapping[str, RunLog], holdout: Mapping[str, RunLog], bound: BoundPlant) -> tuple[str, ...]:
+    """One sentence for each thing that is odd in the logs themselves; raises BadInput for what makes one worthless."""
+    if not logs and not holdout:
+        return ()
+    kept = list(holdout.values())
+    found = examine(list(logs.values()), bound, holdout=kept, names=[*logs, *holdout])
+    demand(found)
+    return found.notes
 
 
 def _log(path: Path, bound: BoundPlant) -> RunLog:
@@ -135,7 +152,8 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         done = _from_experiments(bound, inputs.experiments, wishes, so_far)
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
-    result = so_far.finished(done)
+    result = replace(so_far.finished(done), remarks=(*inputs.notes, *_untold(wishes, done)))
+    save_result(folder, result)
     if not inputs.holdout:
         return result
     with console.stage("predicting the logs held out"):
@@ -179,6 +197,12 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, do
             found = _with_logs(done, ", ".join(logs), best_fit(fits))
             so_far.finished(found)
     return found
+
+
+def _untold(wishes: Wishes, done: Done) -> tuple[str, ...]:
+    """What the user named and no data given bear on."""
+    names = [name for name in wishes.only or () if name not in done.belief.names]
+    return (f"{', '.join(names)}: no data given here bear on it; the plant file's value is kept",) if names else ()
 
 
 def _with_logs(done: Done, data: str, fit: Estimate) -> Done:

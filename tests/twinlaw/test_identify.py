@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from identification.bench import task
-from records.log import save_log
+from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
+from sim.columns import log_columns
 from tests.twinlaw.interrupts import stops_when_told
 from twinlaw import identifying
 from twinlaw.command import main
@@ -79,6 +80,43 @@ def flown(tmp_path_factory):
     log = task(bind(load_plant(Path("plants/ce150.toml")))).log
     save_log(path, replace(log, t_s=log.t_s[:2000], u=log.u[:2000], y=log.y[:2000]))
     return ["--free", "J_A,b_vA", str(path)]
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "words"),
+    [
+        (lambda log: replace(log, y=np.degrees(log.y)), "'psi_rad': unit slip: got psi_rad is in degrees"),
+        (lambda log: replace(log, u=1000.0 * log.u), "u_M_V is in another unit, up to"),
+        (lambda log: replace(log, t_s=1000.0 * log.t_s), "time unit: got rows 10 s apart"),
+        (lambda log: replace(log, u=0.0 * log.u, y=0.0 * log.y), "every input and every output is one constant"),
+        (lambda log: replace(log, y=np.nan * log.y), "no output was ever measured"),
+    ],
+)
+def test_a_log_that_cannot_be_one_of_this_rig_is_refused(flown, tmp_path, capsys, spoilt, words):
+    log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
+    save_log(tmp_path / "spoilt.csv", spoilt(log))
+    assert main(["identify", "--out", str(tmp_path / "out"), str(tmp_path / "spoilt.csv")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_axis_that_was_never_read_is_said_and_the_other_is_identified(flown, tmp_path, capsys):
+    """Truth: the plant file's J_A, to 5 %, from the azimuth alone."""
+    bound = bind(load_plant(Path("plants/ce150.toml")))
+    log = load_log(Path(flown[-1]), log_columns(bound.model))
+    save_log(tmp_path / "half.csv", replace(log, y=np.column_stack([np.full(len(log.t_s), np.nan), log.y[:, 1]])))
+    options = ["--free", "J_A", "--window", "2", "--json", "--out", str(tmp_path / "out")]
+    assert main(["identify", *options, str(tmp_path / "half.csv")]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert "half: psi_rad was not recorded: NaN in every row" in told["notes"]
+    assert told["estimates"][0]["value"] == pytest.approx(bound.parameter("J_A"), rel=0.05)
+
+
+def test_a_parameter_on_which_no_experiment_bears_is_named(folder, tmp_path, capsys):
+    record = next(str(path) for path in folder.glob("03-*.toml"))
+    assert main(["identify", "--free", "J_A,tau_gE", "--out", str(tmp_path), record]) == 0
+    assert "J_A: no data given here bear on it" in capsys.readouterr().out
 
 
 def test_an_interrupted_fit_to_a_log_leaves_the_best_so_far(monkeypatch, flown, tmp_path, capsys):

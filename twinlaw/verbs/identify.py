@@ -27,7 +27,7 @@ from twinlaw.frequency_identifying import identify_by_frequency
 from twinlaw.identify_proof import proven
 from twinlaw.identify_report import identify_page
 from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
-from twinlaw.identifying import Wishes, free_names, identify, read_inputs, read_limits
+from twinlaw.identifying import Wishes, free_names, identify, looked_at, read_inputs, read_limits
 from twinlaw.page import page_text
 from twinlaw.stages import load_bound
 
@@ -104,6 +104,7 @@ def run(chosen: argparse.Namespace) -> int:
     inputs = read_inputs(chosen.files, holdout, bound)
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
+    inputs = looked_at(inputs, bound)
     result = identify(bound, inputs, wishes, chosen.out)
     sections, pictures = proven(result, truth)
     for name, picture in pictures.items():
