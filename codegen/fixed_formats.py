@@ -16,7 +16,7 @@ from codegen.fixed_polynomials import (
     polynomial_format,
     room_for,
 )
-from codegen.law_constants import without_vanishing_powers
+from codegen.law_frame import without_vanishing_powers
 from records.errors import BadInput
 from records.table import AxisLaw, ControllerTable, Polynomial
 

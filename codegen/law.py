@@ -1,5 +1,6 @@
 """Controller table -> C text of the law, its header and its self-test. Pure: the same table gives the same bytes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,8 +9,8 @@ import numpy as np
 
 from codegen.fixed_law import fixed_context
 from codegen.fixed_twin import FixedTwin
-from codegen.law_constants import without_vanishing_powers
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
+from codegen.law_frame import without_vanishing_powers
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import self_test
@@ -108,10 +109,8 @@ def shared_context(table: FlownTable, arithmetic: str) -> dict[str, Any]:
     }
 
 
-def _float32_context(table: ControllerTable) -> dict[str, Any]:
-    count = operation_count(table)  # refuses an unusable table before anything is made from it
-    arrays = tuple(array for name in _AXES for array in _arrays(table, name))
-    axes = tuple(_axis(table, name) for name in _AXES)
+def frame_context(table: Any, axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
+    """What law_frame.c.j2 takes of the table of any float32 law."""
     return {
         "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "plausible_V": PLAUSIBLE_V,
@@ -120,13 +119,22 @@ def _float32_context(table: ControllerTable) -> dict[str, Any]:
         "psi_max_rad": table.psi_max_rad,
         "elevation": table.elevation,
         "azimuth": table.azimuth,
-        "axis_state_fields": AXIS_STATE_FIELDS,
-        "axis_state_note": "; the index is the power of delta = 1 - z^-1",
+        "axis_state_fields": axis_state_fields,
+        "axis_state_note": "",
         "last_accepted_fields": LAST_ACCEPTED_FIELDS,
-        "arrays": arrays,
-        "degrees": sorted({len(array.coefficients) - 1 for array in arrays} - {0}),
         "axes": axes,
         "filters": {axis.filter for axis in axes},
+    }
+
+
+def _float32_context(table: ControllerTable) -> dict[str, Any]:
+    count = operation_count(table)  # refuses an unusable table before anything is made from it
+    arrays = tuple(array for name in AXIS_NAMES for array in _arrays(table, name))
+    axes = tuple(frame_axis(table, name, tuple(_terms(name, _law_of(table, name)))) for name in AXIS_NAMES)
+    return frame_context(table, axes, AXIS_STATE_FIELDS) | {
+        "axis_state_note": "; the index is the power of delta = 1 - z^-1",
+        "arrays": arrays,
+        "degrees": sorted({len(array.coefficients) - 1 for array in arrays} - {0}),
         "operations": f"{count.products} products, {count.sums} sums a step.",
         "test": self_test(table, Float32Twin(table)),
     }
@@ -142,21 +150,23 @@ _TEMPLATES = {
     "fixed": {"law.h": "law_fixed.h.j2", "law.c": "law_fixed.c.j2", "law_self_test.c": "law_self_test.c.j2"},
 }
 _AXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
+AXIS_NAMES = tuple(_AXES)
 
 
-def _axis(table: ControllerTable, name: str) -> Axis:
-    law = _law_of(table, name)
+def frame_axis(table: Any, name: str, terms: tuple[Term, ...] = ()) -> Axis:
+    """One axis of any float32 table as the frame's template sees it."""
+    axis = _law_of(table, name)
     angle, voltage = _AXES[name]
-    time_constant_s = law.prefilter_time_constant_s
+    time_constant_s = axis.prefilter_time_constant_s
     return Axis(
         name=name,
         angle=angle,
         voltage=voltage,
         filter="take_reference" if time_constant_s == 0.0 else "prefilter",
-        prefilter_gain=law.prefilter_gain(table.sample_period_s),
+        prefilter_gain=axis.prefilter_gain(table.sample_period_s),
         prefilter_time_constant_s=time_constant_s,
-        feedforward=_value(f"{name}_u_ff_V", law.feedforward_V, "self->elevation.reference_2_rad"),
-        terms=tuple(_terms(name, law)),
+        feedforward=_value(f"{name}_u_ff_V", axis.feedforward_V, "self->elevation.reference_2_rad"),
+        terms=terms,
     )
 
 
@@ -174,7 +184,7 @@ def _terms(name: str, law: AxisLaw) -> list[Term]:
 
 
 def _arrays(table: ControllerTable, name: str) -> list[Array]:
-    law = _law_of(table, name)
+    law: AxisLaw = _law_of(table, name)
     psi_rad = (table.psi_min_rad, table.psi_max_rad)
     named = [
         (f"{name}_{letter}_{index}{_suffix(letter)}", polynomial, _UNITS[letter], psi_rad)
@@ -194,7 +204,7 @@ def _groups(law: AxisLaw) -> tuple[tuple[str, tuple[Polynomial, ...]], ...]:
     return ("q", law.q_V_rad), ("p", law.p), ("a", tuple((a,) for a in law.a))
 
 
-def _law_of(table: ControllerTable, name: str) -> AxisLaw:
+def _law_of(table: Any, name: str) -> Any:
     return table.elevation if name == "elevation" else table.azimuth
 
 

@@ -3,12 +3,11 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TypeVar
 
-import numpy as np
-
+from codegen.law_frame import AxisFrame, LawNumbers, frame_numbers, range_numbers, without_vanishing_powers
 from records.errors import BadInput
-from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 N = TypeVar("N")
 M = TypeVar("M")
@@ -18,32 +17,20 @@ WIDEST_ERROR_RAD = 2.0 * math.pi
 
 
 @dataclass(frozen=True)
-class AxisConstants(Generic[N]):
+class AxisConstants(AxisFrame[N]):
     """Numbers of one axis; polynomials hold ascending coefficients, () where the polynomial is zero for every Psi."""
 
     q_V_rad: tuple[tuple[N, ...], ...]
     p: tuple[tuple[N, ...], ...]
     a: tuple[tuple[N, ...], ...]
-    feedforward_V: tuple[N, ...]
-    prefilter_gain: N | None
-    u_min_V: N
-    u_max_V: N
-    u_safe_V: N
-    reference_min_rad: N
-    reference_max_rad: N
 
 
 @dataclass(frozen=True)
-class LawConstants(Generic[N]):
-    """Numbers of both axes, the scheduling range and its least angle [rad], zero and the plausible feedback voltage [V]."""
+class LawConstants(LawNumbers[N]):
+    """Numbers of both axes of the scheduled law."""
 
     elevation: AxisConstants[N]
     azimuth: AxisConstants[N]
-    psi_min_rad: N
-    psi_max_rad: N
-    least_schedule_rad: N
-    zero: N
-    plausible_V: N
 
 
 def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawConstants[N]:
@@ -53,15 +40,10 @@ def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawCo
     or voltages beyond PLAUSIBLE_V (so beyond float32's range as well) within reach.
     """
     _refuse_unusable(table)
-    return LawConstants(
-        elevation=_axis_constants(table.elevation, table.sample_period_s, number),
-        azimuth=_axis_constants(table.azimuth, table.sample_period_s, number),
-        psi_min_rad=number(table.psi_min_rad),
-        psi_max_rad=number(table.psi_max_rad),
-        least_schedule_rad=number(LEAST_SCHEDULE_RAD),
-        zero=number(0.0),
-        plausible_V=number(PLAUSIBLE_V),
+    elevation, azimuth = (
+        _axis_constants(axis, table.sample_period_s, number) for axis in (table.elevation, table.azimuth)
     )
+    return LawConstants(elevation=elevation, azimuth=azimuth, **range_numbers(table, number))
 
 
 def _axis_constants(axis: AxisLaw, sample_period_s: float, number: Callable[[float], N]) -> AxisConstants[N]:
@@ -72,20 +54,8 @@ def _axis_constants(axis: AxisLaw, sample_period_s: float, number: Callable[[flo
         q_V_rad=tuple(numbers(polynomial) for polynomial in axis.q_V_rad),
         p=tuple(numbers(polynomial) for polynomial in axis.p),
         a=tuple(numbers((coefficient,)) for coefficient in axis.a),
-        feedforward_V=numbers(axis.feedforward_V),
-        prefilter_gain=None if axis.prefilter_time_constant_s == 0.0 else number(axis.prefilter_gain(sample_period_s)),
-        u_min_V=number(axis.u_min_V),
-        u_max_V=number(axis.u_max_V),
-        u_safe_V=number(axis.u_safe_V),
-        reference_min_rad=number(axis.reference_min_rad),
-        reference_max_rad=number(axis.reference_max_rad),
+        **frame_numbers(axis, sample_period_s, number),
     )
-
-
-def without_vanishing_powers(polynomial: Polynomial) -> Polynomial:
-    """The polynomial up to its highest coefficient that is not zero in float32."""
-    used = [index for index, coefficient in enumerate(polynomial) if np.float32(coefficient) != 0.0]
-    return polynomial[: used[-1] + 1] if used else ()
 
 
 def _refuse_unusable(table: ControllerTable) -> None:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from codegen.law_constants import without_vanishing_powers
+from codegen.law_frame import without_vanishing_powers
 from codegen.trace_literals import LEFT_OUT, LITERALS, Literal
 from records.errors import BadInput
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, subsystem
 from design.operating_points import equilibria, grid
-from design.schedule import fit
-from design.settings import AXES, DesignSettings
-from design.table import LIMITS, SENSORS
+from design.settings import DesignSettings
+from design.table import frame_entries
 from records.law_table import AxisTable, LawTable
 from sim.bind import BoundPlant
 from sim.effects.api import without_effects
@@ -48,22 +47,12 @@ def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
     return Points(seen, settings, psi_rad, points, tuple(linearise(seen, point) for point in points))
 
 
-def axis_table(points: Points, axis: str, gains: G, prefilter_time_constant_s: float) -> AxisTable[G]:
-    """A controller's `gains` in the frame: feed-forward of eq (28) fitted as the scheduled law's, limits and ranges of the plant."""
-    bound, settings, wishes = points.bound, points.settings, points.settings.axis(axis)
-    voltages_V = np.array([point.u0[AXES.index(axis)] for point in points.equilibria])
-    u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
-    return AxisTable(
-        gains=gains,
-        feedforward_V=fit(points.psi_rad, voltages_V, settings.feedforward_degree),
-        prefilter_time_constant_s=prefilter_time_constant_s,
-        u_min_V=u_min_V,
-        u_max_V=u_max_V,
-        u_safe_V=min(max(0.0, u_min_V), u_max_V),
-        reference_min_rad=wishes.reference_min_rad,
-        reference_max_rad=wishes.reference_max_rad,
-        resolution_rad=bound.plant.sensors[SENSORS[axis]],
-    )
+def axis_table(points: Points, axis: str, gains: G, prefilter_time_constant_s: float | None = None) -> AxisTable[G]:
+    """A controller's `gains` in the frame of the scheduled law's axis; its reference filter may be another than [design] wishes."""
+    entries = frame_entries(points.bound, points.settings, points.psi_rad, points.equilibria, axis)
+    if prefilter_time_constant_s is not None:
+        entries["prefilter_time_constant_s"] = prefilter_time_constant_s
+    return AxisTable(gains=gains, **entries)
 
 
 def law_table(controller: str, points: Points, axes: dict[str, AxisTable[G]], origin: dict[str, Any]) -> LawTable[G]:

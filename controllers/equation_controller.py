@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from codegen.law_frame import AxisEquations
 from codegen.twin import Float32Twin
 from controllers.controller import FloatLaw
 from controllers.designing import Points, points_of
 from controllers.exact import EquationLaw, EquationTwin
-from controllers.frame import AxisEquations
 from controllers.source import generate
 from design.settings import DesignSettings
 from records.law_table import LawTable, law_table_text

@@ -6,9 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from codegen.law_equations import LAST_ACCEPTED_FIELDS, LawInput, LawOutput, LawState, state_of_words
+from codegen.law_frame import (
+    LAST_ACCEPTED_FIELDS,
+    AxisEquations,
+    LawInput,
+    LawOutput,
+    LawState,
+    law_reset,
+    law_step,
+    state_of_words,
+)
 from codegen.twin import Float32Lanes, Float32Scalars, Float32Twin
-from controllers.frame import AxisEquations, law_reset, law_step, numbers_of
+from controllers.frame import numbers_of
 from records.law_table import LawTable
 
 

@@ -16,9 +16,10 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from codegen.law_frame import LawNumbers, Sample
 from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions, Sample
+from controllers.frame import AxisNumbers, Decisions
 from controllers.fuzzy_sets import (
     AZIMUTH,
     ELEVATION,
@@ -83,27 +84,32 @@ class Fuzzy:
     AxisState = FuzzyState
 
     def axis_rest(
-        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, reference_rad: N, angle_rad: N
+        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
     ) -> FuzzyState[N]:
         """The filters at the angle."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
         return FuzzyState(reference_rad, reference_rad, filtered_rad)
 
     def axis_step(
-        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, state: FuzzyState[Any], sample: Sample[Any]
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        state: FuzzyState[Any],
+        sample: Sample[Any],
     ) -> tuple[FuzzyState[N], N]:
         """(C.4) to (C.7), and the limits."""
         gains, angle_rad = axis.gains, sample.angle_rad
         error = arithmetic.saturate(
-            (state.reference_2_rad - angle_rad) * gains.degrees, -gains.input_max, gains.input_max, zero
+            (state.reference_2_rad - angle_rad) * gains.degrees, -gains.input_max, gains.input_max, law.zero
         )
         filtered_rad: Any = state.filtered_rad + gains.filter_gain * (angle_rad - state.filtered_rad)
-        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, zero)
+        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, law.zero)
         rate = arithmetic.saturate(
-            (filtered_rad - angle_rad) * gains.rate_scale, -gains.input_max, gains.input_max, zero
+            (filtered_rad - angle_rad) * gains.rate_scale, -gains.input_max, gains.input_max, law.zero
         )
-        strengths = self._strengths(gains, arithmetic, zero, (sample.region_rad * gains.degrees, rate, error))
-        v_V = gains.output_V * self._centroid(gains, arithmetic, zero, strengths)
+        strengths = self._strengths(gains, arithmetic, law.zero, (sample.region_rad * gains.degrees, rate, error))
+        v_V = gains.output_V * self._centroid(gains, arithmetic, law.zero, strengths)
         u_V = v_V + sample.u_ff_V
         limited_V = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
         return FuzzyState(state.reference_1_rad, state.reference_2_rad, filtered_rad), limited_V

@@ -23,10 +23,10 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
-from codegen.law_equations import polynomial
+from codegen.law_frame import LawNumbers, Sample, polynomial
 from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions, Sample
+from controllers.frame import AxisNumbers, Decisions
 from design.discretise import exponential_minus_identity
 from design.linearise import LinearPlant
 from design.schedule import fit
@@ -103,30 +103,40 @@ class Lqg:
     AxisState = LqgState
 
     def axis_rest(
-        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, reference_rad: N, angle_rad: N
+        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
     ) -> LqgState[N]:
         """The rotor still, the arm at rest, nothing missing."""
         limit_rad = axis.gains.angle_max_rad
         return LqgState(
-            reference_rad, reference_rad, zero, arithmetic.clamp(angle_rad, -limit_rad, limit_rad), zero, zero
+            reference_rad,
+            reference_rad,
+            law.zero,
+            arithmetic.clamp(angle_rad, -limit_rad, limit_rad),
+            law.zero,
+            law.zero,
         )
 
     def axis_step(
-        self, axis: AxisNumbers[Any], arithmetic: Decisions[Any], zero: Any, state: LqgState[Any], sample: Sample[Any]
+        self,
+        law: LawNumbers[Any],
+        axis: AxisNumbers[Any],
+        arithmetic: Decisions[Any],
+        state: LqgState[Any],
+        sample: Sample[Any],
     ) -> tuple[LqgState[Any], Any]:
         """(C.12), (C.13), the limits, (C.8) to (C.11)."""
         gains, psi_rad = axis.gains, sample.schedule_rad
 
         def at(coefficients: Any) -> Any:
-            return polynomial(coefficients, psi_rad, zero)
+            return polynomial(coefficients, psi_rad, law.zero)
 
         innovation_rad = sample.angle_rad - state.angle_rad
         x_rad = state.angle_rad + at(gains.l_x) * innovation_rad
         v_rad_s = state.rate_rad_s + at(gains.l_v) * innovation_rad
         d_V = state.missing_V + at(gains.l_d) * innovation_rad
-        d_V = arithmetic.saturate(d_V, -gains.missing_max_V, gains.missing_max_V, zero)
+        d_V = arithmetic.saturate(d_V, -gains.missing_max_V, gains.missing_max_V, law.zero)
 
-        m_V = arithmetic.saturate(state.rotor_V, axis.u_min_V, axis.u_max_V, zero)
+        m_V = arithmetic.saturate(state.rotor_V, axis.u_min_V, axis.u_max_V, law.zero)
         reference_rate_rad_s = (state.reference_1_rad - state.reference_2_rad) * gains.reference_rate
         feedback_V = (
             at(gains.k_m) * (m_V + d_V - sample.u_ff_V)
@@ -137,15 +147,15 @@ class Lqg:
         limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
 
         step_V = limited_V - m_V
-        p_V = m_V + d_V - polynomial(axis.feedforward_V, psi_rad, zero)
+        p_V = m_V + d_V - polynomial(axis.feedforward_V, psi_rad, law.zero)
         x_rad = x_rad + (at(gains.beta_p) * p_V + at(gains.beta_v) * v_rad_s + at(gains.beta_u) * step_V)
         v_rad_s = v_rad_s + (at(gains.gamma_p) * p_V + at(gains.gamma_v) * v_rad_s + at(gains.gamma_u) * step_V)
         remembered = LqgState(
             state.reference_1_rad,
             state.reference_2_rad,
             m_V + at(gains.alpha) * step_V,
-            arithmetic.saturate(x_rad, -gains.angle_max_rad, gains.angle_max_rad, zero),
-            arithmetic.saturate(v_rad_s, -gains.rate_max_rad_s, gains.rate_max_rad_s, zero),
+            arithmetic.saturate(x_rad, -gains.angle_max_rad, gains.angle_max_rad, law.zero),
+            arithmetic.saturate(v_rad_s, -gains.rate_max_rad_s, gains.rate_max_rad_s, law.zero),
             d_V,
         )
         return remembered, limited_V

@@ -13,9 +13,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from codegen.law_frame import LawNumbers, Sample
 from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
-from controllers.frame import AxisNumbers, Decisions, Sample
+from controllers.frame import AxisNumbers, Decisions
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
 from design.settings import AXES
 from design.table import LIMITS
@@ -55,37 +56,37 @@ class Pid:
     AxisState = PidState
 
     def axis_rest(
-        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, reference_rad: N, angle_rad: N
+        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
     ) -> PidState[N]:
         """The filters at the angle, nothing integrated."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
-        return PidState(reference_rad, reference_rad, filtered_rad, zero)
+        return PidState(reference_rad, reference_rad, filtered_rad, law.zero)
 
     def axis_step(
-        self, axis: AxisNumbers[N], arithmetic: Decisions[N], zero: N, state: PidState[Any], sample: Sample[Any]
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        state: PidState[Any],
+        sample: Sample[Any],
     ) -> tuple[PidState[N], N]:
         """(C.1), the limits, (C.2)."""
         gains, angle_rad = axis.gains, sample.angle_rad
         e_rad = state.reference_2_rad - angle_rad
         filtered_rad = state.filtered_rad + gains.filter_gain * (angle_rad - state.filtered_rad)
-        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, zero)
+        filtered_rad = arithmetic.saturate(filtered_rad, -gains.angle_max_rad, gains.angle_max_rad, law.zero)
         v_V = gains.k_p_V_rad * e_rad + state.integral_V - gains.k_d_Tf_V_rad * (angle_rad - filtered_rad)
         u_V = v_V + sample.u_ff_V
         limited_V: Any = arithmetic.saturate(u_V, axis.u_min_V, axis.u_max_V, axis.u_safe_V)
         integral_V = state.integral_V + gains.k_i_Ts_V_rad * e_rad + gains.tracking_gain * (limited_V - u_V)
-        integral_V = arithmetic.saturate(integral_V, -gains.i_max_V, gains.i_max_V, zero)
+        integral_V = arithmetic.saturate(integral_V, -gains.i_max_V, gains.i_max_V, law.zero)
         return PidState(state.reference_1_rad, state.reference_2_rad, filtered_rad, integral_V), limited_V
 
 
 def design(points: Points) -> LawTable[PidGains]:
     """Both axes tuned on the plant's operating points; raises BadInput where no gains hold the sensitivity."""
     tunings = {axis: tune(points.sampled(axis), axis) for axis in AXES}
-    axes = {
-        axis: axis_table(
-            points, axis, _gains(points, axis, tuning), points.settings.axis(axis).prefilter_time_constant_s
-        )
-        for axis, tuning in tunings.items()
-    }
+    axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
     origin = {
         axis: {**vars(tuning), "rule": RULE, "Ms_max": LARGEST_SENSITIVITY[axis]} for axis, tuning in tunings.items()
     }

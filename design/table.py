@@ -1,11 +1,12 @@
 """From a plant and wishes to a controller table and the report on it: the entry of the design stage."""
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from design.gate import check
 from design.operating_points import DesignPoints, design_points
@@ -17,6 +18,9 @@ from records.plant import plant_text
 from records.table import AxisLaw, ControllerTable
 from sim.bind import BoundPlant
 from sim.effects.api import linear_part, without_effects
+from sim.equilibrium import OperatingPoint
+
+Array = NDArray[np.float64]
 
 LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
 SENSORS = {"elevation": "psi_rad", "azimuth": "phi_rad"}
@@ -72,24 +76,33 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
 
 
 def _axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
-    wishes = settings.axis(axis)
     designs = [design.delta for design in points.axis(axis)]
     schedule = fit_schedule(points.psi_rad, designs, settings.coefficient_degree)
-    voltages_V = np.array([point.u0[AXES.index(axis)] for point in points.equilibria])
-    u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
     return AxisLaw(
         q_V_rad=schedule.q,
         p=schedule.p,
-        a=observer(wishes.observer_pole),
-        feedforward_V=fit(points.psi_rad, voltages_V, settings.feedforward_degree),
-        prefilter_time_constant_s=wishes.prefilter_time_constant_s,
-        u_min_V=u_min_V,
-        u_max_V=u_max_V,
-        u_safe_V=min(max(0.0, u_min_V), u_max_V),
-        reference_min_rad=wishes.reference_min_rad,
-        reference_max_rad=wishes.reference_max_rad,
-        resolution_rad=bound.plant.sensors[SENSORS[axis]],
+        a=observer(settings.axis(axis).observer_pole),
+        **frame_entries(bound, settings, points.psi_rad, points.equilibria, axis),
     )
+
+
+def frame_entries(
+    bound: BoundPlant, settings: DesignSettings, psi_rad: Array, equilibria: Sequence[OperatingPoint], axis: str
+) -> dict[str, Any]:
+    """What every controller's table states of an axis, by field: eq (28) fitted over psi_rad (points,), limits, ranges, encoder step."""
+    wishes = settings.axis(axis)
+    voltages_V = np.array([point.u0[AXES.index(axis)] for point in equilibria])
+    u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
+    return {
+        "feedforward_V": fit(psi_rad, voltages_V, settings.feedforward_degree),
+        "prefilter_time_constant_s": wishes.prefilter_time_constant_s,
+        "u_min_V": u_min_V,
+        "u_max_V": u_max_V,
+        "u_safe_V": min(max(0.0, u_min_V), u_max_V),
+        "reference_min_rad": wishes.reference_min_rad,
+        "reference_max_rad": wishes.reference_max_rad,
+        "resolution_rad": bound.plant.sensors[SENSORS[axis]],
+    }
 
 
 def observer(pole: float) -> tuple[float, float, float]:

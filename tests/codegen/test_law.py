@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from codegen.law import generate_law
-from codegen.law_constants import without_vanishing_powers
+from codegen.law_frame import without_vanishing_powers
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from records.errors import BadInput

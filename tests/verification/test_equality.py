@@ -9,8 +9,8 @@ import pytest
 from scipy.io import loadmat
 
 from codegen.law import generate_law
-from codegen.law_constants import without_vanishing_powers
 from codegen.law_equations import STATE_WORDS
+from codegen.law_frame import without_vanishing_powers
 from codegen.twin import Float32Twin
 from records.table import AxisLaw, ControllerTable
 from tests.law_tables import ce150_table, changed_axis, dense_table

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from codegen.law_constants import without_vanishing_powers
+from codegen.law_frame import without_vanishing_powers
 from codegen.self_test import self_test
 from records.table import AxisLaw, ControllerTable, Polynomial
 from verification.equality import BatchStepper
