@@ -14,12 +14,14 @@ from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
-STEPS = 10_000  # `twinlaw compare` steps a hundred thousand
-TRUTH_DEG = 4.0  # mean |error| that all of them hold on the hop: one step of 10 deg, one of 15 deg, in eight seconds
+STEPS = 100_000
+TARGET_STEPS = 2_000  # a second of the emulated board a row; `twinlaw compare` steps a hundred thousand on it
+# Mean |error| on the hop: one step of 10 deg, one of 15 deg, in eight seconds. The PID's one set of gains is slow at every elevation.
+TRUTH_DEG = dict.fromkeys(ROWS, 1.6) | {"pid": 3.0}
 
 
 @pytest.mark.parametrize("name", ROWS)
-def test_twin_and_host_are_equal_in_all_bits(name: str) -> None:
+def test_twin_and_host_are_equal_in_all_bits_of_a_hundred_thousand_steps(name: str) -> None:
     row, table = designed(name)
     twin, host = row.twin(table), HostLaw(row.generate(table))
     assert host.state_words == twin.state_words
@@ -34,7 +36,7 @@ def test_host_and_target_are_equal_and_the_board_names_the_table(name: str) -> N
     texts = row.generate(table)
     host = HostLaw(texts)
     target = TargetLaw(EmulatedBoard(build_firmware(texts).elf), state_words=host.state_words)
-    result = compare(host, target, standard_stimuli(table, 2_000, state_words=host.state_words))
+    result = compare(host, target, standard_stimuli(table, TARGET_STEPS, state_words=host.state_words))
     assert (result.equality.mismatches, result.first_mismatch) == (0, None)
     assert (host.self_test(), target.self_test()) == (0, 0)
     assert host.table_digest() == target.table_digest() == table.digest
@@ -67,13 +69,13 @@ def test_float_law_and_twin_fly_the_same_flight(name: str) -> None:
     row, table = designed(name)
     manoeuvre = hop(ce150())
     exact, single = (fly(ce150(), law, manoeuvre) for law in (row.float_law(table), row.twin(table)))
-    assert np.max(np.abs(exact.y - single.y)) < np.radians(1.0)  # a dozen encoder steps: loops that hunt part
-    assert np.degrees(np.mean(np.abs(manoeuvre.reference_rad - single.y))) < TRUTH_DEG
+    assert np.max(np.abs(exact.y - single.y)) < np.radians(0.3)  # a few encoder steps
+    assert np.degrees(np.mean(np.abs(manoeuvre.reference_rad - single.y))) < TRUTH_DEG[name]
 
 
 @pytest.mark.parametrize("name", ROWS)
 def test_a_flight_with_a_broken_state_comes_back_to_its_reference(name: str) -> None:
-    # Truth: whatever the 32-bit words of the state are at the start, the last two of twenty seconds are within 3 deg.
+    # Truth: whatever the 32-bit words of the state are at the start, the last two of twenty seconds are within 2 deg.
     row, table = designed(name)
     rng = np.random.default_rng(3)
     still = manoeuvre("still", hop(ce150()).x0, 20.0, 0.01, ((Leg(0.0, -10.0),), (Leg(0.0, 0.0),)))
@@ -82,7 +84,7 @@ def test_a_flight_with_a_broken_state_comes_back_to_its_reference(name: str) -> 
         law.wild = rng.integers(0, 2**32, (1, law.state_words), dtype=np.uint32)
         law.wild[:, :: kind + 1] = (0x7FC00000, 0x7F800000, 0xC61C4000)[kind]
         error_rad = (still.reference_rad - fly(ce150(), law, still).y)[-200:]
-        assert np.degrees(np.max(np.abs(error_rad))) < 3.0, kind
+        assert np.degrees(np.max(np.abs(error_rad))) < 2.0, kind
 
 
 class _BrokenLaw(HostLaw):
