@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 
-from controllers import fuzzy, lqg, pid, scheduled
+from controllers import fuzzy, instantaneous, lqg, pid, scheduled
 from controllers.controller import Controller
 
 CONTROLLERS: Mapping[str, Controller] = {
     row.name: row
     for row in (
         scheduled.CONTROLLER,
+        instantaneous.CONTROLLER,
         pid.CONTROLLER,
         fuzzy.CONTROLLER,
         lqg.CONTROLLER,

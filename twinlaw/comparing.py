@@ -9,6 +9,7 @@ import numpy as np
 
 from codegen.protocol_source import protocol_source
 from controllers.controller import Controller
+from controllers.instantaneous import CONTROLLER as INSTANTANEOUS
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
 from records.errors import VerificationFailed
@@ -20,6 +21,7 @@ from rig.image import build_firmware
 from rig.target_law import TargetLaw
 from sim.bind import BoundPlant
 from twinlaw.console import stage
+from verification.comparison.eq26 import FormError, form_errors
 from verification.comparison.flights import AXES, Flown, Trial, judge
 from verification.comparison.manoeuvres import FIGURES
 from verification.comparison.measures import Merit
@@ -102,6 +104,15 @@ def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Pat
     )
 
 
+def eq26_errors(bound: BoundPlant, names: Sequence[str]) -> Mapping[tuple[str, str], FormError]:
+    """Eq (26) in float32, the paper's form and the board's, by form and axis; nothing where the controller that solves it is left out."""
+    if INSTANTANEOUS.name not in names:
+        return {}
+    with stage("solving eq (26) in float32 over the whole range"):
+        settings = read_settings(bound)
+        return form_errors(bound, settings, INSTANTANEOUS.design(bound, settings))
+
+
 def demand_equal(rows: Sequence[Compared]) -> None:
     """Raise VerificationFailed naming every check that did not hold."""
     failures = [text for row in rows for text in row.failures]
@@ -109,7 +120,9 @@ def demand_equal(rows: Sequence[Compared]) -> None:
         raise VerificationFailed("; ".join(failures))
 
 
-def facts(bound: BoundPlant, rows: Sequence[Compared], wanted: Wanted) -> dict[str, Any]:
+def facts(
+    bound: BoundPlant, rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError]
+) -> dict[str, Any]:
     """compare.json for a program."""
     return {
         "schema": SCHEMA,
@@ -118,6 +131,7 @@ def facts(bound: BoundPlant, rows: Sequence[Compared], wanted: Wanted) -> dict[s
         "seed": wanted.trial.seed,
         "figures": {name: figure.title for name, figure in FIGURES.items()},
         "controllers": [_facts(row) for row in rows],
+        "eq26_float32": [{"form": form, "axis": axis, **asdict(error)} for (form, axis), error in eq26.items()],
     }
 
 

@@ -1,20 +1,23 @@
 """docs/controllers.md as text, from a comparison."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from twinlaw import comparison_tables as tables
 from twinlaw.comparing import Compared, Wanted, spread_of
+from verification.comparison.eq26 import ANGLES, FormError
 from verification.comparison.flights import AXES
 from verification.comparison.manoeuvres import FIGURES
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
-def page_text(rows: Sequence[Compared], wanted: Wanted, command: str, out: str) -> str:
+def page_text(
+    rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError], command: str, out: str
+) -> str:
     """The page; the same comparison gives the same bytes."""
     environment = Environment(
         loader=FileSystemLoader(_TEMPLATES), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -40,6 +43,8 @@ def page_text(rows: Sequence[Compared], wanted: Wanted, command: str, out: str) 
             }
             for name, figure in FIGURES.items()
         ],
+        eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
+        angles=ANGLES,
         runs=wanted.trial.runs,
         seed=wanted.trial.seed,
         spread=[(axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES],

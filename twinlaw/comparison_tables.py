@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from twinlaw.comparing import Compared, spread_of
 from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, stack
+from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
@@ -24,6 +25,7 @@ COST_HEADING: Row = (
 )
 MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
 SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
+EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
 COLOURS = (BLUE, RED, GREEN, ORANGE, SKY, "#CC79A7")
 DASHES = ("-", "--", "-.", (0, (5, 1)), (0, (3, 1, 1, 1)), ":")
 CYCLES_OF_A_SAMPLE = 640_000  # 10 ms at 64 MHz
@@ -49,6 +51,23 @@ def cost_rows(rows: Sequence[Compared]) -> list[Row]:
 def _equal(row: Compared) -> str:
     steps = min(entry.steps for entry in row.equality)
     return f"{sum(entry.mismatches for entry in row.equality)} of {steps} steps differ"
+
+
+EQ26_FORMS = {"plain": "seven equations in powers of z^-1", "closed": "as on the board"}
+
+
+def eq26_rows(errors: Mapping[tuple[str, str], FormError]) -> list[Row]:
+    """Largest relative errors of each form and axis, and where its slowest pole lies."""
+    return [
+        (
+            EQ26_FORMS[form],
+            axis,
+            f"{error.coefficients:.1e}",
+            f"{error.q_sum:.1e}",
+            f"{error.fastest_rad_s:+.4f} .. {error.slowest_rad_s:+.4f} rad/s",
+        )
+        for (form, axis), error in errors.items()
+    ]
 
 
 def figure_rows(rows: Sequence[Compared], figure: str, axis: str) -> list[Row]:

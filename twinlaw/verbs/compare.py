@@ -12,7 +12,7 @@ import shlex
 from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from twinlaw import comparison_tables, console, options
-from twinlaw.comparing import Wanted, compare_controller, demand_equal, facts
+from twinlaw.comparing import Wanted, compare_controller, demand_equal, eq26_errors, facts
 from twinlaw.comparison_page import page_text, verdict
 from twinlaw.stages import STEPS, load_bound
 from verification.comparison.conditions import EFFECTS
@@ -46,12 +46,13 @@ def run(chosen: argparse.Namespace) -> int:
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
     rows = [compare_controller(bound, name, wanted, chosen.out) for name in names]
-    content = facts(bound, rows, wanted)
+    eq26 = eq26_errors(bound, names)
+    content = facts(bound, rows, wanted, eq26)
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
     for name in FIGURES:
         write_atomic(chosen.out / f"controllers-{name}.svg", comparison_tables.figure_plot(rows, name))
     command = _command(chosen)
-    write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, command, str(chosen.out)))
+    write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, eq26, command, str(chosen.out)))
     if chosen.json:
         print(json.dumps(content))
     else:
