@@ -226,9 +226,11 @@ CONTROLLER = EquationController(
     source="seed 001, section 4, Figs. 7-11 and Tables I-VI",
     note=(
         "has the rules of Tables I-VI, max-min inference and the centroid. The paper's stored text has the figures' labels and "
-        "axes, not their curves: universes, output peaks, regions and rules are read from it; the widths of the error's sets "
-        "and the time of the derivative are ours, the best of some forty variants flown on the design plant: what fails below may be our "
-        "reading and not the paper's controller. Mended are rule 2 (positive error, positive "
+        "axes, not their curves: universes, output peaks, regions and rules are read from it. Open are the widths of the error's sets, the "
+        "time of the derivative and the volts of the output's unit. Two of them decide whether the elevation settles: PS has its peak at "
+        "1 deg, where rule 7 puts it (beyond +20 deg a peak at 5 deg answers more weakly than the arm falls), and N and P are one pair "
+        "over +-20 deg, so that rules 8 to 11 damp small errors as well; the rest is chosen by flying the design plant. There is no integrator: "
+        "a plant other than designed for leaves an error. Mended are rule 2 (positive error, positive "
         "output), the outputs' names, the missing set Bneg, the output that is 0 where hovering takes half of the range (it is "
         "added to the feed-forward) and the scale of the output's axis; `controllers/fuzzy_sets.py` names each. The reference "
         "is not filtered, as in the paper."

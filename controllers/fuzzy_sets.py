@@ -9,10 +9,17 @@ The paper's stored text has the figures' labels and axes, not their curves. Read
 - Regions of the referent elevation: their labels. N45-30 is from -45 to -30 deg.
 - Rules: Tables I-VI.
 
-Not in the text, so set here by flying the design plant: the peaks of PS, PM and PB, the slope of P (each mirrored for N), how
-far the regions overlap (2 deg), and the time of the derivative. Sets between two neighbours are triangles with their feet on
-the neighbours' peaks; the outermost have shoulders. ZE passes to PS and NS at half the peak of PS, where the text wants 0.5 deg
-(rule 7): so small a peak makes the loop hunt at the rotor's lag on this plant, as a volt then answers a degree.
+Not in the text, so set here, and why so:
+
+- PS of the elevation has its peak at 1 deg: ZE passes to PS and NS at half of it, and rule 7 calls an error below 0.5 deg zero. It
+  matters: beyond +20 deg Table V answers PS with P002, 0.1 V, while the voltage of rest falls by up to 0.037 V a degree (eq (28) at
+  +40 deg). With the peak at 5 deg the answer is weaker than that and the arm falls away from its reference, whatever else is chosen.
+- N and P of the elevation's error are one pair over the axis of Fig. 7b: P rises from -20 to 20 deg, N falls. They alone ask for the
+  derivative (rules 8 to 11), so that damping does not vanish with the error. (P rising from 0 leaves none there, and the loop hunts.)
+- The peaks of PM and PB, how far the regions overlap (2 deg), the time of the derivative and all of the azimuth's, which is no
+  unstable axis: by flying the design plant.
+
+Sets between two neighbours are triangles with their feet on the neighbours' peaks; the outermost have shoulders.
 
 Slips of the paper that are mended (numbers of facts/ce150.md, B4), and what it leaves open:
 
@@ -23,9 +30,9 @@ Slips of the paper that are mended (numbers of facts/ce150.md, B4), and what it 
 - 30: the output is 0 at zero error although hovering takes half of the range. It cannot be an increment: with error and
   derivative in, it would be an integral and a proportional part without damping, which this plant does not bear. It is added to
   the feed-forward.
-- 31: the outputs' axes say V and go to +-2 although inputs end at +-1 machine unit (Fig. 19b goes to 2 as well). The axis is
-  taken as the whole way of the input: +-5 V about the middle for u_M, +-10 V for u_T.
-- The derivative's axis says deg, not deg/s: a change of the error over a time that is not stated. It is 25 ms and 100 ms here.
+- 31: the outputs' axes say V and go to +-2 although inputs end at +-1 machine unit (Fig. 19b goes to 2 as well). The unit is taken as
+  5 V: half of u_M's way, about its middle, and half of u_T's on either side.
+- The derivative's axis says deg, not deg/s: a change of the error over a time that is not stated. It is 15 ms and 100 ms here.
 - Both rows of every table agree but in the columns N and P: rules 1 to 7 do not ask for the derivative, so they fire without
   it. Taken literally, no rule would fire at rest, where neither N nor P of the derivative does.
 """
@@ -33,7 +40,7 @@ Slips of the paper that are mended (numbers of facts/ce150.md, B4), and what it 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-FILTER_S = 0.02  # of the derivative: two samples; one encoder step in one sample reads 9 deg/s
+FILTER_S = 0.015  # of the derivative: one sample and a half; one encoder step in one sample reads 6 deg/s
 
 Trapezoid = tuple[float, float, float, float]
 FAR = 1e6  # the foot of a shoulder
@@ -61,13 +68,13 @@ class Wording:
     unit_V: float
 
 
-def error_sets(small: float, medium: float, big: float, all_of_it: float) -> dict[str, Trapezoid]:
-    """The nine sets of the error, mirrored at zero, from the peaks of PS, PM, PB and the angle from which P is 1 [deg]."""
+def error_sets(small: float, medium: float, big: float, some_of_it: float, all_of_it: float) -> dict[str, Trapezoid]:
+    """The nine sets of the error, mirrored at zero, from the peaks of PS, PM, PB and the angles where P leaves 0 and reaches 1 [deg]."""
     half = {
         "PS": (0.0, small, small, medium),
         "PM": (small, medium, medium, big),
         "PB": (medium, big, FAR, 2.0 * FAR),
-        "P": (0.0, all_of_it, FAR, 2.0 * FAR),
+        "P": (some_of_it, all_of_it, FAR, 2.0 * FAR),
     }
     mirrored = {f"N{name[1:]}": _mirrored(sides) for name, sides in half.items()}
     return {**mirrored, **half, "ZE": (-small, 0.0, 0.0, small)}
@@ -93,7 +100,7 @@ ELEVATION = Wording(
         "P10-20": (10.0 - OVERLAP_DEG, 10.0 + OVERLAP_DEG, 20.0 - OVERLAP_DEG, 20.0 + OVERLAP_DEG),
         "P20-45": (20.0 - OVERLAP_DEG, 20.0 + OVERLAP_DEG, FAR, 2.0 * FAR),
     },
-    error=error_sets(5.0, 15.0, 40.0, 20.0),
+    error=error_sets(1.0, 6.0, 20.0, -20.0, 20.0),
     rate=RATE,
     outputs={
         "Neg": -1.0, "N08": -0.8, "N05": -0.5, "N03": -0.3, "N01": -0.1, "N005": -0.05, "N002": -0.02, "0": 0.0,
@@ -121,13 +128,13 @@ ELEVATION = Wording(
             "P": _row("Poz N01 N005 N002 0 P002 P005 P01 Poz"),
         },
     },
-    rate_period_s=0.025,
-    unit_V=2.5,
+    rate_period_s=0.015,
+    unit_V=5.0,
 )  # fmt: skip
 
 AZIMUTH = Wording(
     regions={"N135-P135": (-2.0 * FAR, -FAR, FAR, 2.0 * FAR)},
-    error=error_sets(3.0, 10.0, 30.0, 10.0),
+    error=error_sets(3.0, 10.0, 30.0, 0.0, 10.0),
     rate=RATE,
     outputs={
         "Neg": -1.0, "N05": -0.5, "N03": -0.3, "N01": -0.1, "ZE": 0.0, "P01": 0.1, "P03": 0.3, "P05": 0.5, "Poz": 1.0,

@@ -7,7 +7,11 @@ from controllers.exact import Doubles
 from controllers.frame import numbers_of
 from controllers.fuzzy import Fuzzy
 from controllers.fuzzy_sets import AZIMUTH, ELEVATION, ERROR_LABELS, FAR, Wording
-from tests.controllers.rows import designed
+from sim.simulate import simulate
+from tests.controllers.rows import ce150, designed
+from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.measures import merit
+from verification.flown_law import FlownLaw
 
 WORDS = {"elevation": ELEVATION, "azimuth": AZIMUTH}
 
@@ -69,3 +73,25 @@ def test_a_big_positive_error_at_rest_asks_for_a_positive_voltage_and_its_mirror
     for error, sign in ((35.0, 1.0), (-35.0, -1.0)):
         strengths = Fuzzy()._strengths(gains, Doubles(), 0.0, (region, 0.0, error))
         assert sign * Fuzzy()._centroid(gains, Doubles(), 0.0, strengths) > 0.05
+
+
+@pytest.mark.parametrize("psi_deg", [-35.0, -25.0, 0.0, 15.0, 25.0, 40.0])
+def test_at_every_elevation_a_small_error_is_answered_more_strongly_than_the_arm_falls(psi_deg: float) -> None:
+    # Truth: the voltage of rest changes by du_M0/dPsi a radian; a weaker answer to an error of 1 deg cannot hold an unstable arm.
+    table = designed("fuzzy")[1].elevation
+    falls_V = -np.polynomial.Polynomial(table.feedforward_V).deriv()(np.radians(psi_deg)) * np.radians(1.0)
+    gains = numbers_of(designed("fuzzy")[1], float).elevation.gains
+    strengths = Fuzzy()._strengths(gains, Doubles(), 0.0, (psi_deg, 0.0, 1.0))
+    assert gains.output_V * Fuzzy()._centroid(gains, Doubles(), 0.0, strengths) > 1.5 * max(falls_V, 0.0)
+
+
+def test_the_elevation_settles_across_the_horizontal() -> None:
+    # Truth: the paper's own claim of errors of 0.5 to 1 deg, here within 4 s of each step from -30 to 30 deg (Fig. 13 of seed 000).
+    row, table = designed("fuzzy")
+    plan = FIGURES["fig-13"].manoeuvre(ce150(), 0.01)
+    law = FlownLaw(row.generate(table))
+    runs = simulate(ce150(), plan.t_s, plan.x0, law.controller(plan.t_s.size), reference=plan.reference_rad)
+    found = merit(plan.t_s, plan.reference_rad, runs.y, runs.u, 0)
+    assert found.settling_s is not None
+    assert found.settling_s < 4.0
+    assert np.degrees(found.steady_error_rad) < 0.5
