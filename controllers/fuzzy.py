@@ -229,7 +229,7 @@ CONTROLLER = EquationController(
         "axes, not their curves: universes, output peaks, regions and rules are read from it. Open are the widths of the error's sets, the "
         "time of the derivative and the volts of the output's unit. Two of them decide whether the elevation settles: PS has its peak at "
         "1 deg, where rule 7 puts it (beyond +20 deg a peak at 5 deg answers more weakly than the arm falls), and N and P are one pair "
-        "over +-20 deg, so that rules 8 to 11 damp small errors as well; the rest is chosen by flying the design plant. There is no integrator: "
+        "over +-20 deg, so that rules 8 to 11 damp small errors as well; the rest is chosen by flying the design plant. No integrator: "
         "a plant other than designed for leaves an error. Mended are rule 2 (positive error, positive "
         "output), the outputs' names, the missing set Bneg, the output that is 0 where hovering takes half of the range (it is "
         "added to the feed-forward) and the scale of the output's axis; `controllers/fuzzy_sets.py` names each. The reference "
