@@ -1,7 +1,8 @@
 """The stages behind `twinlaw compare`: each controller designed, generated, linked, verified on the board, and flown."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from rig.target_law import TargetLaw
 from sim.bind import BoundPlant
 from twinlaw.console import stage
 from verification.comparison.eq26 import FormError, form_errors
-from verification.comparison.flights import AXES, Flown, Trial, judge
+from verification.comparison.flights import AXES, Flown, Judged, Trial, judge
 from verification.comparison.manoeuvres import FIGURES
 from verification.comparison.measures import Merit
 from verification.equality import compare
@@ -31,6 +32,7 @@ from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
 SCHEMA = "comparison/1"
+JUDGED = tuple(field.name for field in fields(Judged))
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,7 @@ class Compared:
     figures: Mapping[str, Mapping[str, Merit]]
     spread: Sequence[Mapping[str, Merit]]
     effects: Mapping[str, Mapping[str, Merit]]
+    filters: Mapping[float, Sequence[Mapping[str, Merit]]]
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -98,10 +101,22 @@ def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Pat
         ram_bytes=image.sizes.ram_bytes,
     )
     with stage(f"{name}: flying the papers' manoeuvres, {wanted.trial.runs} spread plants, effects"):
-        judged = judge(bound, FlownLaw(texts), table.sample_period_s, wanted.trial)
-    return Compared(
-        row, table.digest, equality, mismatches, cost, judged.flights, judged.figures, judged.spread, judged.effects
-    )
+        judged = judge(
+            bound, FlownLaw(texts), partial(_filtered, bound, row, table), table.sample_period_s, wanted.trial
+        )
+    return Compared(row, table.digest, equality, mismatches, cost, **{name: getattr(judged, name) for name in JUDGED})
+
+
+def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> FlownLaw:
+    """The controller's law behind another reference filter, in shares of the plant file's time constants."""
+    settings = read_settings(bound)
+    changed = {
+        axis: replace(
+            getattr(table, axis), prefilter_time_constant_s=share * settings.axis(axis).prefilter_time_constant_s
+        )
+        for axis in AXES
+    }
+    return FlownLaw(row.generate(replace(table, **changed)))
 
 
 def eq26_errors(bound: BoundPlant, names: Sequence[str]) -> Mapping[tuple[str, str], FormError]:
@@ -147,10 +162,14 @@ def _facts(row: Compared) -> dict[str, Any]:
         "figures": {
             name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.figures.items()
         },
-        "spread": {axis: asdict(spread_of(row, axis)) for axis in AXES},
+        "spread": {axis: asdict(spread_of(row.spread, axis)) for axis in AXES},
         "effects": {
             name: {axis: asdict(merit) for axis, merit in merits.items()} for name, merits in row.effects.items()
         },
+        "filters": [
+            {"share": share, **{axis: asdict(spread_of(merits, axis)) for axis in AXES}}
+            for share, merits in row.filters.items()
+        ],
     }
 
 
@@ -167,9 +186,9 @@ class Spread:
     worst_swing_V: float
 
 
-def spread_of(row: Compared, axis: str) -> Spread:
-    """The spread flights of one controller and axis."""
-    merits = [entry[axis] for entry in row.spread]
+def spread_of(flown: Sequence[Mapping[str, Merit]], axis: str) -> Spread:
+    """The flights of one controller on spread plants, one axis."""
+    merits = [entry[axis] for entry in flown]
     times = [merit.settling_s for merit in merits if merit.settling_s is not None]
     return Spread(
         unsettled=len(merits) - len(times),

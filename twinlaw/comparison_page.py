@@ -9,9 +9,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from twinlaw import comparison_tables as tables
 from twinlaw.comparing import Compared, Wanted, spread_of
 from verification.comparison.eq26 import ANGLES, FormError
-from verification.comparison.flights import AXES
+from verification.comparison.flights import AXES, FILTERED
 from verification.comparison.manoeuvres import FIGURES
 
+OVERSHOOT = 0.05
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
@@ -48,6 +49,9 @@ def page_text(
         runs=wanted.trial.runs,
         seed=wanted.trial.seed,
         spread=[(axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES],
+        filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
+        filtered_verdict=filtered_verdict(rows),
+        filtered=min(FILTERED, wanted.trial.runs),
         effects=_markdown(*effects),
         verdict=verdict(rows),
     )
@@ -57,7 +61,7 @@ def verdict(rows: Sequence[Compared]) -> str:
     """Who leads on the spread plants, by axis and figure of merit, in one sentence."""
     parts = []
     for axis in AXES:
-        spread = {row.row.name: spread_of(row, axis) for row in rows}
+        spread = {row.row.name: spread_of(row.spread, axis) for row in rows}
         held = {name: found for name, found in spread.items() if not found.unsettled} or spread
         iae = min(held, key=lambda name: held[name].median_iae_rad_s)
         swing = min(held, key=lambda name: held[name].worst_swing_V)
@@ -73,6 +77,31 @@ def verdict(rows: Sequence[Compared]) -> str:
         + "; in the ".join(parts)
         + f". The cheapest step is `{cheapest.row.name}`'s, {cheapest.cost.cycles_max} cycles."
     )
+
+
+def filtered_verdict(rows: Sequence[Compared]) -> str:
+    """What each reaches behind the filter that suits it best: least median IAE among those with at most OVERSHOOT at worst."""
+    parts = []
+    for axis in AXES:
+        best = sorted((found, row.row.name) for row in rows if (found := _best_filter(row, axis)) is not None)
+        told = ", ".join(
+            f"`{name}` {math.degrees(iae):.0f} deg s ({tables.share(share)})" for (iae, share), name in best
+        )
+        parts.append(f"{axis}: {told or 'none'}")
+    return (
+        f"Each behind the filter of least IAE that overshoots by at most {100.0 * OVERSHOOT:.0f} %: {'; '.join(parts)}."
+    )
+
+
+def _best_filter(row: Compared, axis: str) -> tuple[float, float] | None:
+    """Least median IAE and its filter's share; None where every filter overshoots, or leaves a step unsettled."""
+    found = {share: spread_of(flown, axis) for share, flown in row.filters.items()}
+    held = [
+        (entry.median_iae_rad_s, share)
+        for share, entry in found.items()
+        if not entry.unsettled and entry.worst_overshoot <= OVERSHOOT
+    ]
+    return min(held, default=None)
 
 
 def _markdown(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -95,7 +95,7 @@ def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
     """One axis over the spread plants."""
     shown: list[Row] = []
     for row in rows:
-        found, runs = spread_of(row, axis), len(row.spread)
+        found, runs = spread_of(row.spread, axis), len(row.spread)
         shown.append(
             (
                 row.row.name,
@@ -108,6 +108,24 @@ def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
             )
         )
     return shown
+
+
+def filter_rows(rows: Sequence[Compared], axis: str) -> tuple[Row, list[Row]]:
+    """Heading and rows: per reference filter and controller, median IAE and the worst overshoot."""
+    heading = ("filter", *(row.row.name for row in rows))
+    shares = rows[0].filters if rows else ()
+    return heading, [(share(part), *(_tracked(row.filters[part], axis) for row in rows)) for part in shares]
+
+
+def share(part: float) -> str:
+    """A reference filter in words: its share of the plant file's time constant."""
+    return f"{100.0 * part:.0f} % of T" if part else "no filter"
+
+
+def _tracked(flown: Sequence[Mapping[str, Merit]], axis: str) -> str:
+    found = spread_of(flown, axis)
+    lost = f", {found.unsettled} unsettled" if found.unsettled else ""
+    return f"{math.degrees(found.median_iae_rad_s):.0f} deg s, {100.0 * found.worst_overshoot:.1f} %{lost}"
 
 
 def effect_rows(rows: Sequence[Compared]) -> tuple[Row, list[Row]]:

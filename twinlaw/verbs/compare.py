@@ -19,7 +19,7 @@ from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
 from verification.comparison.manoeuvres import FIGURES
 
-RUNS, SEED = 100, 1
+RUNS, SEED = 100, 2
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

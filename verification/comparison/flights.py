@@ -1,6 +1,6 @@
 """Every controller's generated C through every manoeuvre and condition, in the compiled loop."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,8 @@ from verification.flown_law import FlownLaw
 Array = NDArray[np.float64]
 AXES = ("elevation", "azimuth")
 SPREAD_FIGURE = "fig-23"  # both axes move: the manoeuvre of spread and effects
+FILTERS = (1.0, 0.75, 0.5, 0.25, 0.0)  # of the plant file's prefilter_time_constant_s; 0 is no filter
+FILTERED = 20  # spread plants that are flown with each
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +39,16 @@ class Flown:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """One controller: its flights through the figures, and merits by axis of the figures, of each spread plant, of each effect."""
+    """One controller: its flights through the figures, and merits by axis of the figures, of each spread plant, of each effect.
+
+    `filters` has those of the first FILTERED spread plants by the time constants of its reference filter, as shares of the plant file's.
+    """
 
     flights: Mapping[str, Flown]
     figures: Mapping[str, Mapping[str, Merit]]
     spread: Sequence[Mapping[str, Merit]]
     effects: Mapping[str, Mapping[str, Merit]]
+    filters: Mapping[float, Sequence[Mapping[str, Merit]]]
 
 
 @dataclass(frozen=True)
@@ -54,17 +60,30 @@ class Trial:
     effects: tuple[str, ...]
 
 
-def judge(bound: BoundPlant, law: FlownLaw, sample_period_s: float, trial: Trial) -> Judged:
-    """Fly one law through all figures, then that of SPREAD_FIGURE on every plant of the trial."""
+def judge(
+    bound: BoundPlant, law: FlownLaw, filtered: Callable[[float], FlownLaw], sample_period_s: float, trial: Trial
+) -> Judged:
+    """Fly one law through all figures, then that of SPREAD_FIGURE on every plant of the trial.
+
+    `filtered` gives the same law behind a reference filter of this share of the plant file's time constants.
+    """
     flights = {}
     for name, figure in FIGURES.items():
         flights[name] = _fly(bound, law, figure.manoeuvre(bound, sample_period_s))[0]
     both = FIGURES[SPREAD_FIGURE].manoeuvre(bound, sample_period_s)
-    spread_merits = [
-        _fly(bound, law, both, row[np.newaxis])[0].merits() for row in spread(bound, trial.runs, trial.seed)
-    ]
+    plants = spread(bound, trial.runs, trial.seed)
+
+    def merits_of(flown: FlownLaw, rows: Array) -> list[dict[str, Merit]]:
+        return [_fly(bound, flown, both, row[np.newaxis])[0].merits() for row in rows]
+
     effects = {name: _fly(with_effect(bound, name), law, both)[0].merits() for name in trial.effects}
-    return Judged(flights, {name: flown.merits() for name, flown in flights.items()}, spread_merits, effects)
+    return Judged(
+        flights=flights,
+        figures={name: flown.merits() for name, flown in flights.items()},
+        spread=merits_of(law, plants),
+        effects=effects,
+        filters={share: merits_of(filtered(share), plants[:FILTERED]) for share in FILTERS},
+    )
 
 
 def _fly(bound: BoundPlant, law: FlownLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
