@@ -43,7 +43,7 @@ typedef struct {
     receiver rx;
 } usart_state;
 
-typedef struct { uint32_t pr, rlr, winr; bool unlocked, running; uint64_t reload_ps, busy_until_ps; uint32_t busy; } iwdg_state;
+typedef struct { uint32_t pr, rlr, from, winr; bool unlocked, running; uint64_t reload_ps, busy_until_ps; uint32_t busy; } iwdg_state;
 
 /* The other end of the serial line, at its own bit length. */
 typedef struct { line *to_board, *to_host; inbox *inbox; receiver rx; uint64_t bit_ps; } host_side;

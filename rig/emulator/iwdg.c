@@ -11,7 +11,7 @@ enum { PVU = 1, RVU = 2, WVU = 4 };
 #define UPDATE_LSI_CYCLES 5u /* a register takes that long to reach the watchdog; SR shows it */
 
 void iwdg_reset(machine *m) {
-    m->device.iwdg = (iwdg_state){.rlr = 0xFFF, .winr = 0xFFF};
+    m->device.iwdg = (iwdg_state){.rlr = 0xFFF, .from = 0xFFF, .winr = 0xFFF};
     m->device.due[DEV_IWDG] = NEVER;
 }
 
@@ -19,7 +19,7 @@ static uint64_t count_ps(const iwdg_state *w) { return LSI_CYCLE_PS * (4ull << (
 
 void iwdg_reschedule(machine *m) {
     const iwdg_state *w = &m->device.iwdg;
-    if (w->running) schedule_ps(m, DEV_IWDG, w->reload_ps + (w->rlr + 1ull) * count_ps(w));
+    if (w->running) schedule_ps(m, DEV_IWDG, w->reload_ps + (w->from + 1ull) * count_ps(w));
 }
 
 void iwdg_bite(machine *m) {
@@ -32,9 +32,10 @@ static uint32_t busy(const machine *m) { return now_ps(m) < m->device.iwdg.busy_
 static void reload(machine *m) {
     iwdg_state *w = &m->device.iwdg;
     uint64_t counted = (now_ps(m) - w->reload_ps) / count_ps(w);
-    bool too_early = w->running && w->winr < w->rlr && counted < w->rlr - w->winr;
+    bool too_early = w->running && w->winr < w->from && counted < w->from - w->winr;
     if (too_early) return iwdg_bite(m);
     w->reload_ps = now_ps(m);
+    w->from = w->rlr; /* RLR counts from a feed on, not from when it is written (28.4.3) */
     iwdg_reschedule(m);
 }
 

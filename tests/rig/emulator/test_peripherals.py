@@ -321,6 +321,18 @@ def test_the_watchdog_bites_100_ms_after_the_last_feed_and_the_reset_names_it(fe
     assert board.resets[1].time_s == pytest.approx(feeding_s + 400 * 8 / LSI_HZ, rel=0.01)
 
 
+def test_a_shorter_watchdog_period_counts_from_the_next_feed_on() -> None:
+    """Truth: RM0444 28.4.3. At 50 ms the period becomes 10 ms; the feed after it is in time, and the bite comes 10 ms later."""
+    shorter = "REG(0x40003000) = 0x5555; REG(0x40003008) = 39; while (REG(0x4000300C)) {}"
+    source = WATCHDOG.replace(
+        "    REG(0x40003000) = 0xAAAA;\n    for (;;)", f"    {shorter}\n    REG(0x40003000) = 0xAAAA;\n    for (;;)"
+    )
+    assert shorter in source
+    board = powered("watchdog_shorter", source.replace("FEEDS", "1"), BoardConfig(stop_on_reset=True))
+    assert board.run_until_s(2.0).kind == StopKind.RESET
+    assert board.time_s == pytest.approx(200_000 * 4 / 16e6 + 40 * 8 / LSI_HZ, rel=0.01)
+
+
 def test_a_run_can_end_at_a_reset() -> None:
     board = powered("watchdog0", WATCHDOG.replace("FEEDS", "0"), BoardConfig(stop_on_reset=True))
     stop = board.run_until_s(2.0)
