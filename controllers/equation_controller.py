@@ -17,13 +17,18 @@ from sim.bind import BoundPlant
 
 @dataclass(frozen=True)
 class EquationController:
-    """A row of the table; `tables` designs at the operating points, `template` is its file in controllers/templates."""
+    """A row of the table.
+
+    `gains` is the record of one axis' own numbers, `tables` designs at the operating points, `template` is its file in
+    controllers/templates.
+    """
 
     name: str
     title: str
     source: str
     note: str
     equations: AxisEquations
+    gains: type
     tables: Callable[[Points], LawTable[Any]]
     template: str
 

@@ -236,6 +236,7 @@ CONTROLLER = EquationController(
         "is not filtered, as in the paper."
     ),
     equations=Fuzzy(),
+    gains=FuzzyGains,
     tables=design,
     template="fuzzy.c.j2",
 )

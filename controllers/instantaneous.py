@@ -214,6 +214,7 @@ CONTROLLER = EquationController(
         "survive float32; in powers of z - 1, eliminated from the lowest power up, it does ([theory.md](theory.md), section 8)."
     ),
     equations=EQUATIONS,
+    gains=InstantaneousGains,
     tables=design,
     template="instantaneous.c.j2",
 )

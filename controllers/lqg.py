@@ -269,6 +269,7 @@ CONTROLLER = EquationController(
         "voltage than the scheduled law's."
     ),
     equations=Lqg(),
+    gains=LqgGains,
     tables=design,
     template="lqg.c.j2",
 )

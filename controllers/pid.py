@@ -121,6 +121,7 @@ CONTROLLER = EquationController(
         "as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without it."
     ),
     equations=Pid(),
+    gains=PidGains,
     tables=design,
     template="pid.c.j2",
 )

@@ -4,6 +4,7 @@ import struct
 from typing import Protocol
 
 from codegen.fixed_formats import law_formats, value_of, word_of
+from records.law_table import FlownTable
 from records.table import ControllerTable
 
 
@@ -57,9 +58,9 @@ class FixedNumbers:
         return value_of(word - 2**32 if word >= 2**31 else word, self._places[unit])
 
 
-def numbers_of(table: ControllerTable, arithmetic: str) -> Numbers:
-    """How the law of `table` in this arithmetic writes its numbers."""
-    if arithmetic == "float32":
+def numbers_of(table: FlownTable, arithmetic: str) -> Numbers:
+    """How the law of `table` in this arithmetic writes its numbers; fixed point is the scheduled law's alone."""
+    if arithmetic == "float32" or not isinstance(table, ControllerTable):
         return Float32Numbers()
     formats = law_formats(table)
     return FixedNumbers(formats.angle_places, formats.voltage_places)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from codegen.fixed_twin import FixedTwin
 from codegen.law import ARITHMETIC_CODES
@@ -31,7 +31,7 @@ class Arithmetic:
 
     twin: Callable[[ControllerTable], BatchStepper]
     stimuli: Callable[[ControllerTable, int], Sequence[Stimulus]]
-    sequences: Callable[[ControllerTable, int], Sequence[Stimulus]]
+    sequences: Callable[[Any, int], Sequence[Stimulus]]  # float32 takes any table
     bound: Bound
 
 

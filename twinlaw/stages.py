@@ -3,16 +3,20 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
+from controllers import loading
+from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
 from design.table import design, report_on
 from records.errors import BadInput, VerificationFailed
 from records.files import write_atomic
+from records.law_table import FlownTable, LawTable
 from records.log import RunLog, load_log, plant_of_log
 from records.plant import load_plant
 from records.protocol import PROTOCOL
@@ -37,6 +41,7 @@ from sim.tracking import Tracking, tracking
 from twinlaw.arithmetics import ARITHMETICS, BY_NAME
 from twinlaw.console import stage
 from verification.equality import BatchStepper, compare
+from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
 from verification.ranges import Motion
 from verification.replay import Replay, replay_of, replayed_equality
@@ -45,6 +50,15 @@ from verification.static_bound import kept_bound
 from verification.stimuli import Stimulus
 
 STEPS = 100_000
+
+
+def design_other(plant: Path, name: str) -> LawTable[Any]:
+    """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
+    row = CONTROLLERS[name]
+    with stage(f"designing {row.title}"):
+        bound = load_bound(plant)
+        table: LawTable[Any] = row.design(bound, read_settings(bound))
+    return table
 
 
 @dataclass(frozen=True)
@@ -75,10 +89,10 @@ def design_controller(plant: Path) -> Designed:
     return Designed(bound, table, report)
 
 
-def generate_sources(table: ControllerTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
+def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
     """Generate law and protocol and write them to `folder`; returns the law's texts by file name."""
     with stage("generating C"):
-        law = generate_law(table, arithmetic)
+        law = loading.generate(table, arithmetic)
         for name, text in {**law, **protocol_source(PROTOCOL)}.items():
             write_atomic(folder / name, text)
     return law
@@ -199,13 +213,13 @@ def board_url(port: str, elf: Path) -> str:
     return f"emulated://{elf.resolve()}"
 
 
-def validate_board(table: ControllerTable, url: str, steps: int, arithmetic: str = "float32") -> Validation:
+def validate_board(table: FlownTable, url: str, steps: int, arithmetic: str = "float32") -> Validation:
     """Identity, self-test and `steps` replayed steps of the board at `url` against the host's C; raises BadInput for another table."""
+    host = HostLaw(loading.generate(table, arithmetic), arithmetic)
     numbers = numbers_of(table, arithmetic)
     with BoardClient.connect(url, table_digest=table.digest, numbers=numbers) as client:
         law = LineLaw(client)
         mismatches = client.self_test()
-        host = HostLaw(generate_law(table, arithmetic), arithmetic)
         equality = _equal(Stateless(host), law, BY_NAME[arithmetic].sequences(table, steps))
         counters = client.counters()  # before the host falls silent on purpose
         with stage("measuring round trips and ticks"):
@@ -222,7 +236,7 @@ def validate_board(table: ControllerTable, url: str, steps: int, arithmetic: str
         )
 
 
-def fly_board(bound: BoundPlant, table: ControllerTable, url: str, arithmetic: str = "float32") -> Flight:
+def fly_board(bound: BoundPlant, table: FlownTable, url: str, arithmetic: str = "float32") -> Flight:
     """Fly the plant with the board at `url` in the loop, angles to the board and voltages back, one frame each per sample."""
     with (
         BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client,
@@ -234,26 +248,33 @@ def fly_board(bound: BoundPlant, table: ControllerTable, url: str, arithmetic: s
     return Flight(log, _tracking(log), counters)
 
 
-def fly_double(bound: BoundPlant, table: ControllerTable) -> Flight:
+def fly_double(bound: BoundPlant, table: FlownTable) -> Flight:
     """Fly the plant under the table's law in double precision."""
+    whole = flight(bound, table.sample_period_s)
     with stage("flying the law in double precision"):
-        log = fly_law(bound, table, flight(bound, table.sample_period_s))
+        if isinstance(table, ControllerTable):
+            log = fly_law(bound, table, whole)
+        else:
+            log = fly(bound, loading.row_of(table).float_law(table), whole, table_digest=table.digest)
     return Flight(log, _tracking(log), {})
 
 
-def fly_host(bound: BoundPlant, table: ControllerTable, arithmetic: str) -> Flight:
+def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> Flight:
     """Fly the plant under the table's generated law, compiled for this computer."""
-    law = HostLaw(generate_law(table, arithmetic), arithmetic)
+    law = HostLaw(loading.generate(table, arithmetic), arithmetic)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
     return Flight(log, _tracking(log), {})
 
 
-def halved_step(bound: BoundPlant, table: ControllerTable) -> StepError:
+def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
     """The step-halving check of that flight: how large the error of one integration step a sample is."""
     with stage("flying it with steps of half the length"):
         whole = flight(bound, table.sample_period_s)
-        return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
+        if isinstance(table, ControllerTable):
+            return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
+        law = FlownLaw(loading.generate(table, "float32"))  # must outlive the flights
+        return step_error(bound, whole.t_s, whole.x0, law.controller(whole.t_s.size), reference=whole.reference_rad)
 
 
 def _tracking(log: RunLog) -> tuple[Tracking, ...]:

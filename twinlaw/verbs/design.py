@@ -1,26 +1,36 @@
 """Design the controller of a plant at its operating points, fit it, judge it, and write the table.
 
 Writes DIR/controller.json. Refuses (exit 2) a table that is unstable or below its margins anywhere in the range.
+--controller chooses another controller of docs/controllers.md; `build`, `flash`, `validate`, `watch` and `simulate` take its table as well.
 """
 
 import argparse
 import json
 
+from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from records.table import table_text
 from twinlaw import console, options, summary
-from twinlaw.stages import design_controller
+from twinlaw.stages import design_controller, design_other
+
+SCHEDULED = "scheduled"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --out, --json."""
+    """--plant, --controller, --out, --json."""
     options.plant(parser)
+    parser.add_argument(
+        "--controller", choices=tuple(CONTROLLERS), default=SCHEDULED, metavar="NAME",
+        help=f"one of {', '.join(CONTROLLERS)}; default: %(default)s",
+    )  # fmt: skip
     options.out(parser)
     options.as_json(parser)
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Design, write and tell."""
+    if chosen.controller != SCHEDULED:
+        return _other(chosen)
     designed = design_controller(chosen.plant)
     path = chosen.out / "controller.json"
     write_atomic(path, table_text(designed.table))
@@ -33,4 +43,16 @@ def run(chosen: argparse.Namespace) -> int:
     else:
         print(console.table(summary.design_rows(designed.report), summary.DESIGN_HEADING))
         print(f"\n{path}  digest {designed.table.digest[:16]}")
+    return 0
+
+
+def _other(chosen: argparse.Namespace) -> int:
+    """The same for a controller that is not scheduled pole placement."""
+    row, table = CONTROLLERS[chosen.controller], design_other(chosen.plant, chosen.controller)
+    path = chosen.out / "controller.json"
+    write_atomic(path, row.text(table))
+    if chosen.json:
+        print(json.dumps({"table": str(path), "table_digest": table.digest, "controller": row.name}))
+    else:
+        print(f"{row.title}, {row.source}\n\n{path}  digest {table.digest[:16]}")
     return 0

@@ -6,7 +6,7 @@ Writes DIR/generated/*.c and *.h; the same table gives the same bytes.
 import argparse
 import json
 
-from records.table import load_table
+from controllers import loading
 from twinlaw import options
 from twinlaw.stages import generate_sources
 
@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Generate, write and name the files."""
-    table = load_table(chosen.table)
+    table = loading.load(chosen.table)[1]
     folder = chosen.out / "generated"
     texts = generate_sources(table, chosen.arithmetic, folder)
     if chosen.json:

@@ -8,8 +8,9 @@ import argparse
 import json
 from pathlib import Path
 
+from controllers import loading
+from records.law_table import FlownTable
 from records.log import save_log
-from records.table import load_table
 from twinlaw import console, options, summary
 from twinlaw.arithmetics import ARITHMETICS
 from twinlaw.stages import design_controller, fly_double, fly_host, halved_step, load_bound
@@ -26,11 +27,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Fly, write the log, and tell how well the references were followed and how exactly the equations were solved."""
+    table: FlownTable
     if chosen.table is None:
         designed = design_controller(chosen.plant)
         bound, table = designed.bound, designed.table
     else:
-        bound, table = load_bound(chosen.plant), load_table(chosen.table)
+        bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
     generated = chosen.arithmetic in ARITHMETICS
     flight = fly_host(bound, table, chosen.arithmetic) if generated else fly_double(bound, table)
     error_rad = dict(zip(bound.model.outputs, halved_step(bound, table).estimate.tolist(), strict=True))

@@ -9,8 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from codegen.trace import Trace, names, trace
+from controllers.loading import load_scheduled
 from design.settings import read_settings
-from records.table import load_table
 from twinlaw import console, options
 from twinlaw.stages import load_bound
 
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """List, or trace one."""
-    table = load_table(chosen.table)
+    table = load_scheduled(chosen.table, "constants that go back to operating points and fits")
     if chosen.name is None:
         known = names(table, chosen.arithmetic)
         rows = [(constant.name, f"{constant.value:.9g}", constant.unit, constant.made_as) for constant in known]

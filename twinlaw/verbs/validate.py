@@ -7,10 +7,10 @@ Exit status 1 when a check does not hold.
 
 import argparse
 
+from controllers import loading
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.log import save_log
-from records.table import load_table
 from records.validation import validation_text
 from twinlaw import console, options, summary
 from twinlaw.stages import board_url, fly_board, load_bound, validate_board
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Ask, replay, fly, write, and fail where a check does not hold."""
-    bound, table = load_bound(chosen.plant), load_table(chosen.table)
+    bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
     url = board_url(chosen.port, chosen.out / "firmware.elf")
     validation = validate_board(table, url, chosen.steps, chosen.arithmetic)
     text = validation_text(validation)

@@ -9,9 +9,9 @@ import argparse
 from pathlib import Path
 
 from codegen.protocol_source import protocol_source
+from controllers.loading import load_scheduled
 from records.files import write_atomic
 from records.protocol import PROTOCOL
-from records.table import load_table
 from records.verification import verification_text
 from twinlaw import console, options, summary
 from twinlaw.proving import with_proofs
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
-    table = load_table(chosen.table)
+    table = load_scheduled(chosen.table, "bounds, poles and proofs")
     recorded = [recorded_replay(path, table, chosen.arithmetic) for path in chosen.log]
     bound = load_bound(chosen.plant)
     poles = table_poles(bound, table)

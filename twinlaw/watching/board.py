@@ -9,9 +9,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.law_table import FlownTable
 from records.live import LiveRow
 from records.protocol import PROTOCOL
-from records.table import ControllerTable
 from rig.live import LiveFlight
 from rig.replies import Health
 from twinlaw.watching.source import DEG, Step
@@ -26,7 +26,7 @@ class BoardSource:
     def __init__(
         self,
         flight: LiveFlight,
-        table: ControllerTable,
+        table: FlownTable,
         manoeuvre_rad: NDArray[Any],
         facts: Mapping[str, Any],
         close: Callable[[], None],

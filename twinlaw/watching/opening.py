@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from controllers import loading
 from records.errors import BadInput
+from records.law_table import FlownTable
 from records.log import load_log
-from records.table import ControllerTable, load_table
 from rig.client import DEFAULT_TIMEOUT_S, BoardClient
 from rig.emulator.serial_port import EmulatedSerial
 from rig.live import LiveFlight, LoopFlight, time_of
@@ -53,7 +54,7 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
 
 
 def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
-    table = load_table(asked.table)
+    table = loading.load(asked.table)[1]
     if table.plant != bound.plant.name:
         got = f"a table for {table.plant!r}"
         raise BadInput("controller table", str(asked.table), got, f"one for {bound.plant.name!r}", "give its --plant")
@@ -74,7 +75,7 @@ def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
     return BoardSource(flying, table, manoeuvre.reference_rad, told, client.close)
 
 
-def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: ControllerTable) -> LiveFlight:
+def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: FlownTable) -> LiveFlight:
     if not fly:
         return LoopFlight(client, plant, time_of(port), table.sample_period_s)
     steps = (table.elevation.resolution_rad, table.azimuth.resolution_rad)

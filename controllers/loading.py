@@ -1,0 +1,113 @@
+"""A controller's table back from its file, whichever controller it is of."""
+
+import types
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any, get_args, get_origin, get_type_hints
+
+from codegen.law import generate_law
+from controllers.controller import Controller
+from controllers.equation_controller import EquationController
+from controllers.table import CONTROLLERS
+from records import checks
+from records.errors import BadInput
+from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
+from records.reading import read_json
+from records.table import ControllerTable, parse_table
+
+_AGAIN = "design it again with `twinlaw design`"
+
+
+def load(path: Path) -> tuple[Controller, Any]:
+    """The row of CONTROLLERS and its table; raises BadInput when the file is truncated, foreign, or does not match its own digest."""
+    content = checks.table(read_json(path, "controller table", "run `twinlaw design`", _AGAIN), str(path))
+    if content.get("schema") != SCHEMA:
+        return CONTROLLERS["scheduled"], parse_table(content, str(path))
+    row = CONTROLLERS.get(str(content.get("controller")))
+    if not isinstance(row, EquationController):
+        got, known = repr(content.get("controller")), ", ".join(CONTROLLERS)
+        raise BadInput("controller", str(path), got, f"one of {known}", _AGAIN)
+    return row, _parse(content, row, str(path))
+
+
+def row_of(table: FlownTable) -> Controller:
+    """The row of CONTROLLERS that a table is of."""
+    return CONTROLLERS[table.controller if isinstance(table, LawTable) else "scheduled"]
+
+
+def generate(table: FlownTable, arithmetic: str) -> Mapping[str, str]:
+    """C texts of any table; raises BadInput for an arithmetic that its controller does not have."""
+    if isinstance(table, ControllerTable):
+        return generate_law(table, arithmetic)
+    row = row_of(table)
+    if arithmetic != "float32":
+        remedy = "leave --arithmetic out: the scheduled law alone has another"
+        raise BadInput("arithmetic", f"controller {row.name!r}", arithmetic, "float32", remedy)
+    return row.generate(table)
+
+
+def load_scheduled(path: Path, use: str) -> ControllerTable:
+    """The scheduled law's table, for what only it has: `use` says what; raises BadInput for another controller's."""
+    row, table = load(path)
+    if not isinstance(table, ControllerTable):
+        remedy = "give a table of `twinlaw design`; other controllers are checked by `twinlaw validate` and `twinlaw compare`"
+        raise BadInput(
+            "controller table", str(path), f"one of the controller {row.name!r}", f"the scheduled law's: {use}", remedy
+        )
+    return table
+
+
+def _parse(content: Mapping[str, Any], row: EquationController, where: str) -> LawTable[Any]:
+    checks.keys(content, where, ("schema", "digest", *(field.name for field in fields(LawTable))))
+    axes = {name: _axis(content[name], row, f"{where}: {name}") for name in ("elevation", "azimuth")}
+    table: LawTable[Any] = LawTable(
+        controller=row.name,
+        plant=checks.text(content["plant"], f"{where}: plant"),
+        sample_period_s=checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
+        psi_min_rad=checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
+        psi_max_rad=checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+        origin=checks.table(content["origin"], f"{where}: origin"),
+        **axes,
+    )
+    if table.digest != content["digest"]:
+        got, expected = str(content["digest"])[:16], table.digest[:16]
+        raise BadInput("digest", where, got, expected, "the table was changed by hand: design it again")
+    return table
+
+
+def _axis(entry: Any, row: EquationController, where: str) -> AxisTable[Any]:
+    section = checks.table(entry, where)
+    names = [field.name for field in fields(AxisTable)]
+    checks.keys(section, where, names)
+    scalars = {name: checks.number(section[name], f"{where}.{name}") for name in names[2:]}
+    feedforward_V = checks.numbers(section["feedforward_V"], f"{where}.feedforward_V")
+    return AxisTable(
+        gains=_value(section["gains"], row.gains, f"{where}.gains"), feedforward_V=feedforward_V, **scalars
+    )
+
+
+def _value(entry: Any, kind: Any, where: str) -> Any:
+    """A value of the declared kind: a record, a tuple of whatever depth, a whole number, a number."""
+    if isinstance(kind, type) and is_dataclass(kind) and not isinstance(kind, types.GenericAlias):
+        section, hints = checks.table(entry, where), get_type_hints(kind)
+        checks.keys(section, where, tuple(hints))
+        return kind(**{name: _value(section[name], hint, f"{where}.{name}") for name, hint in hints.items()})
+    if get_origin(kind) is tuple:
+        return _tuple(entry, get_args(kind), where)
+    if kind is int:
+        number = checks.number(entry, where)
+        if number != int(number):
+            raise BadInput("number", where, repr(entry)[:60], "a whole number", _AGAIN)
+        return int(number)
+    return checks.number(entry, where)
+
+
+def _tuple(entry: Any, kinds: tuple[Any, ...], where: str) -> tuple[Any, ...]:
+    endless = kinds[-1] is Ellipsis
+    if not isinstance(entry, list) or not (endless or len(entry) == len(kinds)):
+        raise BadInput("list", where, repr(entry)[:60], "a list" if endless else f"{len(kinds)} values", _AGAIN)
+    each = [kinds[0]] * len(entry) if endless else list(kinds)
+    return tuple(
+        _value(value, kind, f"{where}[{index}]") for index, (value, kind) in enumerate(zip(entry, each, strict=True))
+    )
