@@ -5,7 +5,9 @@ from pathlib import Path
 
 from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
 from records.errors import BadInput
+from records.law_table import SCHEMA
 from records.log import RunLog
+from records.reading import read_json
 from records.table import ControllerTable, load_table
 
 TABLE_NAME = "controller.json"
@@ -33,7 +35,20 @@ def replay_log(log: RunLog, path: Path, tables: Sequence[ControllerTable] = ()) 
             "give the table that flew, or a log of this table",
         )
     sentence = f"table {log.table_digest[:16]}, which the log names, is not beside it as {TABLE_NAME}"
+    other = _other_controller(path, log.table_digest)
+    if other is not None:
+        sentence = f"the log was flown by the controller {other!r}; the scheduled law's firmware alone is run again"
     return FirmwareReplay(False, False, None, TABLE_NOT_FOUND, sentence)
+
+
+def _other_controller(path: Path, digest: str) -> str | None:
+    """The controller of the table of this digest beside the log, where it is not the scheduled law's."""
+    try:
+        content = read_json(path.with_name(TABLE_NAME), "controller table", "", "")
+    except BadInput:
+        return None
+    known = isinstance(content, dict) and content.get("schema") == SCHEMA and content.get("digest") == digest
+    return str(content.get("controller")) if known else None
 
 
 def table_of(log: RunLog, path: Path) -> ControllerTable | None:

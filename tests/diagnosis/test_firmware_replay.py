@@ -18,6 +18,7 @@ from records.files import write_atomic
 from records.table import ControllerTable, table_text
 from sim.loop import Controller, fly
 from sim.manoeuvres import flight
+from tests.controllers.rows import designed
 from tests.diagnosis.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
 from tests.law_tables import ce150_table, changed_axis, dense_table
 from toolchain.host import STRICT_FLOAT_FLAGS
@@ -254,6 +255,16 @@ def test_a_log_of_another_table_is_refused_and_a_table_is_found_beside_the_log(t
     assert found is not None
     assert found.bit_exact
     assert replay_log(replace(log, table_digest=None), path) is None
+
+
+def test_a_log_that_another_controller_flew_says_whose_table_lies_beside_it(tmp_path: Path) -> None:
+    row, table = designed("fuzzy")
+    write_atomic(tmp_path / "controller.json", row.text(table))
+    log = replace(flown(host_law(TABLE)), table_digest=table.digest)
+    found = replay_log(log, tmp_path / "run.csv")
+    assert found is not None
+    assert not found.replayed
+    assert "'fuzzy'" in found.sentence
 
 
 def test_a_log_without_references_is_not_replayed() -> None:
