@@ -1,6 +1,7 @@
 """The stages of the chain as the verbs call them: each takes records, leaves its files, and hands on records."""
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -52,15 +53,6 @@ from verification.stimuli import Stimulus
 STEPS = 100_000
 
 
-def design_other(plant: Path, name: str) -> LawTable[Any]:
-    """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
-    row = CONTROLLERS[name]
-    with stage(f"designing {row.title}"):
-        bound = load_bound(plant)
-        table: LawTable[Any] = row.design(bound, read_settings(bound))
-    return table
-
-
 @dataclass(frozen=True)
 class Designed:
     """A plant with the controller that was designed for it and the report on it."""
@@ -77,16 +69,31 @@ def load_bound(path: Path) -> BoundPlant:
 
 def design_controller(plant: Path) -> Designed:
     """Design at all operating points, fit, and judge; raises BadInput for a plant or a table that cannot be used."""
-    with stage("designing at the operating points, fitting, judging"):
+    with stage("designing at the operating points, fitting, judging"), _computable(plant):
         bound = load_bound(plant)
-        try:
-            with np.errstate(over="raise", invalid="raise", divide="raise"):
-                table, report = design(bound, read_settings(bound))
-        except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
-            got = f"numbers that cannot be computed with ({error})"
-            remedy = "look for a wrong power of ten among the parameters"
-            raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
+        table, report = design(bound, read_settings(bound))
     return Designed(bound, table, report)
+
+
+def design_other(plant: Path, name: str) -> LawTable[Any]:
+    """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
+    row = CONTROLLERS[name]
+    with stage(f"designing {row.title}"), _computable(plant):
+        bound = load_bound(plant)
+        table: LawTable[Any] = row.design(bound, read_settings(bound))
+    return table
+
+
+@contextlib.contextmanager
+def _computable(plant: Path) -> Iterator[None]:
+    """Raise BadInput naming the plant where its numbers overflow, or leave nothing to solve."""
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            yield
+    except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
+        got = f"numbers that cannot be computed with ({error})"
+        remedy = "look for a wrong power of ten among the parameters"
+        raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
 
 
 def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
