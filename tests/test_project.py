@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 PACKAGES = (
     "records",
+    "jobs",
     "toolchain",
     "sim",
     "recordings",

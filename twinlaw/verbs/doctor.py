@@ -24,6 +24,7 @@ EXTRAS: Mapping[str, str] = {
     "test": "make test",
     "docs": "make docs",
     "mdf4": "import: logs in MDF4",
+    "cluster": "--cluster: sweeps on Dask",
     "proofs": "verify --proofs",
 }
 PROGRAMS: Mapping[str, tuple[str, str]] = {

@@ -1,0 +1,94 @@
+"""Who does the jobs: processes of this computer, or the workers of a Dask cluster; either is an executor of `concurrent.futures`."""
+
+import multiprocessing
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+
+from jobs.code import code_digest
+from jobs.threads import cores, one_thread_each
+from jobs.work import settle_in
+from records.errors import BadInput
+
+PATIENCE_S = 10.0  # for a cluster to answer
+
+
+@dataclass(frozen=True)
+class Hands:
+    """An open executor and how many jobs it does at once."""
+
+    executor: Executor
+    width: int
+
+
+Crew = Callable[[], AbstractContextManager[Hands]]  # opened once, and once more where a process of it has died
+
+
+def processes(workers: int | None = None) -> Crew:
+    """So many processes of this computer, one a processor where `workers` is None; one also where there is but one."""
+
+    @contextmanager
+    def opened() -> Iterator[Hands]:
+        width = workers or cores()
+        others = set(multiprocessing.active_children())
+        # Spawned, not forked: a fork of a process with threads may stand still, and every worker begins alike.
+        context = multiprocessing.get_context("spawn")
+        with one_thread_each():
+            executor = ProcessPoolExecutor(width, mp_context=context, initializer=settle_in)
+            finished = False
+            try:
+                yield Hands(executor, width)
+                finished = True
+            finally:
+                if not finished:
+                    for child in set(multiprocessing.active_children()) - others:
+                        child.terminate()
+                executor.shutdown(wait=True, cancel_futures=True)
+
+    return opened
+
+
+def cluster(address: str) -> Crew:
+    """The workers behind the Dask scheduler at `address`; opening it raises BadInput where there is none, or its workers differ from us."""
+
+    @contextmanager
+    def opened() -> Iterator[Hands]:
+        try:
+            from distributed import Client  # an extra
+        except ImportError as error:
+            got, remedy = "no library distributed", "pip install --editable '.[cluster]', or leave --cluster out"
+            raise BadInput("Dask", f"--cluster {address}", got, "the extra `cluster`", remedy) from error
+        try:
+            client = Client(address, timeout=PATIENCE_S, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            remedy = "start one with `dask scheduler`, or correct the address"
+            raise BadInput("Dask scheduler", address, _short(error), "one that answers", remedy) from error
+        try:
+            yield Hands(client.get_executor(), _width(client, address))
+        finally:
+            client.close()
+
+    return opened
+
+
+def _width(client: object, address: str) -> int:
+    """Threads of all workers, after each has shown that it computes by what we compute by."""
+    threads: dict[str, int] = client.nthreads()  # type: ignore[attr-defined]
+    if not threads:
+        remedy = f"start some with `dask worker {address} --nthreads 1`"
+        raise BadInput("Dask workers", address, "none", "at least one", remedy)
+    try:
+        codes: dict[str, str] = client.run(code_digest)  # type: ignore[attr-defined]
+    except Exception as error:  # whatever the worker raised, a missing package most of all
+        remedy = "start the workers with the Python and in the checkout that ask"
+        raise BadInput("Dask workers", address, _short(error), "an installed twinlaw", remedy) from error
+    others = sorted(name for name, code in codes.items() if code != code_digest())
+    if others:
+        remedy = "update them: the same sources, libraries and Python give the same answers"
+        raise BadInput("Dask workers", others[0], "other sources or libraries", "those of this checkout", remedy)
+    return sum(threads.values())
+
+
+def _short(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())[:120]}"
