@@ -1,30 +1,52 @@
 """The generator: a folder of cases whose truth is sealed."""
 
 import hashlib
-import os
 import shutil
 import tempfile
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from blind.case import Plan, build_case
+from blind.case import build_case
 from blind.files import case_files, draw_defects
 from blind.mix import KINDS, plans
-from blind.rig import Rig, load_rig
-from blind.sealed import CASES_FILE, TRUTH_FILE, Truth, seal
-from blind.truth import library
+from blind.rig import load_rig, read_rig
+from blind.sealed import CASES_FILE, TRUTH_FILE, seal, truth_from_json, truth_to_json
 from records.errors import BadInput
 from records.files import write_atomic
 
 PLANT = Path(__file__).resolve().parent.parent / "plants" / "ce150.toml"
 
 
-def make(seed: int, out: Path, cases: int = 60, kinds: Sequence[str] = KINDS, plant: Path = PLANT) -> Path:
+@dataclass(frozen=True)
+class Order:
+    """All that one case depends on: which of a benchmark's cases it is, and the text of the plant file."""
+
+    seed: int
+    index: int
+    cases: int
+    kinds: tuple[str, ...]
+    plant: str
+
+    @property
+    def name(self) -> str:
+        """Its folder."""
+        return f"case-{self.index:04d}"
+
+
+Made = dict[str, Any]  # "files": text by name, "truth": as JSON values
+Each = Callable[[Callable[[Order], Made], Sequence[Order]], Iterable[Made]]
+
+
+def make(
+    seed: int, out: Path, cases: int = 60, kinds: Sequence[str] = KINDS, plant: Path = PLANT, each: Each = map
+) -> Path:
     """Write `cases` cases of the given kinds into the folder `out`, the same bytes for the same seed, and return cases.json.
+
+    `each` makes the cases, in their order, as `map` does.
 
     Layout: case-XXXX/ (plant.toml, train-1, train-2 and hold-1 as .csv and .toml, README.md), cases.json with a commitment to each
     truth, sealed/truth.json. An earlier benchmark in `out` is replaced, as a whole and only when the new one is complete.
@@ -32,20 +54,18 @@ def make(seed: int, out: Path, cases: int = 60, kinds: Sequence[str] = KINDS, pl
     """
     if seed < 0:
         raise BadInput("seed", "--seed", str(seed), "a number from 0 up", "choose another seed")
-    nominal, text = load_rig(plant)
-    dealt = plans(cases, kinds, np.random.default_rng([seed, 0]))
-    _check_replaceable(out)
-    library()
+    _, text = load_rig(plant)
+    plans(cases, kinds, np.random.default_rng([seed, 0]))  # refuses what cannot be dealt before anything is flown
+    check_replaceable(out)
+    orders = [Order(seed, index, cases, tuple(kinds), text) for index in range(1, cases + 1)]
     work = _work_folder(out)
     try:
-        names = [f"case-{index:04d}" for index in range(1, len(dealt) + 1)]
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            jobs = [
-                pool.submit(_write_case, work, name, nominal, text, plan, (seed, index))
-                for index, (name, plan) in enumerate(zip(names, dealt, strict=True), 1)
-            ]
-            truths = {name: job.result() for name, job in zip(names, jobs, strict=True)}
-        public, opened = seal(truths, {name: _salt(seed, name) for name in names})
+        truths = {}
+        for order, made in zip(orders, each(make_case, orders), strict=True):
+            for file, content in made["files"].items():
+                write_atomic(work / order.name / file, content)
+            truths[order.name] = truth_from_json(made["truth"])
+        public, opened = seal(truths, {name: _salt(seed, name) for name in truths})
         write_atomic(work / TRUTH_FILE, opened)
         write_atomic(work / CASES_FILE, public)
         if out.exists():
@@ -57,20 +77,23 @@ def make(seed: int, out: Path, cases: int = 60, kinds: Sequence[str] = KINDS, pl
     return out / CASES_FILE
 
 
-def _write_case(work: Path, name: str, nominal: Rig, text: str, plan: Plan, seed: tuple[int, int]) -> Truth:
-    case = build_case(nominal, plan, (*seed, 1))
+def make_case(order: Order) -> Made:
+    """One case, without company: its files, and its truth."""
+    seed = (order.seed, order.index)
+    plan = plans(order.cases, order.kinds, np.random.default_rng([order.seed, 0]))[order.index - 1]
+    case = build_case(read_rig(order.plant, order.name), plan, (*seed, 1))
     rng = np.random.default_rng([*seed, 2])
     defects = draw_defects(rng)
-    for file, content in case_files(name, case, text, defects, rng).items():
-        write_atomic(work / name / file, content)
-    return replace(case.truth, defects=(*case.truth.defects, *defects.names))
+    files = case_files(order.name, case, order.plant, defects, rng)
+    truth = replace(case.truth, defects=(*case.truth.defects, *defects.names))
+    return {"files": dict(files), "truth": truth_to_json(truth)}
 
 
 def _salt(seed: int, name: str) -> str:
     return hashlib.sha256(f"salt of {name}, seed {seed}".encode()).hexdigest()[:32]
 
 
-def _check_replaceable(out: Path) -> None:
+def check_replaceable(out: Path) -> None:
     """A folder that holds anything but an earlier benchmark is not ours to replace."""
     if not out.exists() or (out.is_dir() and (not any(out.iterdir()) or (out / CASES_FILE).exists())):
         return

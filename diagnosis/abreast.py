@@ -5,8 +5,10 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
+from jobs.threads import threads
+
 Found = TypeVar("Found")
-WORKERS = 2  # more would wait for one another: between two answers of the filter Python decides what to ask next
+WORKERS = min(2, threads())  # more would wait for one another: between two answers of the filter Python decides what to ask next
 _POOL = ThreadPoolExecutor(WORKERS)
 _HERE = threading.local()
 

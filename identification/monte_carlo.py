@@ -1,7 +1,8 @@
 """Many rigs with other true parameters, each identified anew: do the intervals hold what they promise?"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from identification.estimate import interval_factor
 from identification.experiments.table import kinds_of, perform
 from identification.run import coefficient_names
 from identification.staged import Stage, identify_staged
+from records.plant import Plant
 from sim.bind import BoundPlant, bind
 
 Array = NDArray[np.float64]
@@ -54,6 +56,19 @@ def repetition(bound: BoundPlant, seed: int) -> Repetition:
     sd = dict(zip(belief.names, belief.sd.tolist(), strict=True))
     inside = {name: abs(value[name] - known[name]) <= factors[name] * sd[name] for name in belief.names}
     return Repetition(seed, {name: known[name] for name in belief.names}, value, sd, inside)
+
+
+@dataclass(frozen=True)
+class RigOrder:
+    """What a repetition depends on: the plant as stated, and the seed of rig and readings."""
+
+    plant: Plant
+    seed: int
+
+
+def repeat(order: RigOrder) -> dict[str, Any]:
+    """A repetition as plain data, for a worker."""
+    return asdict(repetition(bind(order.plant), order.seed))
 
 
 def interval_factors(stages: tuple[Stage, ...]) -> dict[str, float]:

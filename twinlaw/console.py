@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TextIO
 
+WIDTH = 78  # of a line that is written over itself
+
 
 def colours(stream: TextIO) -> bool:
     """Whether `stream` wants colours: a terminal, and NO_COLOR (https://no-color.org) is not set."""
@@ -43,6 +45,42 @@ def leaving(told: Callable[[], str]) -> Iterator[None]:
         yield
     except KeyboardInterrupt as stop:
         raise KeyboardInterrupt(str(stop) or told()) from None
+
+
+@contextmanager
+def tally(title: str, count: int) -> Iterator[Callable[[bool, bool], None]]:
+    """Show on the terminal how many of `count` are done; the body is given what to call for each: was it kept from before, did it fail."""
+    began, kept, failed, done = time.monotonic(), 0, 0, 0
+
+    def told() -> str:
+        further = f", {kept} from before" if kept else ""
+        further += paint(f", {failed} failed", 31, sys.stderr) if failed else ""
+        left = (time.monotonic() - began) / (done - kept) * (count - done) if done > kept else 0.0
+        return f"  {title}: {done} of {count}{further}" + (f", {_duration(left)} to go" if left else "")
+
+    def tell(was_kept: bool, has_failed: bool) -> None:
+        nonlocal kept, failed, done
+        kept, failed, done = kept + was_kept, failed + has_failed, done + 1
+        show()
+
+    def show() -> None:
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r{told():<{WIDTH}}")
+            sys.stderr.flush()
+
+    show()
+    try:
+        yield tell
+    finally:
+        if sys.stderr.isatty():
+            sys.stderr.write(f"{time.monotonic() - began:.1f} s\n")
+
+
+def _duration(seconds: float) -> str:
+    """Roughly: 40 s, 12 min, 3.5 h."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def table(rows: Sequence[Sequence[str]], heading: Sequence[str] = ()) -> str:

@@ -1,6 +1,6 @@
 """The diagnosis as the command runs it: reads plant and logs, looks at the logs themselves first, leaves its files."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from diagnosis.clock import from_their_start
@@ -10,7 +10,7 @@ from diagnosis.integrity import demand, examine
 from diagnosis.result import Result
 from diagnosis.shrinkage import Predicted
 from diagnosis.stretches import stretches
-from records.diagnosis import Firmware, save_diagnosis
+from records.diagnosis import Firmware, diagnosis_text
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import RunLog, load_log
@@ -30,15 +30,21 @@ BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with wha
 
 def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], out: Path) -> Result:
     """Diagnose log files against a plant file and write all results into `out`; raises BadInput."""
-    keep_freed_memory()
     with stage("reading the logs and looking at them"):
-        bound = bind(load_plant(plant))
-        nominal = without_effects(bound) if bound.effects else bound
-        material = _material(nominal, logs, holdout)
+        bound, material = read_material(plant, logs, holdout)
     with stage("searching for what the model lacks"):
         result = diagnose(bound, material)
-    write_result(result, [path.name for path in logs], out)
+    for name, text in result_files(result, [path.name for path in logs]).items():
+        write_atomic(out / name, text)
     return result
+
+
+def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
+    """What a diagnosis begins with; raises BadInput where plant or logs cannot be used."""
+    keep_freed_memory()
+    bound = bind(load_plant(plant))
+    nominal = without_effects(bound) if bound.effects else bound
+    return bound, _material(nominal, logs, holdout)
 
 
 def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:
@@ -76,14 +82,16 @@ def _firmware(logs: Sequence[RunLog], paths: Sequence[Path]) -> tuple[Firmware |
     return worst.record(), tuple(f"{name}: {replay.sentence}" for name, replay in found if replay.sentence)
 
 
-def write_result(result: Result, logs: Sequence[str], out: Path) -> None:
-    """diagnosis.json, plant.toml, the predictions and the page."""
+def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
+    """The predictions, plant.toml, diagnosis.json and the page by file name, in the order in which they are to be written."""
     outputs = list(result.case.kit.bound.model.outputs)
-    for flight in result.predicted:
-        write_atomic(out / f"prediction-{flight.name}.csv", prediction_text(flight, outputs))
-    write_atomic(out / "plant.toml", plant_text(result.plant))
-    save_diagnosis(out / "diagnosis.json", result.diagnosis)
-    write_atomic(out / "report.html", page_text(_page(result, logs)))
+    predictions = {f"prediction-{flight.name}.csv": prediction_text(flight, outputs) for flight in result.predicted}
+    return {
+        **predictions,
+        "plant.toml": plant_text(result.plant),
+        "diagnosis.json": diagnosis_text(result.diagnosis),
+        "report.html": page_text(_page(result, logs)),
+    }
 
 
 def _page(result: Result, logs: Sequence[str]) -> Page:
@@ -119,4 +127,4 @@ def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
     return rows_text(names, columns, None).replace("nan", "")
 
 
-__all__ = ["RunLog", "diagnose_logs", "prediction_text", "write_result"]
+__all__ = ["RunLog", "diagnose_logs", "prediction_text", "read_material", "result_files"]

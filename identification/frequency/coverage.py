@@ -1,7 +1,8 @@
 """How often the truth lies within the intervals: flights of one plant with other noise each, matched from other starts each."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -38,6 +39,22 @@ def repetition(plant: Plant, sweep: Sweep, amplitudes: tuple[float, float], repe
         dict(zip(model.names, found.sd.tolist(), strict=True)),
         dict(zip(model.names, inside.tolist(), strict=True)),
     )
+
+
+@dataclass(frozen=True)
+class FlightOrder:
+    """What a repetition depends on; see `repetition`."""
+
+    plant: Plant
+    sweep: Sweep
+    amplitudes: tuple[float, float]
+    repeats: int
+    seed: int
+
+
+def repeat(order: FlightOrder) -> dict[str, Any]:
+    """A repetition as plain data, for a worker."""
+    return asdict(repetition(order.plant, order.sweep, order.amplitudes, order.repeats, order.seed))
 
 
 def coverage(repetitions: Sequence[Repetition]) -> Mapping[str, float]:

@@ -2,13 +2,14 @@
 
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld; `twinlaw blind score DIR RESULTS` opens the seal and
 scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind
-baseline NAME DIR RESULTS` answers them in a plain way, to be beaten. The generator shares no code with simulation or diagnosis.
+baseline NAME DIR RESULTS` answers them in a plain way, to be beaten. The generator shares no code with simulation or diagnosis. What was
+interrupted, `make` or `diagnose`, goes on where it was.
 """
 
 import argparse
 import json
+import shutil
 from pathlib import Path
-from time import perf_counter
 
 import blind
 from diagnosis.baselines import BASELINES
@@ -19,13 +20,13 @@ from records.log import load_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from twinlaw import options, plots
+from twinlaw import options, plots, sweeping
 from twinlaw.console import stage
-from twinlaw.diagnosing import diagnose_logs
+from twinlaw.diagnosing_each import answers, questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds; diagnose, baseline, score DIR RESULTS; --json."""
+    """make --seed --out --cases --kinds; diagnose, baseline, score DIR RESULTS; --workers, --cluster; --json."""
     verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score", required=True)
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
     maker.set_defaults(part=_make)
     asker = verbs.add_parser(
-        "diagnose", help="diagnose all cases that RESULTS does not answer yet, with the time of each"
+        "diagnose", help="diagnose all cases that RESULTS does not answer yet, side by side, with the time of each"
     )
     asker.add_argument("cases", type=Path, metavar="DIR")
     asker.add_argument("results", type=Path, metavar="RESULTS")
@@ -56,6 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
     )
     scorer.set_defaults(part=_score)
+    for part in (maker, asker):
+        sweeping.workers(part)
     for part in (maker, asker, plain, scorer):
         part.add_argument("--json", action="store_true", help="print one JSON object instead of text")
 
@@ -66,8 +69,10 @@ def run(chosen: argparse.Namespace) -> int:
 
 
 def _make(chosen: argparse.Namespace) -> int:
-    with stage(f"flying {chosen.cases} cases"):
-        path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")))
+    kept = chosen.out.parent / f".{chosen.out.name}.unfinished"
+    each = sweeping.each("flown", sweeping.crew_of(chosen), kept, lambda order: order.name)
+    path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")), each=each)
+    shutil.rmtree(kept, ignore_errors=True)
     print(json.dumps({"cases": str(path)}) if chosen.json else f"{path}  {chosen.cases} cases, seed {chosen.seed}")
     return 0
 
@@ -80,18 +85,18 @@ def _folders(cases: Path) -> list[Path]:
 
 
 def _diagnose(chosen: argparse.Namespace) -> int:
-    folders = _folders(chosen.cases)
-    left = [folder for folder in folders if not (chosen.results / folder.name / "run.json").exists()]
-    for count, folder in enumerate(left, 1):
-        out, start_s = chosen.results / folder.name, perf_counter()
-        with stage(f"{folder.name}, {count} of {len(left)}"):
-            diagnose_logs(folder / "plant.toml", sorted(folder.glob("train-*.csv")), [folder / "hold-1.csv"], out)
-        write_atomic(out / "run.json", json.dumps({"time_s": round(perf_counter() - start_s, 2)}))
-    told = {"results": str(chosen.results), "cases": len(folders), "new": len(left)}
+    asked = questions(Path(), _folders(chosen.cases), ())
+    found = list(answers(asked, chosen.results, sweeping.crew_of(chosen)))
+    new = sum(not entry.kept and entry.failure is None for entry in found)
+    status = sweeping.failures([(entry.name, entry.failure) for entry in found])
+    told = {"results": str(chosen.results), "cases": len(found), "new": new}
+    done = sum(entry.failure is None for entry in found)
     print(
-        json.dumps(told) if chosen.json else f"{chosen.results}  {len(folders)} cases answered, {len(left)} of them now"
+        json.dumps(told)
+        if chosen.json
+        else f"{chosen.results}  {done} of {len(found)} cases answered, {new} of them now"
     )
-    return 0
+    return status
 
 
 def _baseline(chosen: argparse.Namespace) -> int:

@@ -3,7 +3,8 @@
 Plants with model ce150 have nine, of seed 000; ce150_velagic has four, of seed 001. Writes DIR/NN-KIND.toml with a CSV for each
 instrument, and DIR/truth.toml, the rig's own parameters. The rig is drawn from the uncertainties that the plant file states; the same
 seed gives the same rig and the same readings. With --repetitions each of so many rigs is also identified from its own experiments,
-and DIR/repetitions.json tells how often the truth lay within the 95 % intervals.
+and DIR/repetitions.json tells how often the truth lay within the 95 % intervals; DIR/jobs keeps each rig's answer, so that the same
+command goes on where it was interrupted.
 """
 
 import argparse
@@ -12,17 +13,18 @@ from dataclasses import asdict
 from typing import Any
 
 from identification.experiments.table import kinds_of, perform
-from identification.monte_carlo import Repetition, coverage, other_rig, repetition
+from identification.monte_carlo import Repetition, RigOrder, coverage, other_rig, repeat
+from jobs.job import Job
 from records.experiment import save_experiment
 from records.files import write_atomic
 from records.plant import plant_text
 from sim.bind import BoundPlant
-from twinlaw import console, options
+from twinlaw import console, options, sweeping
 from twinlaw.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --seed, --as-stated, --repetitions, --out, --json."""
+    """--plant, --seed, --as-stated, --repetitions, --workers, --cluster, --out, --json."""
     options.plant(parser)
     parser.add_argument(
         "--seed", type=options.count, default=1, help="of the rig and its readings; default: %(default)s"
@@ -31,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--as-stated", action="store_true", help="the rig has the plant file's own parameters, not others drawn from sd"
     )
     parser.add_argument("--repetitions", type=options.count, metavar="N", help="identify N rigs, seeds from --seed on")
+    sweeping.workers(parser, "with --repetitions: ")
     options.out(parser)
     options.as_json(parser)
 
@@ -65,13 +68,14 @@ def _facts(found: list[Repetition]) -> dict[str, Any]:
 
 
 def _repeat(bound: BoundPlant, chosen: argparse.Namespace) -> int:
-    path, found = chosen.out / "repetitions.json", list[Repetition]()
-    with console.leaving(lambda: f"{path} holds {len(found)} of {chosen.repetitions} rigs" if found else ""):
-        for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
-            with console.stage(f"rig {seed}: all experiments"):
-                found.append(repetition(bound, seed))
-            facts = _facts(found)
-            write_atomic(path, json.dumps(facts, indent=1) + "\n")
+    found: list[Repetition] = []
+    seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
+    jobs = [Job(f"rig {seed}", repeat, RigOrder(bound.plant, seed)) for seed in seeds]
+    for answer in sweeping.answers("rigs identified", jobs, sweeping.crew_of(chosen), chosen.out / "jobs"):
+        found.append(Repetition(**answer))
+        facts = _facts(found)
+        # After each rig, so that an interrupted count leaves what it has.
+        write_atomic(chosen.out / "repetitions.json", json.dumps(facts, indent=1) + "\n")
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean", "all_inside")}))
         return 0

@@ -3,7 +3,8 @@
 A plant of this project flies under the controller designed for it, with the sweep on its inputs or on its references, one record for
 each axis. The helicopter of seed 002 (plants/raptor50.toml) flies open loop with the sensors of its file: --repeats sweeps of each stick
 and a record of doublets to check on. Band and duration keep the rules of frequency identification. With --repetitions the helicopter is
-flown and identified so many times, and DIR/coverage.json tells how often the truth lay within the 95 % intervals.
+flown and identified so many times, and DIR/coverage.json tells how often the truth lay within the 95 % intervals; DIR/jobs keeps each
+answer, so that the same command goes on where it was interrupted.
 """
 
 import argparse
@@ -15,17 +16,18 @@ from typing import Any
 
 import numpy as np
 
-from identification.frequency.coverage import Repetition, coverage, repetition
+from identification.frequency.coverage import FlightOrder, Repetition, coverage, repeat
 from identification.frequency.helicopter import SAMPLE_PERIOD_S, sweep_flights
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import check_plant
 from identification.frequency.plant_sweep import closed_loop_sweeps
 from identification.frequency.sweep import design_sweep
+from jobs.job import Job
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import RunLog, save_log
 from records.plant import Plant, load_plant
-from twinlaw import console, options
+from twinlaw import console, options, sweeping
 from twinlaw.stages import design_controller
 
 BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
@@ -33,7 +35,9 @@ AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --band-rad-s, --duration-s, --amplitudes, --on, --psi-rad, --repeats, --seed, --repetitions, --out, --json."""
+    """--plant, --band-rad-s, --duration-s, --amplitudes, --on, --psi-rad, --repeats, --seed, --repetitions, --workers,
+    --cluster, --out, --json.
+    """
     options.plant(parser)
     parser.add_argument(
         "--band-rad-s",
@@ -70,6 +74,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--repetitions", type=options.count, metavar="N", help="identify N flights, seeds from --seed on"
     )
+    sweeping.workers(parser, "with --repetitions: ")
     options.out(parser)
     options.as_json(parser)
 
@@ -127,13 +132,15 @@ def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
 def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
-    path, found = chosen.out / "coverage.json", list[Repetition]()
-    with console.leaving(lambda: f"{path} holds {len(found)} of {chosen.repetitions} sets of flights" if found else ""):
-        for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
-            with console.stage(f"flights {seed}: sweeps, responses, match"):
-                found.append(repetition(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, seed))
-            facts = _coverage_facts(found)
-            write_atomic(path, json.dumps(facts, indent=1) + "\n")
+    found: list[Repetition] = []
+    order = (plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats)
+    seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
+    jobs = [Job(f"flights {seed}", repeat, FlightOrder(*order, seed)) for seed in seeds]
+    for answer in sweeping.answers("flights identified", jobs, sweeping.crew_of(chosen), chosen.out / "jobs"):
+        found.append(Repetition(**answer))
+        facts = _coverage_facts(found)
+        # After each flight, so that an interrupted count leaves what it has.
+        write_atomic(chosen.out / "coverage.json", json.dumps(facts, indent=1) + "\n")
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean")}))
         return 0
