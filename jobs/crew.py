@@ -1,5 +1,6 @@
 """Who does the jobs: processes of this computer, or the workers of a Dask cluster; either is an executor of `concurrent.futures`."""
 
+import logging
 import multiprocessing
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -59,6 +60,7 @@ def cluster(address: str) -> Crew:
         except ImportError as error:
             got, remedy = "no library distributed", "pip install --editable '.[cluster]', or leave --cluster out"
             raise BadInput("Dask", f"--cluster {address}", got, "the extra `cluster`", remedy) from error
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it would tell in its words we tell in ours
         try:
             client = Client(address, timeout=PATIENCE_S, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:

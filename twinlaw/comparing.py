@@ -1,8 +1,7 @@
 """The stages behind `twinlaw compare`: each controller designed, generated, linked, verified on the board, and flown."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
-from functools import partial
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ from rig.target_law import TargetLaw
 from sim.bind import BoundPlant
 from twinlaw.console import stage
 from verification.comparison.eq26 import FormError, form_errors
-from verification.comparison.flights import AXES, Flown, Judged, Trial, judge
+from verification.comparison.flights import AXES, FILTERS, Each, Flown, Law, Trial, fly_figures, judge
 from verification.comparison.manoeuvres import FIGURES
 from verification.comparison.measures import Merit
 from verification.equality import compare
@@ -32,7 +31,6 @@ from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
 SCHEMA = "comparison/1"
-JUDGED = tuple(field.name for field in fields(Judged))
 
 
 @dataclass(frozen=True)
@@ -54,16 +52,23 @@ class BoardCost:
 
 
 @dataclass(frozen=True, eq=False)
-class Compared:
-    """One controller: its table's digest, equality and cost on the board, and its flights with their merits by axis."""
+class Built:
+    """One controller as it stands on the board: its law, its table's digest, equality, cost; its flights through the figures with merits."""
 
     row: Controller
+    law: Law
     digest: str
     equality: tuple[Equality, ...]
     self_test_mismatches: int
     cost: BoardCost
     flights: Mapping[str, Flown]
     figures: Mapping[str, Mapping[str, Merit]]
+
+
+@dataclass(frozen=True, eq=False)
+class Compared(Built):
+    """The same with its merits by axis on each spread plant and with each effect."""
+
     spread: Sequence[Mapping[str, Merit]]
     effects: Mapping[str, Mapping[str, Merit]]
     filters: Mapping[float, Sequence[Mapping[str, Merit]]]
@@ -76,8 +81,18 @@ class Compared:
         return (*differing, *([f"{self.row.name}: the self-test finds {wrong} mismatches"] if wrong else []))
 
 
-def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path) -> Compared:
-    """Everything of one controller; leaves its table, C and image in folder/NAME."""
+def compare_controllers(
+    bound: BoundPlant, names: Sequence[str], wanted: Wanted, folder: Path, each: Each
+) -> list[Compared]:
+    """Everything of each controller; `each` flies the spread plants and effects, as `map` does."""
+    built = [build_controller(bound, name, wanted, folder) for name in names]
+    laws = {entry.row.name: entry.law for entry in built}
+    judged = judge(bound, laws, read_settings(bound).sample_period_s, wanted.trial, each)
+    return [Compared(**vars(entry), **vars(judged[entry.row.name])) for entry in built]
+
+
+def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path) -> Built:
+    """One controller designed, verified, and flown through the figures; leaves its table, C and image in folder/NAME."""
     row = CONTROLLERS[name]
     with stage(f"{name}: designing"):
         table = row.design(bound, read_settings(bound))
@@ -100,15 +115,15 @@ def compare_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Pat
         flash_bytes=image.sizes.flash_bytes,
         ram_bytes=image.sizes.ram_bytes,
     )
-    with stage(f"{name}: flying the papers' manoeuvres, {wanted.trial.runs} spread plants, effects"):
-        judged = judge(
-            bound, FlownLaw(texts), partial(_filtered, bound, row, table), table.sample_period_s, wanted.trial
-        )
-    return Compared(row, table.digest, equality, mismatches, cost, **{name: getattr(judged, name) for name in JUDGED})
+    with stage(f"{name}: flying the papers' manoeuvres"):
+        flights = fly_figures(bound, FlownLaw(texts), table.sample_period_s)
+    figures = {figure: flown.merits() for figure, flown in flights.items()}
+    law = Law(texts, {share: _filtered(bound, row, table, share) for share in FILTERS})
+    return Built(row, law, table.digest, equality, mismatches, cost, flights, figures)
 
 
-def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> FlownLaw:
-    """The controller's law behind another reference filter, in shares of the plant file's time constants."""
+def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> Mapping[str, str]:
+    """The controller's texts behind another reference filter, in shares of the plant file's time constants."""
     settings = read_settings(bound)
     changed = {
         axis: replace(
@@ -116,7 +131,7 @@ def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> F
         )
         for axis in AXES
     }
-    return FlownLaw(row.generate(replace(table, **changed)))
+    return row.generate(replace(table, **changed))
 
 
 def eq26_errors(bound: BoundPlant, names: Sequence[str]) -> Mapping[tuple[str, str], FormError]:

@@ -2,7 +2,8 @@
 
 Writes DIR/compare.json, DIR/controllers.md with a plot of each figure, and for each controller DIR/NAME/ with its table, C and image.
 Besides the nominal plant they fly plants whose parameters are all up to 10 % off, and each of a list of effects that the
-equations lack. Exit status 1 when twin, compiled C and the emulated board differ in a single bit.
+equations lack; these flights are shared out among processes and kept in DIR/jobs. Exit status 1 when twin, compiled C and the emulated
+board differ in a single bit.
 """
 
 import argparse
@@ -11,8 +12,8 @@ import shlex
 
 from controllers.table import CONTROLLERS
 from records.files import write_atomic
-from twinlaw import comparison_tables, console, options
-from twinlaw.comparing import Wanted, compare_controller, demand_equal, eq26_errors, facts
+from twinlaw import comparison_tables, console, options, sweeping
+from twinlaw.comparing import Wanted, compare_controllers, demand_equal, eq26_errors, facts
 from twinlaw.comparison_page import page_text, verdict
 from twinlaw.stages import STEPS, load_bound
 from verification.comparison.conditions import EFFECTS
@@ -23,7 +24,7 @@ RUNS, SEED = 100, 2
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --controllers, --runs, --seed, --effects, --steps, --out, --json."""
+    """--plant, --controllers, --runs, --seed, --effects, --steps, --workers, --cluster, --out, --json."""
     options.plant(parser)
     parser.add_argument(
         "--controllers", nargs="+", choices=tuple(CONTROLLERS), default=tuple(CONTROLLERS), metavar="NAME",
@@ -36,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"added one at a time, each at its reference size: {', '.join(EFFECTS)}; default: all",
     )  # fmt: skip
     parser.add_argument("--steps", type=options.count, default=STEPS, help="compared at least; default: %(default)s")
+    sweeping.workers(parser)
     options.out(parser)
     options.as_json(parser)
 
@@ -45,7 +47,10 @@ def run(chosen: argparse.Namespace) -> int:
     bound = load_bound(chosen.plant)
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
-    rows = [compare_controller(bound, name, wanted, chosen.out) for name in names]
+    each = sweeping.each(
+        "flights, 25 at a time", sweeping.crew_of(chosen), chosen.out / "jobs", lambda order: order.name
+    )
+    rows = compare_controllers(bound, names, wanted, chosen.out, each)
     eq26 = eq26_errors(bound, names)
     content = facts(bound, rows, wanted, eq26)
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")

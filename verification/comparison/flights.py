@@ -1,12 +1,14 @@
 """Every controller's generated C through every manoeuvre and condition, in the compiled loop."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.bind import BoundPlant
+from records.plant import Plant
+from sim.bind import BoundPlant, bind
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
 from verification.comparison.conditions import spread, with_effect
@@ -19,6 +21,7 @@ AXES = ("elevation", "azimuth")
 SPREAD_FIGURE = "fig-23"  # both axes move: the manoeuvre of spread and effects
 FILTERS = (1.0, 0.75, 0.5, 0.25, 0.0)  # of the plant file's prefilter_time_constant_s; 0 is no filter
 FILTERED = 20  # spread plants that are flown with each
+AT_ONCE = 25  # spread plants in one order: a second of work or less
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,20 +40,6 @@ class Flown:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """One controller: its flights through the figures, and merits by axis of the figures, of each spread plant, of each effect.
-
-    `filters` has those of the first FILTERED spread plants by the time constants of its reference filter, as shares of the plant file's.
-    """
-
-    flights: Mapping[str, Flown]
-    figures: Mapping[str, Mapping[str, Merit]]
-    spread: Sequence[Mapping[str, Merit]]
-    effects: Mapping[str, Mapping[str, Merit]]
-    filters: Mapping[float, Sequence[Mapping[str, Merit]]]
-
-
 @dataclass(frozen=True)
 class Trial:
     """Plants that are not as designed for: how many spread ones, their seed, and the effects to be added one at a time."""
@@ -60,30 +49,104 @@ class Trial:
     effects: tuple[str, ...]
 
 
-def judge(
-    bound: BoundPlant, law: FlownLaw, filtered: Callable[[float], FlownLaw], sample_period_s: float, trial: Trial
-) -> Judged:
-    """Fly one law through all figures, then that of SPREAD_FIGURE on every plant of the trial.
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """One law's merits by axis, of each spread plant and of each effect.
 
-    `filtered` gives the same law behind a reference filter of this share of the plant file's time constants.
+    `filters` has those of the first FILTERED spread plants by the time constants of its reference filter, as shares of the plant file's.
     """
-    flights = {}
-    for name, figure in FIGURES.items():
-        flights[name] = _fly(bound, law, figure.manoeuvre(bound, sample_period_s))[0]
-    both = FIGURES[SPREAD_FIGURE].manoeuvre(bound, sample_period_s)
-    plants = spread(bound, trial.runs, trial.seed)
 
-    def merits_of(flown: FlownLaw, rows: Array) -> list[dict[str, Merit]]:
-        return [_fly(bound, flown, both, row[np.newaxis])[0].merits() for row in rows]
+    spread: Sequence[Mapping[str, Merit]]
+    effects: Mapping[str, Mapping[str, Merit]]
+    filters: Mapping[float, Sequence[Mapping[str, Merit]]]
 
-    effects = {name: _fly(with_effect(bound, name), law, both)[0].merits() for name in trial.effects}
+
+@dataclass(frozen=True)
+class Law:
+    """A law's generated texts, and those of the same law behind other reference filters, by share of the plant file's time constants."""
+
+    texts: Mapping[str, str]
+    filtered: Mapping[float, Mapping[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """Flights of one law through SPREAD_FIGURE: its C, the plant as stated, then parameter vectors to fly it with, or one effect to add;
+    `share` where it is the law behind another reference filter."""
+
+    law: str
+    texts: Mapping[str, str]
+    plant: Plant
+    sample_period_s: float
+    first: int
+    rows: tuple[tuple[float, ...], ...] = ()
+    effect: str | None = None
+    share: float | None = None
+
+    @property
+    def name(self) -> str:
+        """By which a failure is told."""
+        law = self.law if self.share is None else f"{self.law} behind {self.share:g} of its filter"
+        return f"{law}, " + (self.effect or f"plants {self.first + 1} to {self.first + len(self.rows)}")
+
+
+Merits = list[dict[str, dict[str, Any]]]  # plain data by axis, a flight each
+Each = Callable[[Callable[[Order], Merits], Sequence[Order]], Iterable[Merits]]
+
+
+def fly_figures(bound: BoundPlant, law: FlownLaw, sample_period_s: float) -> dict[str, Flown]:
+    """One law through all figures on the plant as stated."""
+    return {name: _fly(bound, law, entry.manoeuvre(bound, sample_period_s))[0] for name, entry in FIGURES.items()}
+
+
+def judge(
+    bound: BoundPlant, laws: Mapping[str, Law], sample_period_s: float, trial: Trial, each: Each = map
+) -> dict[str, Judged]:
+    """Fly laws by name through SPREAD_FIGURE on every plant of the trial; `each` does it, as `map` does.
+
+    Every law meets the same plants, AT_ONCE of them in one order, so that no answer depends on who flies the others.
+    """
+    plants = [tuple(row) for row in spread(bound, trial.runs, trial.seed).tolist()]
+    orders = [
+        order
+        for name, law in laws.items()
+        for order in _orders(bound.plant, name, law, sample_period_s, plants, trial.effects)
+    ]
+    flown: dict[Order, list[dict[str, Merit]]] = {}
+    for order, flights in zip(orders, each(fly_order, orders), strict=True):
+        flown[order] = [{axis: Merit(**entry) for axis, entry in flight.items()} for flight in flights]
+    return {name: _judged([(order, merits) for order, merits in flown.items() if order.law == name]) for name in laws}
+
+
+def _judged(flown: list[tuple[Order, list[dict[str, Merit]]]]) -> Judged:
+    plain = [(order, merits) for order, merits in flown if order.share is None]
     return Judged(
-        flights=flights,
-        figures={name: flown.merits() for name, flown in flights.items()},
-        spread=merits_of(law, plants),
-        effects=effects,
-        filters={share: merits_of(filtered(share), plants[:FILTERED]) for share in FILTERS},
+        spread=[merit for order, merits in plain if order.effect is None for merit in merits],
+        effects={order.effect: merits[0] for order, merits in plain if order.effect is not None},
+        filters={order.share: merits for order, merits in flown if order.share is not None},
     )
+
+
+def _orders(
+    plant: Plant, name: str, law: Law, period_s: float, plants: list[tuple[float, ...]], effects: Sequence[str]
+) -> Iterator[Order]:
+    for first in range(0, len(plants), AT_ONCE):
+        yield Order(name, law.texts, plant, period_s, first, rows=tuple(plants[first : first + AT_ONCE]))
+    for effect in effects:
+        yield Order(name, law.texts, plant, period_s, 0, effect=effect)
+    for share, texts in law.filtered.items():
+        yield Order(name, texts, plant, period_s, 0, rows=tuple(plants[:FILTERED]), share=share)
+
+
+def fly_order(order: Order) -> Merits:
+    """The merits of an order's flights."""
+    bound, law = bind(order.plant), FlownLaw(order.texts)
+    both = FIGURES[SPREAD_FIGURE].manoeuvre(bound, order.sample_period_s)
+    if order.effect is not None:
+        flown = _fly(with_effect(bound, order.effect), law, both)
+    else:
+        flown = [_fly(bound, law, both, np.array([row]))[0] for row in order.rows]
+    return [{axis: asdict(merit) for axis, merit in flight.merits().items()} for flight in flown]
 
 
 def _fly(bound: BoundPlant, law: FlownLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
