@@ -1,6 +1,7 @@
 """Many diagnoses that know nothing of one another: which questions a folder holds, what travels to a worker, what comes back."""
 
 import json
+import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -134,13 +135,14 @@ def answer(asked: Parcel) -> dict[str, str]:
         try:
             result = diagnose(*read_material(Path(work) / asked.plant, logs, holdout))
         except BadInput as error:
-            raise _without(f"{work}/", error) from error
+            raise _without(work, error) from error
         return dict(result_files(result, [path.name for path in logs]))
 
 
 def _without(folder: str, error: BadInput) -> BadInput:
-    """The same error where its files lie."""
-    told = {name: getattr(error, name).replace(folder, "") for name in ("what", "where", "got", "expected", "remedy")}
+    """The same error of files by their own names."""
+    places = re.compile(rf"{re.escape(folder)}/\w+/")
+    told = {name: places.sub("", getattr(error, name)) for name in ("what", "where", "got", "expected", "remedy")}
     return BadInput(**told)
 
 

@@ -1,6 +1,7 @@
 """A rig, a way to fly it at one place, and one small benchmark that the tests of this folder share."""
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -55,5 +56,6 @@ def flown(rig: Rig) -> Callable[..., Record]:
 def benchmark_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Five cases: one without effect, one single, one double, one out of library, one more."""
     out = tmp_path_factory.mktemp("blind") / "cases"
-    make(5, out, 5)
+    with ThreadPoolExecutor() as pool:
+        make(5, out, 5, each=pool.map)
     return out
