@@ -7,7 +7,6 @@ closed loop is judged there; eq (26) is solved in z^-1 as in the paper.
 import math
 from dataclasses import dataclass
 
-import control
 import numpy as np
 from numpy.typing import NDArray
 
@@ -73,6 +72,8 @@ def transfer_function(linear: LinearPlant, sample_period_s: float, where: str) -
 
     Raises VerificationFailed naming `where` when its impulse response differs from that of the matrix exponential.
     """
+    import control  # half a second, which whoever only reads a table is spared
+
     continuous = control.ss(linear.A, linear.B, linear.C, np.zeros((1, 1)))
     discrete = control.ss2tf(control.sample_system(continuous, sample_period_s, method="zoh"))
     a = np.asarray(discrete.den[0][0], dtype=float)

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from records.errors import BadInput
-from twinlaw.arithmetics import ARITHMETICS
 
 
 def plant(parser: argparse.ArgumentParser) -> None:
@@ -69,6 +68,8 @@ def differing(paths: Sequence[Path]) -> None:
 
 def arithmetic(parser: argparse.ArgumentParser, *, design_too: bool = False) -> None:
     """--arithmetic NAME, of the generated law; `design_too` adds the law in double precision and makes it the default."""
+    from twinlaw.arithmetics import ARITHMETICS  # with NumPy and all laws behind it, which most verbs do without
+
     choices = ("float64", *ARITHMETICS) if design_too else ARITHMETICS
     parser.add_argument("--arithmetic", choices=choices, default=choices[0], help="of the law; default: %(default)s")
 
