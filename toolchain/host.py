@@ -18,8 +18,7 @@ from typing import Any
 from cffi import FFI
 
 from records.errors import BadInput
-
-CACHE_DIR = Path(os.environ.get("TWINLAW_CACHE", Path(__file__).resolve().parent.parent / ".cache"))
+from toolchain.cache import CACHE_DIR
 
 # No contraction and no relaxed arithmetic: float32 results must be the same bits on host and target.
 STRICT_FLOAT_FLAGS = (

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from records.errors import BadInput, VerificationFailed
+from toolchain.cache import CACHE_DIR
 from twinlaw import console
 from twinlaw.parser import build_parser
 
@@ -16,6 +17,8 @@ from twinlaw.parser import build_parser
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
+    os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
     try:
         options = build_parser(words[:1]).parse_args(words)
         status = int(options.run(options))

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from toolchain.cache import CACHE_DIR
+
 ROOT = Path(__file__).resolve().parents[2]
 FAILS = [sys.executable, "-m", "twinlaw.command", "design", "--plant", "missing.toml"]
 ESCAPE = "\x1b["
@@ -45,6 +47,13 @@ def test_a_pipe_gets_neither_colours_nor_progress() -> None:
     done = subprocess.run(FAILS, capture_output=True, text=True, cwd=ROOT, check=False)
     assert ESCAPE not in done.stdout + done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_who_has_no_home_hears_nothing_of_it() -> None:
+    program = "from twinlaw.command import main; main(['completion', 'bash']); import twinlaw.plots"
+    given = {"PATH": os.environ["PATH"], "HOME": "/dev/null/none", "TWINLAW_CACHE": str(CACHE_DIR)}
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, env=given)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_only_one_place_knows_colours() -> None:
