@@ -26,7 +26,7 @@ from sim.bind import BoundPlant
 from sim.effects.api import combined, library, redundant
 from sim.effects.effect import Effect, coefficient
 from sim.model import Model
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 
 Array = NDArray[np.float64]
 BUILDING = Lock()

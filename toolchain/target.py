@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from toolchain.host import CACHE_DIR, CText, Source, as_file, content_digest, run_zig, zig_version
+from toolchain.cache import CACHE_DIR
+from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_version
 
 _MACHINE = ("-target", "thumb-freestanding-eabi", "-mcpu=cortex_m0plus")
 

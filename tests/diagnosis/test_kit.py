@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from tests.test_project import ROOT
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 
 # Three threads of a process ask for two variants of one kit, as a search does; then the filter runs in all of them.
 ASK = """

@@ -15,7 +15,7 @@ import pytest
 from recordings.files import datasets_folder
 from tests.docs.commands import PAGES, calls, checkout, commands, fenced, mentions
 from tests.test_project import ROOT
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 from twinlaw.completion import Command, command_tree
 from twinlaw.parser import build_parser
 from twinlaw.verbs import VERBS

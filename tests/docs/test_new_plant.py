@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.test_project import ROOT
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 
 PAGE = ROOT / "docs" / "new-plant.md"
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)

@@ -8,7 +8,7 @@ import pytest
 
 from recordings.files import datasets_folder
 from tests.test_project import ROOT
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 
 FOLDER = ROOT / "docs" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.test_project import ROOT
-from toolchain.host import CACHE_DIR
+from toolchain.cache import CACHE_DIR
 
 PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"(?:^    .*\n|^\n(?=    ))+", flags=re.MULTILINE)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from toolchain import host
-from toolchain.host import CACHE_DIR, CText, build_shared, c_text, content_digest, load_shared
+from toolchain.cache import CACHE_DIR
+from toolchain.host import CText, build_shared, c_text, content_digest, load_shared
 
 
 @pytest.fixture

@@ -15,7 +15,8 @@ from importlib.metadata import PackageNotFoundError, requires, version
 from serial.tools import list_ports
 
 from records.errors import BadInput, VerificationFailed
-from toolchain.host import CACHE_DIR, CText, build_shared, load_shared
+from toolchain.cache import CACHE_DIR
+from toolchain.host import CText, build_shared, load_shared
 from twinlaw import console, options
 
 # What an extra of pyproject.toml and a program of the system are for.

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from records.files import write_atomic
-from toolchain.host import CACHE_DIR, CText, content_digest
+from toolchain.cache import CACHE_DIR
+from toolchain.host import CText, content_digest
 from verification.static_bound.bound import LoopPasses, PathShare, StaticBound, static_bound
 
 
