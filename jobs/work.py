@@ -31,7 +31,8 @@ class Outcome:
 def work(function: Callable[[Any], Answer], record: Any, code: str) -> Outcome:
     """Call one job's function; `code` is the digest of those who ask, and a worker with other sources refuses."""
     if code != code_digest():
-        return Outcome(None, "this worker has other sources or libraries than the one who asks; update it", 0.0)
+        told = "sources or libraries of this worker are not those of the one who asks, or were changed meanwhile; start again"
+        return Outcome(None, told, 0.0)
     began = perf_counter()
     try:
         # As it will be read from where it is kept: a tuple has become a list, and what JSON cannot hold is told here.

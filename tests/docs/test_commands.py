@@ -33,14 +33,14 @@ NOT_TRIED = {
     r"twinlaw compare|cp build-compare": "takes minutes; tests/twinlaw/test_compare.py with fewer flights",
     r"twinlaw envelope": "takes a minute; tests/twinlaw/test_envelope.py with one condition",
     r"twinlaw diagnose --plant plants/(?!ce150)": "takes minutes on a recording; tests/diagnosis/test_real_data.py has one",
-    r"twinlaw identify .*--free a_1": "the search of the block above with other parameters",
+    r"twinlaw identify .*--search genetic": "takes ten seconds; tests/twinlaw/test_identify_genetic.py",
+    r"twinlaw sweep .*--repetitions": "tests/twinlaw/test_frequency.py with one repetition",
     r"twinlaw experiments --plant .*velagic.*--repetitions": "the repetitions of docs/identification.md with another plant",
     r"pip |dask |twinlaw .*--cluster": "needs other computers; tests/jobs/test_cluster.py has some on this one",
 }
 # What is smaller here than on the page, so that it takes seconds.
 SMALLER = {
     "--repetitions 100": "--repetitions 1",
-    "--repetitions 60": "--repetitions 1",
     "--seed 900005 --cases 75": "--seed 3 --cases 1 --kinds nominal",
     "--cases 2 --workers": "--cases 1 --workers",
 }
