@@ -8,7 +8,9 @@ from typing import Any, TypeVar
 from jobs.threads import threads
 
 Found = TypeVar("Found")
-WORKERS = min(2, threads())  # more would wait for one another: between two answers of the filter Python decides what to ask next
+WORKERS = min(
+    2, threads()
+)  # more would wait for one another: between two answers of the filter Python decides what to ask next
 _POOL = ThreadPoolExecutor(WORKERS)
 _HERE = threading.local()
 

@@ -53,7 +53,7 @@ class BoardCost:
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """One controller as it stands on the board: its law, its table's digest, equality, cost; its flights through the figures with merits."""
+    """One controller on the board: its law, its table's digest, equality, cost; its flights through the figures, with merits."""
 
     row: Controller
     law: Law
