@@ -40,18 +40,23 @@ def truth(kind: str, *effects: TrueEffect, severity: float = 10.0) -> Truth:
     return Truth(kind, effects, size, size, BARS, HOLD, True, False, ())
 
 
-def benchmark(folder: Path) -> dict[str, Truth]:
-    """Four each: no effect, single, double, out of library; the seal as `make` writes it."""
-    kinds = [truth("nominal") for _ in LIBRARY]
-    kinds += [truth("single", effect(name)) for name in LIBRARY]
-    kinds += [truth("double", effect(a), effect(b)) for a, b in zip(LIBRARY, LIBRARY[1:] + LIBRARY[:1], strict=True)]
-    kinds += [truth("outside", effect("azimuth.wind_drag", known=False)) for _ in LIBRARY]
+def sealed(folder: Path, kinds: list[Truth]) -> dict[str, Truth]:
+    """The truths in a folder, by the names of their cases; the seal as `make` writes it."""
     truths = {f"case-{index:04d}": entry for index, entry in enumerate(kinds, 1)}
     cases, opened = seal(truths, {name: f"salt {name}" for name in truths})
     (folder / "sealed").mkdir(parents=True)
     (folder / "cases.json").write_text(cases)
     (folder / "sealed/truth.json").write_text(opened)
     return truths
+
+
+def benchmark(folder: Path) -> dict[str, Truth]:
+    """Four each: no effect, single, double, out of library."""
+    kinds = [truth("nominal") for _ in LIBRARY]
+    kinds += [truth("single", effect(name)) for name in LIBRARY]
+    kinds += [truth("double", effect(a), effect(b)) for a, b in zip(LIBRARY, LIBRARY[1:] + LIBRARY[:1], strict=True)]
+    kinds += [truth("outside", effect("azimuth.wind_drag", known=False)) for _ in LIBRARY]
+    return sealed(folder, kinds)
 
 
 def answer(
@@ -123,6 +128,17 @@ def test_worthless_answers_score_nothing_but_the_detection_they_claim(tmp_path: 
     assert found["expected calibration error"].value == 1.0
     judged = [figure for figure in found.values() if figure.target is not None and figure.cases]
     assert [figure.name for figure in judged if figure.met] == ["detected, severity after re-tune >= 2"]
+
+
+def test_frames_lost_at_random_count_in_one_figure_of_shrinkage_only(tmp_path: Path) -> None:
+    """Nobody can foretell which frames a flight loses: a model that knows all else shrinks little there, and the other figure says so."""
+    kinds = [truth("single", effect(LIBRARY[0])), truth("timing", effect("loop.dropped_frames"))]
+    for (name, entry), after in zip(sealed(tmp_path / "cases", kinds).items(), (1e-3, 0.01), strict=True):
+        names = [e.name for e in entry.effects]
+        write(tmp_path / "results", name, answer("gap", "loop", [(names[0], 1.0)], names, after=after))
+    found = figures(tmp_path / "cases", tmp_path / "results")
+    assert found["hold-out shrinkage, tenth percentile"].value == pytest.approx(0.1)
+    assert found["hold-out shrinkage, tenth percentile, no frames lost"].value == 1.0
 
 
 def test_guessing_scores_what_chance_gives(tmp_path: Path) -> None:
