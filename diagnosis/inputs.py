@@ -56,7 +56,8 @@ def _quick(name: str) -> bool:
 def _arrived(tape: Tape, share: float) -> Tape:
     """The tape with what arrives where a `share` of the frames is lost: the mean over what is then known of each frame.
 
-    What the readings say of single frames counts in the likelihood less the information that it takes, sum of KL(after, before).
+    What the readings say of single frames counts in the likelihood less the information that it takes, sum of KL(after, before), and
+    less the spread about that mean: a line that loses frames is none that delays them all.
     """
     lost = lost_with(tape.lost, share)
     arrived = tape.u.copy()
@@ -68,7 +69,8 @@ def _arrived(tape: Tape, share: float) -> Tape:
         arrived[:, column] = values
     taken = lost[tape.lost != 0.0]
     information = float(np.sum(rel_entr(taken, share) + rel_entr(1.0 - taken, 1.0 - share)))
-    return replace(tape, u=arrived, known=tape.known - information)
+    spread = 0.5 * float(np.sum(tape.loss_power * lost * (1.0 - lost)))
+    return replace(tape, u=arrived, known=tape.known - information - spread)
 
 
 def share_slopes(tape: Tape, share: float) -> tuple[float, float]:

@@ -5,7 +5,8 @@ innovations were found with a share pi of the loss supposed already, the log of 
 
     L = a'(w + pi a) - a'a / 2
 
-and under a loss with probability p in every frame the log evidence of all is the sum of log(1 - p + p exp L).
+and under a loss with probability p in every frame the log evidence of all is the sum of log(1 - p + p exp L). Where a loss stays in doubt,
+with probability q, the mean of what may have arrived is supposed, and the log likelihood counts less by a'a q (1 - q) / 2.
 """
 
 from collections.abc import Sequence
@@ -39,20 +40,20 @@ WORTH = 10.0  # nats below which no frame counts as lost
 
 
 def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
-    """The case whose tapes say of each frame how much likelier it is lost than not, and its fit with such losses; the case as it was
-    and None where nothing speaks for losses."""
+    """The case whose tapes say of each frame how much likelier it is lost than not, and its fit with such losses, None where nothing
+    speaks for them: then what the tapes say keeps losses from explaining a delay. The case as it was where nothing can be said."""
     if LOST_FRAMES not in case.kit.candidates or not _drives(case):
         return case, None
     if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
         return case, None
     flights = range(len(case.flights))
     answers = each(partial(_unit_answers, case, ground), flights)
-    found = _with_ratios(case, ground, answers, 0)
-    if evidence(found, likely_share(found)) < WORTH:
-        return case, None
+    alone = _with_ratios(case, ground, answers, 0)
+    if evidence(alone, likely_share(alone)) < WORTH:
+        return alone, None
     found, fitted = _fitted(case, ground, answers)
     if fitted is None or fitted.log_posterior < ground.fit.log_posterior + WORTH:
-        return case, None
+        return found, None
     for _ in range(ROUNDS):
         calmer = ground_of(found, fitted)
         answers = each(partial(_unit_answers, found, calmer), flights)
@@ -110,8 +111,8 @@ def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: i
         w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
         before = _supposed(flight.tape, ground.fit.supposed)
-        ratios = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, _judged(flight.tape), sweeps)
-        flights.append(replace(flight, tape=replace(flight.tape, lost=ratios)))
+        ratios, power = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, _judged(flight.tape), sweeps)
+        flights.append(replace(flight, tape=replace(flight.tape, lost=ratios, loss_power=power)))
     return case.with_flights(flights)
 
 
@@ -155,9 +156,9 @@ def _judged(tape: Tape) -> NDArray[np.uint8]:
 
 def _ratios(
     u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: NDArray[np.uint8], sweeps: int
-) -> Array:
-    """L of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of all
-    others taken out. Frames that are not `judged` count as arrived."""
+) -> tuple[Array, Array]:
+    """L and a'a of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of
+    all others taken out. Frames that are not `judged` count as arrived."""
     ffi, lib = _library()
     arrays: dict[str, NDArray[Any]] = {
         "u": np.ascontiguousarray(u),
@@ -169,6 +170,7 @@ def _ratios(
         "arrived": u.copy(),
         "taken": np.zeros((len(u), len(columns))),
         "found": np.zeros(len(u)),
+        "power": np.zeros(len(u)),
     }
     request = ffi.new("loss_request *")
     for name, array in arrays.items():
@@ -177,7 +179,7 @@ def _ratios(
     request.slots, request.apart, request.sweeps = w.shape[1], APART, sweeps
     request.fresh, request.first_share = not before.any(), FIRST_SHARE
     lib.loss_ratios(request)
-    return np.asarray(arrays["found"])
+    return arrays["found"], arrays["power"]
 
 
 @cache

@@ -113,6 +113,7 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
         rows=count,
         usual=np.zeros_like(y),
         lost=np.zeros(count),
+        loss_power=np.zeros(count),
         untold_s=np.zeros(count),
     )
 

@@ -36,7 +36,8 @@ class Tape:
     (outputs,) the variance of one reading by itself. `row` (m,) is the log's row that an instant is, -1 for none, `place`
     (m, outputs) the row of each reading; `rows` in all. `usual` (m, outputs) is the log likelihood of each reading under the nominal
     plant, `known` the sum of those that an effect makes meaningless. `lost` (m,) is the log of how much likelier each instant's
-    command was lost than not, 0 where nothing is known; `untold_s` (m,) for how long until the next instant nobody knows what was
+    command was lost than not, 0 where nothing is known, and `loss_power` (m,) the squared answer of the whitened innovations to its loss;
+    `untold_s` (m,) for how long until the next instant nobody knows what was
     commanded, as the log lacks rows there.
     """
 
@@ -52,6 +53,7 @@ class Tape:
     rows: int
     usual: Array
     lost: Array
+    loss_power: Array
     untold_s: Array
     known: float = 0.0
 
@@ -86,6 +88,7 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
         rows=rows,
         usual=-0.5 * (1.0 + np.log(r)),
         lost=np.zeros(rows),
+        loss_power=np.zeros(rows),
         untold_s=_untold(log.t_s),
     )
 
@@ -143,12 +146,12 @@ def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
     where = np.searchsorted(t_s, tape.t_s)
     row = np.full(len(t_s), -1, dtype=np.int64)
     row[where] = tape.row
-    lost, untold_s = np.zeros(len(t_s)), np.zeros(len(t_s))
-    lost[where], untold_s[where] = tape.lost, tape.untold_s
+    lost, loss_power, untold_s = np.zeros((3, len(t_s)))
+    lost[where], loss_power[where], untold_s[where] = tape.lost, tape.loss_power, tape.untold_s
     readings: dict[str, Any] = {
         name: _spread_out(getattr(tape, name), len(t_s), where, none) for name, none in READINGS.items()
     }
-    return replace(tape, t_s=t_s, u=u, row=row, lost=lost, untold_s=untold_s, **readings)
+    return replace(tape, t_s=t_s, u=u, row=row, lost=lost, loss_power=loss_power, untold_s=untold_s, **readings)
 
 
 def _spread_out(values: NDArray[Any], count: int, where: NDArray[np.int64], none: float) -> NDArray[Any]:

@@ -117,7 +117,9 @@ def _begin(flight: Flight) -> Flight:
     """The first LOOKED_AT_S of a flight."""
     tape = flight.tape
     kept = tape.t_s - tape.t_s[0] <= LOOKED_AT_S
-    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "untold_s", *READINGS)}
+    arrays = {
+        name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "loss_power", "untold_s", *READINGS)
+    }
     return replace(flight, tape=replace(tape, rows=int(kept.sum()), **arrays))
 
 

@@ -41,14 +41,16 @@ static void judge(const loss_request *r, int64_t row, double share, double belie
         held[d] = r->arrived[(row - 1) * r->inputs + input] - r->u[row * r->inputs + input];
         holds |= held[d] != 0.0;
     }
-    double found = 0.0;
+    double found = 0.0, power = 0.0;
     for (int64_t lag = 0; lag < lags; lag++)
         for (int64_t slot = 0; slot < r->slots; slot++) {
             const double a = answer(r, row, lag, slot, held);
             const double without = r->left[(row + lag) * r->slots + slot] + answer(r, row, lag, slot, taken);
             found += a * (without - 0.5 * a);
+            power += a * a;
         }
     r->found[row] = holds ? found : 0.0;
+    r->power[row] = power;
     if (!r->sweeps)
         return;
     const double lost = holds ? probability(belief * r->found[row], share) : share;

@@ -4,10 +4,10 @@ import numpy as np
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
-from diagnosis.fit import Fit
+from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
 from diagnosis.kit import make_kit
-from diagnosis.lost_frames import APART, _ratios, with_losses
+from diagnosis.lost_frames import APART, WORTH, _ratios, evidence, likely_share, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths_input import uniform
@@ -38,7 +38,20 @@ def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
 def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> None:
     case, fitted = losses(plant, fly(41))
     assert fitted is None
-    assert not any(flight.tape.lost.any() for flight in case.flights)
+    assert evidence(case, likely_share(case)) < WORTH
+
+
+def test_a_loop_that_is_late_loses_no_frames(plant: BoundPlant, fly: Fly) -> None:
+    """That every frame were lost by a third, which no frame can be, must not explain a delay of a third of a frame as well as the delay."""
+    case = make_case(
+        make_kit(plant), [fly(41, {"loop.delay": {"tau": 0.0035}}, seconds=60.0, air=False, jumps_rad=0.05)]
+    )
+    nominal = nominal_fit(case)
+    judged, lossy = with_losses(case, ground_of(case, nominal))
+    late = fit(judged, nominal.supposed.with_effects({"loop.delay": {"tau": 0.003}}))
+    lost = fit(judged, nominal.supposed.with_effects({"loop.dropped_frames": {"p": 0.2}}))
+    assert late is not None
+    assert max(found.log_posterior for found in (lossy, lost) if found) < late.log_posterior - 50.0
 
 
 def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
@@ -50,7 +63,7 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
     before = rng.uniform(0.0, 1.0, rows)
     judged = np.ones(rows, dtype=np.uint8)
     judged[[0, 40, 41]] = 0
-    found = _ratios(u, columns, answers, w, before, judged, 0)
+    found, power = _ratios(u, columns, answers, w, before, judged, 0)
 
     arrived = u[:, columns].copy()
     for row in range(1, rows):
@@ -59,6 +72,7 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
         a = (answers[row] @ held)[: rows - row]
         expected = np.sum(a * (w[row : row + APART] + before[row] * a)) - 0.5 * np.sum(a * a)
         np.testing.assert_allclose(found[row], expected if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(power[row], np.sum(a * a) if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
 
 
 def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
@@ -75,6 +89,6 @@ def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
         arrived[row] += held
         end = min(rows, row + APART)
         w[row:end, 0] += answers[row, : end - row, 0, 0] * held
-    ratios = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
+    ratios, _ = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
     clear = np.append(False, np.abs(arrived[:-1, 0] - u[1:, 0]) > 0.2)
     np.testing.assert_array_equal(ratios[clear] > 0.0, lost[clear] > 0.5)

@@ -34,6 +34,7 @@ def tape(y: np.ndarray) -> Tape:
         rows=rows,
         usual=np.zeros(values.shape),
         lost=np.zeros(rows),
+        loss_power=np.zeros(rows),
         untold_s=np.zeros(rows),
     )
 
