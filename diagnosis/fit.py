@@ -164,7 +164,7 @@ def _moved(case: Case, at: Fit, damping: float) -> Supposed:
 
 
 def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | None:
-    """Likelihood and linear problem at a point; None where the filter fails."""
+    """Likelihood and linear problem at a point; None where the filter or its slopes fail."""
     variant = case.kit.variant(supposed.effects)
     inside = np.array([entry.effect in variant.names for entry in free], dtype=bool)
     places = [variant.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in variant.names]
@@ -181,6 +181,8 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
         _add_differences(case, supposed, free, runs, own, information, pull)
     information *= np.outer(scale, scale)
     pull *= scale
+    if not (np.isfinite(information).all() and np.isfinite(pull).all()):
+        return None  # slopes that overflow: as good as a filter that fails
     _add_prior(case, supposed, free, information, pull)
     found = likelihood(runs)
     return Fit(supposed, found, found + log_prior(case, supposed, free), free, information, pull)

@@ -27,7 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
             source="static driver nonlinearity (H bridge, dry motor)",
-            applied=lambda d, w, u=u: {u: sympy.sign(u) * _passed(sympy.Abs(u), d, sympy.Abs(w * d) + SHARP)},
+            applied=lambda d, w, u=u: {u: sympy.sign(u) * _passed(sympy.Abs(u), d, w * d + SHARP)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",
                 f"{place}.gain": "over a narrow range of inputs, a constant loss looks like a smaller gain",

@@ -11,6 +11,7 @@ from sim.model import TIME, Axis, Model
 from sim.places import Edit
 
 Expression = Any
+NOTHING = 1e-30  # beside the square of the sharpest corner
 EDGE_S = 0.02  # how long a step in time takes: a bend is integrated well and has derivatives, a jump has none
 
 
@@ -94,12 +95,13 @@ def positive(expression: Expression) -> Expression:
 
 
 def knee(expression: Expression, width: Expression) -> Expression:
-    """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there.
+    """`positive` with its corner rounded by a parabola over +-width: (x + width)^2 / (4 width) there; the width must not be 0.
 
-    The width must be a positive number whatever its symbols are: SymPy else searches whole equations for imaginary parts.
+    Its reciprocal is width / (width^2 + NOTHING), known to be real whatever its symbols are: SymPy else searches whole equations for
+    imaginary parts, minutes long once several effects act on one input.
     """
     beyond = positive(expression - width)
-    return beyond + (positive(expression + width) - beyond) ** 2 / (4 * width)
+    return beyond + (positive(expression + width) - beyond) ** 2 * width / (4 * (width**2 + NOTHING))
 
 
 def step(at_s: Expression) -> Expression:

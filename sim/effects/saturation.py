@@ -30,8 +30,6 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> max(-limit, min(limit, {u})), its corner rounded over limit (1 -+ w)",
             story="The driver or its supply gives out before the controller's own limit is reached.",
             source="static driver nonlinearity",
-            applied=lambda limit, w, u=u: {
-                u: u - sympy.sign(u) * knee(sympy.Abs(u) - limit, sympy.Abs(w * limit) + SHARP)
-            },
+            applied=lambda limit, w, u=u: {u: u - sympy.sign(u) * knee(sympy.Abs(u) - limit, w * limit + SHARP)},
             smooth=False,
         )
