@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from jobs.code import FOLDERS
+
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 PACKAGES = (
@@ -30,6 +32,11 @@ PACKAGES = (
 
 def _run(*command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_a_kept_answer_counts_for_the_sources_of_every_package() -> None:
+    """An answer that a sweep kept must not outlive a change of any package, or of the firmware's C."""
+    assert set(FOLDERS) == {*PACKAGES, "firmware"}
 
 
 @pytest.mark.parametrize("package", PACKAGES)
