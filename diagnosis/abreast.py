@@ -8,15 +8,14 @@ from typing import Any, TypeVar
 from jobs.threads import threads
 
 Found = TypeVar("Found")
-WORKERS = min(
-    2, threads()
-)  # more would wait for one another: between two answers of the filter Python decides what to ask next
+# More would wait for one another: between two answers of the filter Python decides what to ask next.
+WORKERS = min(2, threads())
 _POOL = ThreadPoolExecutor(WORKERS)
 _HERE = threading.local()
 
 
 def each(function: Callable[..., Found], *items: Iterable[Any]) -> list[Found]:
-    """As list(map(function, *items)), on several cores.
+    """As list(map(function, *items)), on several cores; raises what the first failing piece raised, ValueError for items of unlike lengths.
 
     Pieces may call this again: they then do themselves what no other worker has begun, so none ever waits for one that waits for it.
     """

@@ -16,9 +16,8 @@ from verification.host_law import HostLaw
 Array = NDArray[np.float64]
 
 FLOAT32, FIXED = "float32", "fixed"
-FLOWN_IN_FIXED = (
-    0.5  # so many samples, and more than in float32, have to agree before a log counts as flown in fixed point
-)
+# So many samples, and more than in float32, have to agree before a log counts as flown in fixed point.
+FLOWN_IN_FIXED = 0.5
 
 
 @dataclass(frozen=True, eq=False)

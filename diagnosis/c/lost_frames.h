@@ -1,7 +1,8 @@
 /* Frames of one flight: inputs u (rows, inputs), of which `column` drive something; answers (rows, apart, slots, drives) of the whitened
  * innovations to a unit of each drive's input over each frame; `left` (rows, slots) the innovations, found with losses `lost` (rows)
  * supposed before; `arrived` (rows, inputs), at first u, and `taken` (rows, drives), at first 0, what losses make of the inputs; `found`
- * (rows) the log ratios, `power` (rows) the squared answers to each loss. `sweeps` 0 takes every frame for itself; `fresh` is set where no loss was supposed before. */
+ * (rows) the log ratios, `power` (rows) the squared answers to each loss. `sweeps` 0 takes every frame for itself; `fresh` is set where
+ * no loss was supposed before. */
 #include <stdint.h>
 
 typedef struct {
