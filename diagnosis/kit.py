@@ -14,6 +14,7 @@ from threading import Lock
 from typing import Any
 
 import numpy as np
+import sympy
 from numpy.typing import NDArray
 
 import sim
@@ -70,6 +71,13 @@ class Kit:
     def states(self) -> tuple[str, ...]:
         """The plant's own states."""
         return tuple(str(state) for state in self.bound.model.states)
+
+    @cached_property
+    def frictionless(self) -> frozenset[str]:
+        """Axes without dry friction as stated."""
+        known = dict(zip(self.bound.model.parameter_symbols, self.bound.p.tolist(), strict=True))
+        axes = self.bound.model.axes
+        return frozenset(axis.name for axis in axes if sympy.sympify(axis.coulomb).subs(known) == 0)
 
     @property
     def own(self) -> int:

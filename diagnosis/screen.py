@@ -14,7 +14,7 @@ from diagnosis.fit import likelihood, size_scale, stacked
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
 from diagnosis.instants import instants, is_event
-from diagnosis.kit import is_lag
+from diagnosis.kit import Kit, is_lag
 from diagnosis.lattice import coarse_step
 from diagnosis.quantised import likely_steps
 from sim.effects.effect import Effect, Values
@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 MOST_STARTS = 8
 SMALL = 0.05
 PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05)  # of the largest input, at which a limit may lie
+FRICTIONS = ("coulomb", "load_friction")
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 
 
@@ -52,7 +53,11 @@ def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | Non
     costly = [name for name in wanted if worth is None or name in worth or kit.effects[name].kind == "saturation"]
     stateless = [n for n in wanted if n in kit.names and (n in costly or not is_event(kit.effects[n]))]
     others = [name for name in wanted if name in kit.wide_names]
-    kinds, chosen = (_finite, _smooth, _smooth, _first_order), (costly, others, stateless, costly)
+    finite = [name for name in costly if not kit.effects[name].on_equations or _limited(kit.effects[name])]
+    kinds, chosen = (
+        (_finite, _smooth, _smooth, _first_order),
+        (finite + _holding(kit, wanted), others, stateless, costly),
+    )
     found = each(lambda kind, names: kind(case, ground, names), kinds, chosen)
     best: dict[str, Look] = {}
     for entry in chain.from_iterable(found):
@@ -95,6 +100,13 @@ def _touched(effect: Effect) -> dict[str, float]:
 def _limited(effect: Effect) -> bool:
     """Effects that do nothing at all until a limit is reached: no first order."""
     return effect.kind in ("saturation", "slew_limit")
+
+
+def _holding(kit: Kit, names: Sequence[str]) -> list[str]:
+    """Dry friction of an axis that has none as stated: of how it holds the axis where it rests first order knows nothing."""
+    return [
+        name for name in names if kit.effects[name].kind in FRICTIONS and kit.effects[name].place in kit.frictionless
+    ]
 
 
 def _judged(case: Case, ground: Ground, values: Mapping[str, Values], runs: Sequence[Pass]) -> list[Look]:
@@ -145,11 +157,10 @@ def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]
 def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
     effects = [case.kit.effects[name] for name in names]
-    finite = [effect for effect in effects if not effect.on_equations or _limited(effect)]
-    sizes = each(lambda effect: _sizes(case, ground, effect), finite)
+    sizes = each(lambda effect: _sizes(case, ground, effect), effects)
     starts = [
         (effect, {**shapes, effect.size.symbol: value})
-        for effect, values in zip(finite, sizes, strict=True)
+        for effect, values in zip(effects, sizes, strict=True)
         for value in values
         for shapes in shape_starts(effect)
     ]

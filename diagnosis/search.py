@@ -1,7 +1,8 @@
 """The search for what is missing: single effects, then pairs and triples from the best of each size, every one fitted with the plant."""
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
@@ -27,11 +28,19 @@ WORTH = 14
 SETTLED = 5
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 FAR, ONCE_MORE = 1.0, 3  # the same for the best of the fits that were refined
-CERTAIN = 3.5  # standard deviations
+CERTAIN, LIKELY = 3.5, 1.5  # standard deviations
+MISSED = 15.0  # nats
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
 LEAST_SLIP = 1.5  # counts
 WORTH_REFINING = 0.2  # of the best first fit's gain
-POLISHING = (0.2, 0.03, 0.005)
+POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
+FINELY = (
+    1e-3,
+    2e-4,
+    4e-5,
+)  # and once the rest fits: a range of some hundred steps tells one to a hundredth of a thousandth
+NEAR_BEST = 30.0  # nats that a first fit may be short of the best to be fitted to its end
+INSTEAD, NEARLY = 3, 0.03  # effects tried in the place of another, and the share of its gain that they must promise
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +106,12 @@ def search(
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
-        partners = each(lambda tried: _partners(case, tried, names, worth), best)
-        grown = [job for jobs in partners for job in jobs]
-        if not partners or not partners[0] or not _fit_all(case, grown, found, best[0]):
+        grown = _grown(case, best, names, worth)
+        if not grown or not _fit_all(case, grown, found, best[0]):
             break
+        exchange(case, found, worth)
     _settle(case, found)
-    certain = [entry for entry in found.values() if _certain(entry.fit)]
+    certain = [entry for entry in found.values() if _certain(entry, found)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
     return Search(tuple(tried), first, ground, tuple(looks))
 
@@ -134,14 +143,25 @@ def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
 
 def _settle(case: Case, found: dict[frozenset[str], Tried]) -> None:
     """Once more the best of all, until effect and unrest agree: a fit not yet at its end would lose to one with an idle effect."""
-    best = sorted((entry for entry in found.values() if _certain(entry.fit)), key=lambda entry: -entry.evidence)
+    best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
     for entry in each(lambda tried: refined(case, tried), best[:SETTLED]):
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
 
 
-def _certain(fit: Fit) -> bool:
-    """Whether every effect has a size that is not zero within its spread."""
+def _certain(tried: Tried, found: Mapping[frozenset[str], Tried]) -> bool:
+    """Whether every effect has a size that is not zero within its spread, or one that may hardly be zero and without which all is far
+    less likely: where an axis sticks, the readings beside it alone make that spread."""
+    for name, certainty in certainties(tried.fit).items():
+        without = found.get(frozenset(tried.effects) - {name})
+        missed = 0.0 if without is None else tried.evidence - without.evidence
+        if certainty < CERTAIN and (certainty < LIKELY or missed < MISSED):
+            return False
+    return True
+
+
+def certainties(fit: Fit) -> dict[str, float]:
+    """How far each effect's size is from zero, in standard deviations."""
     count = len(fit.supposed.theta)
     spread = np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0))[count:]
     sizes: dict[str, float] = {}
@@ -150,15 +170,30 @@ def _certain(fit: Fit) -> bool:
             away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
             certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
             sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
-    return all(certainty > CERTAIN for certainty in sizes.values())
+    return sizes
 
 
-def _partners(case: Case, tried: Tried, names: Sequence[str], worth: Set[str]) -> list[Job]:
-    """Further effects that promise most beside those tried."""
-    calm = calmed(case, tried.fit)
-    start = calm or tried.fit
-    looks = look(case, ground_of(case, start), names, worth)
-    return [Job(start, entry, calm is not None) for entry in looks if entry.gain > FURTHER_GAIN][:PARTNERS]
+def _grown(case: Case, best: Sequence[Tried], names: Sequence[str], worth: Set[str]) -> list[Job]:
+    """The best hypotheses, each with the further effects that promise most beside it; none where the first has none.
+
+    The first also with the one that promises most under the air as it seems: under calm air what is left of a rough rig hides a
+    lesser effect.
+    """
+    if not best:
+        return []
+    calm = each(lambda tried: calmed(case, tried.fit), best)
+    starts = [air or tried.fit for air, tried in zip(calm, best, strict=True)]
+    counts = [PARTNERS] * len(best)
+    if calm[0] is not None:
+        calm, starts, counts = [*calm, None], [*starts, best[0].fit], [*counts, 1]
+
+    def partners(start: Fit, air: Fit | None, count: int) -> list[Job]:
+        looks = look(case, ground_of(case, start), names, worth)
+        return [Job(start, entry, air is not None) for entry in looks if entry.gain > FURTHER_GAIN][:count]
+
+    jobs = each(partners, starts, calm, counts)
+    of_the_first = [*jobs[0], *chain.from_iterable(jobs[len(best) :])]
+    return [*of_the_first, *chain.from_iterable(jobs[1 : len(best)])] if of_the_first else []
 
 
 def _fit_all(
@@ -168,11 +203,11 @@ def _fit_all(
     known: Tried,
 ) -> bool:
     """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
-    fresh: dict[frozenset[str], Job] = {}
+    fresh: dict[tuple[frozenset[str], bool], Job] = {}
     for job in jobs:
-        fresh.setdefault(frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job)
-    wanted = [job for names, job in fresh.items() if names not in found]
-    rough = [entry for entry in each(lambda job: _rough(case, job), wanted) if entry]
+        fresh.setdefault((frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job.calm), job)
+    wanted = [job for (names, _), job in fresh.items() if names not in found]
+    rough = best_of_each(entry for entry in each(lambda job: _rough(case, job), wanted) if entry)
     if not rough:
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
@@ -182,6 +217,65 @@ def _fit_all(
     done[:ONCE_MORE] = each(lambda entry: _once_more(case, entry), done[:ONCE_MORE])
     found.update({frozenset(entry.effects): entry for entry in (*rough, *done)})
     return True
+
+
+def exchange(case: Case, found: dict[frozenset[str], Tried], worth: Set[str]) -> None:
+    """Each effect of the best hypothesis in turn changed for others, while that makes it better.
+
+    A right effect that was fitted beside a wrong one, or beside none, may have ended with its numbers and the plant's bent; from where
+    the best hypothesis has them it ends well.
+    """
+    best = max(found.values(), key=lambda entry: entry.evidence)
+    fewer = max((entry.evidence for entry in found.values() if len(entry.effects) < len(best.effects)), default=-np.inf)
+    while len(best.effects) > 1 and best.evidence > fewer + FURTHER_GAIN:
+        better = _exchanged(case, best, found, worth)
+        if better is None:
+            return
+        best = found[frozenset(better.effects)] = better
+
+
+def _exchanged(case: Case, best: Tried, found: dict[frozenset[str], Tried], worth: Set[str]) -> Tried | None:
+    """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
+    jobs = [job for jobs in each(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
+    tried = [entry for entry in each(lambda job: _at_its_place(case, job), jobs) if entry]
+    for entry in tried:
+        known = found.setdefault(frozenset(entry.effects), entry)
+        if entry.evidence > known.evidence:
+            found[frozenset(entry.effects)] = entry
+    first = max(tried, key=lambda entry: entry.evidence, default=None)
+    if first is None or first.evidence < best.evidence - NEAR_BEST:
+        return None
+    end = refined(case, first)
+    return end if end is not None and end.evidence > best.evidence else None
+
+
+def _at_its_place(case: Case, job: Job) -> Tried | None:
+    """A first fit from where the rest fits already."""
+    supposed, entry = job.start.supposed, job.look
+    found = fit(case, supposed.with_effects({**supposed.effects, entry.effect: entry.values}), rounds=4)
+    found = None if found is None else awake(case, found)
+    return None if found is None else _tried(case, found)
+
+
+def _instead(case: Case, tried: Tried, name: str, worth: Set[str]) -> list[Job]:
+    """Effects that promise most in the place of `name`, all else as it was fitted."""
+    supposed = tried.fit.supposed
+    start = fit(case, supposed.with_effects({n: v for n, v in supposed.effects.items() if n != name}), rounds=0)
+    if start is None:
+        return []
+    looks = look(case, ground_of(case, start), sorted(worth - {name}))
+    least = max(FURTHER_GAIN, NEARLY * (tried.fit.log_likelihood - start.log_likelihood))
+    return [Job(start, entry, True) for entry in looks if entry.gain > least][:INSTEAD]
+
+
+def best_of_each(tried: Iterable[Tried]) -> list[Tried]:
+    """The best fit of each set of effects."""
+    best: dict[frozenset[str], Tried] = {}
+    for entry in tried:
+        known = best.setdefault(frozenset(entry.effects), entry)
+        if entry.evidence > known.evidence:
+            best[frozenset(entry.effects)] = entry
+    return list(best.values())
 
 
 def _once_more(case: Case, tried: Tried) -> Tried:
@@ -199,7 +293,7 @@ def _rough(case: Case, job: Job) -> Tried | None:
     supposed, entry = job.start.supposed, job.look
     start = supposed.with_effects({**supposed.effects, entry.effect: entry.values})
     if entry.effect.endswith("_input.quantization"):
-        start = _polished(case, start, entry.effect)
+        start = _polished(case, start, entry.effect, POLISHING)
     found = fit(case, start, rounds=4)
     if found is not None and job.calm:
         found = awake(case, found)
@@ -207,7 +301,7 @@ def _rough(case: Case, job: Job) -> Tried | None:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     astray = start if found is None else found.supposed
     if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
-        found = _likelier(found, _from_stated(case, astray))
+        found = _likelier(found, _from_stated(case, start))
     return None if found is None or not _whole_counts(case, found) else _tried(case, found)
 
 
@@ -251,14 +345,17 @@ def _whole_counts(case: Case, found: Fit) -> bool:
 
 def refined(case: Case, tried: Tried) -> Tried | None:
     """The fit with the unrest that then remains."""
-    found = fit(case, with_unrest(case, tried.fit.supposed), rounds=5)
+    start = with_unrest(case, tried.fit.supposed)
+    for name in tried.effects:
+        start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
+    found = fit(case, start, rounds=5)
     return None if found is None else _tried(case, found)
 
 
-def _polished(case: Case, start: Supposed, effect: str) -> Supposed:
+def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]) -> Supposed:
     """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
     best, value = start, -np.inf
-    for reach in POLISHING:
+    for reach in reaches:
         middle = best.effects[effect]["q"]
         for q in np.linspace(1.0 - reach, 1.0 + reach, 13) * middle:
             tried = start.with_effects({**start.effects, effect: {"q": float(q)}})

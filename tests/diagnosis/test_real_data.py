@@ -42,3 +42,32 @@ def test_most_of_the_error_is_gone_in_the_run_with_pulses(emps: Result) -> None:
     assert shrinkage.fraction is not None
     assert shrinkage.fraction > 0.85
     assert shrinkage.rms_after["q_m"] < 0.4 * shrinkage.rms_before["q_m"] < 0.2 * shrinkage.rms_nominal["q_m"]
+
+
+LAG_S, COULOMB_RAD_S2 = 0.12, 0.57  # of the AeroShield, as the recordings' notes state them
+NEAR, OF_THAT_ORDER = 0.15, 1.6
+REPEATED_RAD = 0.034  # rms between two runs of one input: each is that over sqrt(2) from their mean
+
+
+@pytest.fixture(scope="module")
+def aeroshield() -> Result:
+    """The arm with one propeller: one run to explain, another and its repetition to check on."""
+    logs = [recorded("aeroshield", record) for record in ("ident_data", "val_data", "Validation_Data2")]
+    plant = bind(load_plant(Path("plants/aeroshield.toml")))
+    return diagnose(plant, Material(logs[:1], logs[1:], ["val_data", "repeated"], [None] * 3))
+
+
+def test_lag_and_dry_friction_of_the_arm_are_found(aeroshield: Result) -> None:
+    first = aeroshield.diagnosis.effects[0]
+    assert set(aeroshield.diagnosis.found) == set(first.effect.split(" + "))
+    (lag,) = (value.value for name, value in first.parameters.items() if name.endswith("lag.tau"))
+    assert lag == pytest.approx(LAG_S, rel=NEAR)
+    plant = aeroshield.plant.parameters
+    friction = first.parameters["arm.coulomb.b"].value / (plant["m"].value * plant["l"].value ** 2)
+    assert COULOMB_RAD_S2 / OF_THAT_ORDER < friction < COULOMB_RAD_S2 * OF_THAT_ORDER
+
+
+def test_the_arm_is_predicted_over_a_second_as_well_as_it_repeats_itself(aeroshield: Result) -> None:
+    shrinkage = aeroshield.diagnosis.shrinkage
+    assert shrinkage is not None
+    assert shrinkage.rms_after["theta_rad"] < REPEATED_RAD / 2**0.5

@@ -1,0 +1,52 @@
+"""What the search must not miss: a step known finely, an effect hidden behind its like."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from diagnosis.case import Case, make_case
+from diagnosis.engine import nominal_fit
+from diagnosis.fit import Fit, fit
+from diagnosis.kit import make_kit
+from diagnosis.search import Tried, evidence, exchange, refined
+from sim.bind import BoundPlant
+from sim.effects.effect import Values
+from tests.diagnosis.conftest import Fly
+
+STEP_V, OFFSET_RAD = 0.107565, -0.0046
+FINELY = 2e-5
+
+
+def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> Tried:
+    """The fit of these effects from these values."""
+    found = fit(case, nominal.supposed.with_effects(effects))
+    assert found is not None
+    return Tried(tuple(effects), found, evidence(found))
+
+
+def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
+    # Rounded commands of 100 steps shift where they round with a step 1e-4 off, which costs 100 nats and bends all else.
+    truth = {"main_input.quantization": {"q": STEP_V}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
+    case = make_case(make_kit(plant), [fly(41, truth, air=False)])
+    nominal = nominal_fit(case)
+    off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4)}}
+    end: Tried | None = fitted(case, nominal, off)
+    for _ in range(2):
+        assert end is not None
+        end = refined(case, end)
+    assert end is not None
+    assert end.fit.supposed.effects["main_input.quantization"]["q"] == pytest.approx(STEP_V, rel=FINELY)
+
+
+def test_an_effect_is_exchanged_for_its_like(plant: BoundPlant, fly: Fly) -> None:
+    # 50 ms of delay of the main input, taken for a lag of the elevation's sensor beside the right spring.
+    spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
+    case = make_case(make_kit(plant), [fly(42, {**spring, "main_input.delay": {"tau": 0.05}}, air=False)])
+    nominal = nominal_fit(case)
+    wrong = fitted(case, nominal, {**spring, "psi_sensor.lag": {"tau": 0.05}})
+    found = {frozenset(wrong.effects): wrong}
+    exchange(case, found, {"main_input.delay", "main_input.lag", "psi_sensor.delay", "psi_sensor.lag"})
+    best = max(found.values(), key=lambda entry: entry.evidence)
+    assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
+    assert best.fit.supposed.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
+    assert best.evidence > wrong.evidence + 20.0
