@@ -105,7 +105,7 @@ def plant_pair_findings(logs: Sequence[RunLog], names: Sequence[str]) -> Iterato
                     severity,
                     0,
                     "logs of one rig",
-                    "diagnose them apart",
+                    "give the logs of one rig at a time",
                 )
             ),
         )

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from identification.belief import NOTHING, Belief
 from identification.estimate import CONTRADICTION_SD, Estimate, Range, estimate, problem_of
@@ -162,6 +163,11 @@ def trimmed(log: RunLog, begin_s: float, end_s: float) -> RunLog:
     extra = {name: values[kept] for name, values in log.extra.items()}
     seq = None if log.seq is None else log.seq[kept]
     return replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept], extra=extra, seq=seq)
+
+
+def without_readings(log: RunLog, rows: NDArray[np.bool_]) -> RunLog:
+    """The log with nothing measured in these of its rows (n,); their times and inputs stand."""
+    return replace(log, y=np.where(rows[:, None], np.nan, log.y)) if np.any(rows) else log
 
 
 def prediction_tests(

@@ -27,7 +27,7 @@ from sim.columns import log_columns as plant_columns
 from twinlaw import console, options
 from twinlaw.frequency_report import CHECK_HEADING, PAIR_HEADING, check_rows, frequency_page, pair_rows, pictures
 from twinlaw.identify_summary import HEADING, estimate_rows
-from twinlaw.identifying import free_names, oddities, read_limits, save_result, told_files
+from twinlaw.identifying import Inputs, free_names, looked_at, read_limits, save_result, told_files
 from twinlaw.page import page_text
 from twinlaw.progress import progress
 
@@ -94,14 +94,15 @@ def _operating_point(
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
             "identify from the plant without them",
         )  # fmt: skip
-    logs, held = _read(chosen, holdout, plant_columns(bound.model))
-    odd = oddities(logs, held, bound)
+    inputs = looked_at(Inputs((), *_read(chosen, holdout, plant_columns(bound.model))), bound)
     outputs = tuple(bound.model.outputs)
-    records, others = ([record_of(log, name, outputs) for name, log in some.items()] for some in (logs, held))
+    records, others = (
+        [record_of(log, name, outputs) for name, log in some.items()] for some in (inputs.logs, inputs.holdout)
+    )
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
     model = operating_point_model(bound, free_names(bound, chosen.free), means, read_limits(chosen.bounds))
     found = _matched(chosen, bound.plant, model, records, others, told)
-    return replace(found, notes=(*odd, *found.notes))
+    return replace(found, notes=(*inputs.notes, *found.notes))
 
 
 def _matched(

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from diagnosis.integrity import demand, examine
+import numpy as np
+
+from diagnosis.integrity import LogIntegrity, demand, examine
 from identification.belief import NOTHING, stated
 from identification.estimate import Estimate
-from identification.logs import best_fit, fits_of_logs, prediction_tests
+from identification.logs import best_fit, fits_of_logs, prediction_tests, without_readings
 from identification.result import Identification, facts
 from identification.search import Search
 from identification.staged import identify_stage, in_order, title
@@ -76,18 +78,27 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
 
 
 def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
-    """The logs with what is odd in them; raises BadInput for what makes one worthless (a unit slip, no motion, nothing measured)."""
-    return replace(inputs, notes=oddities(inputs.logs, inputs.holdout, bound))
+    """The inputs without readings that cannot be used, and one sentence for each thing that is odd in a log.
 
-
-def oddities(logs: Mapping[str, RunLog], holdout: Mapping[str, RunLog], bound: BoundPlant) -> tuple[str, ...]:
-    """One sentence for each thing that is odd in the logs themselves; raises BadInput for what makes one worthless."""
-    if not logs and not holdout:
-        return ()
-    kept = list(holdout.values())
-    found = examine(list(logs.values()), bound, holdout=kept, names=[*logs, *holdout])
+    Raises BadInput for what makes a log worthless (a unit slip, no motion, nothing measured).
+    """
+    if not inputs.logs and not inputs.holdout:
+        return inputs
+    everything = {**inputs.logs, **inputs.holdout}
+    found = examine(list(inputs.logs.values()), bound, holdout=list(inputs.holdout.values()), names=list(everything))
     demand(found)
-    return found.notes
+    usable = {entry.name: _usable(everything[entry.name], entry, found.notes) for entry in found.logs}
+    logs, holdout = ({name: usable[name] for name in some} for some in (inputs.logs, inputs.holdout))
+    return replace(inputs, logs=logs, holdout=holdout, notes=found.notes)
+
+
+def _usable(log: RunLog, looked: LogIntegrity, notes: Sequence[str]) -> RunLog:
+    """The log without the readings that are to be left out; raises BadInput where none would be left."""
+    kept = without_readings(log, looked.excluded)
+    if not np.any(np.isfinite(kept.y)):
+        got = next(note for note in notes if note.startswith(f"{looked.name}: ") and "left out" in note)
+        raise BadInput("log", looked.name, got.partition(": ")[2], "a row that can be used", "leave this log out")
+    return kept
 
 
 def _log(path: Path, bound: BoundPlant) -> RunLog:

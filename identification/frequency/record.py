@@ -36,7 +36,7 @@ class Record:
 
 
 def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
-    """A log's readings of `outputs` on an even grid: lines between readings (also across NaN), inputs held.
+    """A log's readings of `outputs` on an even grid: lines between readings (also across NaN), inputs and references held.
 
     Raises BadInput for a log without two readings of an output.
     """
@@ -47,9 +47,17 @@ def record_of(log: RunLog, name: str, outputs: Sequence[str]) -> Record:
     references = [reference_name(output) for output in log.columns.outputs[: log.u.shape[1]]]
     r = log.u
     if log.loop == "closed" and all(reference in log.extra for reference in references):
-        r = np.column_stack([np.nan_to_num(log.extra[reference]) for reference in references])
+        r = np.column_stack([_held(log.extra[reference]) for reference in references])
     u = log.u[held]
     return Record(name, log.sample_period_s, u, y, u if r is log.u else r[held], log.loop)
+
+
+def _held(values: Array) -> Array:
+    """Where a number is missing the one before it, at the beginning the first; 0 where there is none at all."""
+    good = np.flatnonzero(np.isfinite(values))
+    if not good.size:
+        return np.zeros(values.size)
+    return np.asarray(values[good[np.clip(np.searchsorted(good, np.arange(values.size), "right") - 1, 0, None)]])
 
 
 def _line(log: RunLog, output: str, grid_s: Array, name: str) -> Array:

@@ -113,6 +113,33 @@ def test_an_axis_that_was_never_read_is_said_and_the_other_is_identified(flown, 
     assert told["estimates"][0]["value"] == pytest.approx(bound.parameter("J_A"), rel=0.05)
 
 
+def test_rows_that_the_look_leaves_out_do_not_reach_the_fit(flown, tmp_path, capsys):
+    """Truth: three readings off by 1.5 rad, which are named, change the estimates by nothing more than three that were never made."""
+    log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
+    found = {}
+    for name, amount in (("leaps", 1.5), ("unread", np.nan)):
+        y = log.y.copy()
+        y[[300, 700, 1100], 1] += amount
+        save_log(tmp_path / f"{name}.csv", replace(log, y=y))
+        options = ["--free", "J_A,b_vA", "--window", "2", "--json", "--out", str(tmp_path / "out")]
+        assert main(["identify", *options, str(tmp_path / f"{name}.csv")]) == 0
+        found[name] = json.loads(capsys.readouterr().out)
+    assert "leaps: phi_rad leaps away and back in 3 rows, first at 3 s; left out" in found["leaps"]["notes"]
+    for one, other in zip(found["leaps"]["estimates"], found["unread"]["estimates"], strict=True):
+        # What the look leaves out is a row, and with it the three sound readings of the other axis.
+        assert one["value"] == pytest.approx(other["value"], abs=0.1 * other["sd"])
+        assert one["sd"] == pytest.approx(other["sd"], rel=0.01)
+
+
+def test_a_log_given_twice_under_two_names_is_refused(flown, tmp_path, capsys):
+    for suffix in (".csv", ".toml"):
+        shutil.copy(Path(flown[-1]).with_suffix(suffix), tmp_path / f"copy{suffix}")
+    assert main(["identify", "--out", str(tmp_path / "out"), *flown, str(tmp_path / "copy.csv")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "copy: log: got 2000 rows stand in flight too; left out here, expected a row that can be used" in line
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_parameter_on_which_no_experiment_bears_is_named(folder, tmp_path, capsys):
     record = next(str(path) for path in folder.glob("03-*.toml"))
     assert main(["identify", "--free", "J_A,tau_gE", "--out", str(tmp_path), record]) == 0

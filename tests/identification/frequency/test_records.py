@@ -36,6 +36,14 @@ def test_a_closed_loop_is_told_by_its_references_unless_none_moves():
         np.testing.assert_array_equal(found[0].r[:, 0], by)
 
 
+def test_a_reference_that_is_missing_in_a_row_is_that_of_the_row_before():
+    reference = np.array([np.nan, 0.5, np.nan, 0.7])
+    found = record_of(
+        log(0.1 * np.arange(4), np.ones(4), np.ones(4), "closed", x_ref_rad=reference), "loop", ("x_rad",)
+    )
+    np.testing.assert_array_equal(found.r[:, 0], [0.5, 0.5, 0.5, 0.7])
+
+
 def one(value):
     return np.array([[value]])
 
