@@ -53,8 +53,9 @@ def verdict(told: dict[str, Any]) -> str:
 
 
 def notes_of(found: Study) -> tuple[str, ...]:
-    """What the flights of each condition cannot tell."""
-    return tuple(f"{entry.condition.name}: {note}." for entry in found.conditions for note in entry.notes)
+    """What the flights of each condition cannot tell, and those that served nothing."""
+    told = [f"{entry.condition.name}: {note}." for entry in found.conditions for note in entry.notes]
+    return (*told, *(f"{note}." for note in found.unused))
 
 
 def _inputs(entry: ConditionResult, found: Study) -> Section:

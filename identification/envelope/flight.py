@@ -17,6 +17,7 @@ OUTPUTS = ("A_x_m_s2", "A_y_m_s2", "A_z_m_s2")
 CONTROLS = ("collective", "longitudinal", "lateral", "pedals")
 USES = ("identification", "validation", "interpolation")
 GRAVITY_m_s2 = 9.80665
+QUIET_s = 2.0  # at the beginning of a flight, whose mean is its trim
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,7 @@ class Deviations:
         return int(self.x.shape[0] * self.x.shape[1])
 
 
-def joined(flights: Sequence[Flight], quiet_s: float = 2.0) -> Deviations:
+def joined(flights: Sequence[Flight], quiet_s: float = QUIET_s) -> Deviations:
     """The flights one after another (1.2.1, Fig. 1.4), cut to the shortest; the trim is the mean over the quiet first seconds.
 
     Raises BadInput for flights of different sample periods or conditions, or shorter than the quiet part.
@@ -83,7 +84,9 @@ def joined(flights: Sequence[Flight], quiet_s: float = 2.0) -> Deviations:
     period_s, rows = periods.pop(), min(len(flight.x) for flight in flights)
     quiet = round(quiet_s / period_s)
     if rows <= quiet:
-        raise BadInput("flight", names[0], f"{rows} rows", f"more than {quiet}", "give longer records")
+        shortest = min(flights, key=lambda flight: len(flight.x)).name
+        expected = f"more than {quiet}, {quiet_s:g} s, which are the trim"
+        raise BadInput("flight", shortest, f"{rows} rows", expected, "give a longer record, or leave it out")
     whole = np.stack([np.hstack([flight.u[:rows], flight.x[:rows], flight.y[:rows]]) for flight in flights])
     trim = whole[:, :quiet].mean(axis=1)
     u, x, y = np.split(whole - trim[:, None, :], [4, 12], axis=2)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from identification.envelope.conditions import condition_of
 from identification.envelope.flight import CONTROLS, INPUTS, OUTPUTS, STATES, USES, Flight
+from identification.envelope.look import demand_sound
 from identification.margins import MARGINS
 from records import checks
 from records.errors import BadInput
@@ -39,8 +40,14 @@ def save_flight(folder: Path, flight: Flight) -> Path:
 
 
 def load_flights(folder: Path) -> tuple[Flight, ...]:
-    """All flight tests of a folder in the order of their names; raises BadInput where there is none."""
-    found = tuple(load_flight(path) for path in sorted(folder.glob("*.toml")))
+    """All flight tests of a folder in the order of their names; raises BadInput where there is none, or two are of one name."""
+    paths = sorted(folder.glob("*.toml"))
+    found = tuple(load_flight(path) for path in paths)
+    names = [flight.name for flight in found]
+    for path, name in zip(paths, names, strict=True):
+        if names.count(name) > 1:
+            expected = "condition, mission, manoeuvre and number that differ from every other flight's"
+            raise BadInput("flight", str(path), f"a second {name}", expected, "give it another number, or leave it out")
     if not found:
         raise BadInput(
             "flight tests", str(folder), "no TOML file", "sidecars with their CSV files", "name another folder"
@@ -49,7 +56,7 @@ def load_flights(folder: Path) -> tuple[Flight, ...]:
 
 
 def load_flight(path: Path) -> Flight:
-    """Read a sidecar and its CSV; raises BadInput that names file, key or column, and remedy."""
+    """Read a sidecar and its CSV; raises BadInput that names file, key or column, and remedy, also for another unit or condition."""
     content, where = read_toml(path, "flight test"), str(path)
     checks.schema(content, f"{where}: schema", SCHEMA)
     checks.keys(content, where, _KEYS)
@@ -59,7 +66,7 @@ def load_flight(path: Path) -> Flight:
     number = content["number"]
     if not isinstance(number, int) or isinstance(number, bool) or number < 0:
         raise BadInput("number", f"{where}: number", repr(number), "a whole number from 0 on", "count the repetitions")
-    return Flight(
+    flight = Flight(
         condition_of(checks.text(content["condition"], f"{where}: condition")),
         _one_of(content["mission"], tuple(MARGINS), f"{where}: mission"),
         _one_of(content["manoeuvre"], (*CONTROLS, "none"), f"{where}: manoeuvre"),
@@ -67,6 +74,8 @@ def load_flight(path: Path) -> Flight:
         _one_of(content["use"], USES, f"{where}: use"),
         period_s, u, x, y,
     )  # fmt: skip
+    demand_sound(flight, str(path.with_suffix(".csv")))
+    return flight
 
 
 def _one_of(value: object, known: Sequence[str], where: str) -> str:
@@ -79,12 +88,23 @@ def _signals(path: Path, period_s: float) -> Array:
     """All columns after the time (n, 15); every sample has to be there, as the model is one of equal steps."""
     names, rows = read_rows(path)
     if names != COLUMNS:
-        missing = [name for name in COLUMNS if name not in names]
-        got = f"without {', '.join(missing)}" if missing else "in another order"
+        missing, unknown = (
+            [name for name in some if name not in others] for some, others in ((COLUMNS, names), (names, COLUMNS))
+        )
+        got = "in another order"
+        if missing or unknown:
+            got = " and ".join(
+                [*[f"none called {name}" for name in missing], *[f"an unknown {name}" for name in unknown]]
+            )
         raise BadInput("columns", str(path), got, ",".join(COLUMNS), "write these columns in this order")
-    if not np.all(np.isfinite(rows)):
-        line = int(np.flatnonzero(~np.all(np.isfinite(rows), axis=1))[0]) + 2
-        raise BadInput("row", f"{path}, line {line}", "an empty cell", "every signal", "cut the record before it")
+    for name, column in zip(names, rows.T, strict=True):
+        bad = np.flatnonzero(~np.isfinite(column))
+        if bad.size:
+            got = f"{column[bad[0]]} in {bad.size} of {column.size} rows"
+            raise BadInput(
+                f"column {name!r}", f"{path}, line {bad[0] + 2}", got, "a finite number in every row",
+                "cut the record before it, or leave this flight out",
+            )  # fmt: skip
     uneven = np.abs(np.diff(rows[:, 0]) - period_s) > _UNEVEN * period_s
     if np.any(uneven):
         line = int(np.flatnonzero(uneven)[0]) + 3

@@ -20,6 +20,7 @@ def facts(found: Study) -> dict[str, Any]:
         "inputs": list(INPUTS),
         "outputs": list(OUTPUTS),
         "flights": found.flights,
+        "unused": list(found.unused),
         "summary": summary(found),
         "conditions": [_condition(entry) for entry in found.conditions],
         "left_out": [_left_out(entry) for entry in found.left_out],

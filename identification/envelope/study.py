@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 from identification.envelope.closed_loop import Training, optimise
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import Match, flights_passed, matches
-from identification.envelope.flight import CONTROLS, OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
+from identification.envelope.flight import OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
 from identification.envelope.free_run import Model, model_of, one_step
 from identification.envelope.fuzzy import Trained
 from identification.envelope.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
 from identification.envelope.outputs import Equation, Linear, equations
 from identification.envelope.recursive import best, history, pairs
+from identification.envelope.shortcomings import poor, unused
 from identification.envelope.starts import NONE, Starts
 from identification.margins import MARGINS
+from records.errors import BadInput
 
 Array = NDArray[np.float64]
-STILL_percent = 0.1  # rms of a control's own motion, of its travel, below which it tells nothing
 FINAL = "with trim"  # whose states the output equation of the global model takes
 
 
@@ -80,11 +81,12 @@ class Interpolated:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """All conditions, those left out, and the number of flights."""
+    """All conditions, those left out, the number of flights, and which of them served nothing."""
 
     conditions: tuple[ConditionResult, ...]
     left_out: tuple[Interpolated, ...]
     flights: int
+    unused: tuple[str, ...] = ()
 
     def at(self, name: str) -> ConditionResult:
         """The condition of a name, or the first where there is none of it."""
@@ -109,9 +111,15 @@ def study(
     """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each.
 
     `starts` are those typed in by hand. `save` is told what is known after each, so that an interrupted study leaves what it has.
-    Raises BadInput for flights that cannot be joined, and for a condition left out without neighbours on both sides.
+    Raises BadInput for flights that cannot be joined or have different sample periods, and for a condition left out without
+    neighbours on both sides.
     """
     found, left_out = list[ConditionResult](), list[Interpolated]()
+
+    def so_far() -> Study:
+        return Study(tuple(found), tuple(left_out), len(flights), unused(flights))
+
+    _one_period(flights)
     known = _conditions(flights, "identification")
     for condition in _conditions(flights, "interpolation"):
         neighbours(known, condition)
@@ -119,14 +127,22 @@ def study(
         with stage(condition.name):
             mine = [entry for entry in flights if entry.condition == condition]
             found.append(identify(condition, mine, forgetting, starts))
-        save(Study(tuple(found), (), len(flights)))
+        save(so_far())
     models = {entry.condition: entry.model for entry in found}
     for condition in _conditions(flights, "interpolation"):
         with stage(f"{condition.name}, left out"):
             mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
             left_out.append(_interpolated(condition, models, mine, starts))
-        save(Study(tuple(found), tuple(left_out), len(flights)))
-    return Study(tuple(found), tuple(left_out), len(flights))
+        save(so_far())
+    return so_far()
+
+
+def _one_period(flights: Sequence[Flight]) -> None:
+    """Raises BadInput where a model of one sample period would have to predict flights of another."""
+    by_period = {flight.sample_period_s: flight.name for flight in flights}
+    if len(by_period) > 1:
+        got = " and ".join(f"{period_s:g} s ({name})" for period_s, name in sorted(by_period.items()))
+        raise BadInput("sample_period_s", "flights", got, "one for all flights", "resample the others")
 
 
 def _conditions(flights: Iterable[Flight], use: str) -> list[Condition]:
@@ -156,23 +172,6 @@ def identify(
     return ConditionResult(
         condition, poor(mine, data), row, potentials, open_loop, training, trained, model, tuple(checks)
     )
-
-
-def poor(flights: Sequence[Flight], data: Deviations) -> tuple[str, ...]:
-    """One sentence for each control whose column of B these flights tell badly: never moved on purpose, or hardly moved by itself."""
-    notes = []
-    u = data.u.reshape(-1, data.u.shape[2])
-    for i, control in enumerate(CONTROLS):
-        others = np.concatenate([np.delete(u, i, axis=1), data.x.reshape(len(u), -1)], axis=1)
-        left = u[:, i] - others @ np.linalg.lstsq(others, u[:, i], rcond=None)[0]
-        alone_percent = float(np.sqrt(np.mean(left**2)))
-        if alone_percent < STILL_percent:
-            notes.append(
-                f"{control}: moves by {alone_percent:.2f} % rms beside what goes with the rest; its effect is not told"
-            )
-        elif all(flight.manoeuvre != control for flight in flights):
-            notes.append(f"{control}: no flight moves it on purpose; its effect rests on the pilot's corrections")
-    return tuple(notes)
 
 
 def margins_of(mission: str) -> tuple[Array, Array]:

@@ -1,6 +1,7 @@
 """`twinlaw envelope` on two conditions and one between: files back and forth, what is written, what is refused."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from identification.envelope import study
 from identification.envelope.conditions import Condition
-from identification.envelope.flight import STATES
+from identification.envelope.flight import STATES, Flight
 from identification.envelope.flight_file import load_flight, load_flights, save_flight
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
@@ -107,15 +108,58 @@ def test_what_is_wrong_with_a_flight_is_said(folder: Path, tmp_path: Path, capsy
     for wrong, rows, words in (
         (text.replace("level", "aerobatic"), table, "aerobatic"),
         (text.replace('use = "identification"', 'use = "validation"'), table, "none to identify from"),
-        (text, table.replace("collective_percent", "collective", 1), "without collective_percent"),
+        (text, table.replace("collective_percent", "collective", 1), "none called collective_percent and an unknown"),
         (text, "\n".join([*lines[:5], *lines[6:]]) + "\n", "line 6"),
-        (text, "\n".join([*lines[:5], lines[5].rsplit(",", 1)[0] + ",", *lines[6:]]) + "\n", "empty cell"),
+        (
+            text,
+            "\n".join([*lines[:5], lines[5].rsplit(",", 1)[0] + ",", *lines[6:]]) + "\n",
+            "line 6: column 'A_z_m_s2': got nan in 1 of 240 rows",
+        ),
     ):
         sidecar.write_text(wrong)
         sidecar.with_suffix(".csv").write_text(rows)
         assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
         assert words in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def scaled(flight: Flight, factor: float, *names: str) -> Flight:
+    """The flight with these of its states in another unit."""
+    return replace(flight, x=flight.x * np.where(np.isin(STATES, names), factor, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "words"),
+    [
+        (lambda flight: scaled(flight, np.degrees(1.0), "phi_rad", "theta_rad"), "times what the rates turn: degrees"),
+        (lambda flight: scaled(flight, np.degrees(1.0), "p_rad_s", "q_rad_s", "r_rad_s"), "degrees a second"),
+        (lambda flight: scaled(flight, np.degrees(1.0), *STATES[3:]), "convert attitudes and rates from degrees"),
+        (lambda flight: scaled(flight, 1.944, *STATES[:3]), "expected about 25.7 m/s, as HF3000ft-50kts says"),
+        (lambda flight: replace(flight, y=flight.y / 9.81), "A_x_m_s2, A_y_m_s2, A_z_m_s2: got a mean of 1"),
+        (lambda flight: replace(flight, y=-flight.y), "A_z_m_s2: got a mean of +9.8"),
+        (lambda flight: replace(flight, u=flight.u / 100.0), "lateral_percent: got a motion of"),
+        (lambda flight: replace(flight, u=flight.u * 10.0), "per cent of the travel, 0 to 100"),
+        (lambda flight: scaled(flight, 0.0, "w_m_s"), "w_m_s: got 0 in every row"),
+        (lambda flight: replace(flight, u=flight.u[:80], x=flight.x[:80], y=flight.y[:80]), "record: got 4 s"),
+    ],
+)
+def test_a_flight_that_cannot_be_what_it_says_is_refused_by_signal(
+    folder: Path, tmp_path: Path, capsys, spoilt, words: str
+) -> None:
+    save_flight(tmp_path, spoilt(load_flight(folder / "HF3000ft-50kts-level-lateral-0.toml")))
+    assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
+    assert "HF3000ft-50kts-level-lateral-0.csv" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_one_flight_twice_is_refused(folder: Path, tmp_path: Path, capsys) -> None:
+    sidecar = save_flight(tmp_path, load_flight(folder / "HF3000ft-50kts-level-lateral-0.toml"))
+    for path in (sidecar, sidecar.with_suffix(".csv")):
+        (tmp_path / f"copy{path.suffix}").write_bytes(path.read_bytes())
+    assert main(["envelope", "--out", str(tmp_path / "out"), str(tmp_path)]) == 2
+    assert "got a second HF3000ft-50kts-level-lateral-0" in capsys.readouterr().err
 
 
 def test_an_empty_folder_is_refused(tmp_path: Path, capsys) -> None:

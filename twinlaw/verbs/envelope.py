@@ -68,7 +68,7 @@ def run(chosen: argparse.Namespace) -> int:
     with console.stage("drawing the report"):
         write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries)))
     if chosen.json:
-        print(json.dumps(summary(found)))
+        print(json.dumps({**summary(found), "notes": list(notes_of(found))}))
         return 0
     print(verdict(summary(found)))
     for flight in tries:

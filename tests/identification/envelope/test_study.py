@@ -8,7 +8,8 @@ import pytest
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import error_margins, outside_percent, passed
 from identification.envelope.flight import joined
-from identification.envelope.study import FINAL, Interpolated, poor, study
+from identification.envelope.shortcomings import poor, unused
+from identification.envelope.study import FINAL, Interpolated, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.linear import linearised
@@ -109,6 +110,21 @@ def test_a_condition_without_neighbours_is_refused_before_the_work(flights):
     alone = [entry for entry in flights if entry.condition != ENDS[1]]
     with pytest.raises(BadInput, match="speed"):
         study(alone, stage=lambda name: pytest.fail(name))
+
+
+def test_flights_that_serve_nothing_and_flights_that_are_cut_are_named(flights):
+    other = [entry for entry in flights if entry.condition == ENDS[0] or entry.use == "validation"]
+    assert unused(flights) == ()
+    assert unused(other) == ("HF6000ft-90kts: 3 validation flights not used, as no flight identifies this condition",)
+    mine = [entry for entry in flights if entry.condition == ENDS[0] and entry.use == "identification"]
+    short = replace(mine[0], u=mine[0].u[:240], x=mine[0].x[:240], y=mine[0].y[:240])
+    (note,) = poor(given := [short, *mine[1:]], joined(given))
+    assert note == "its flights are cut to the shortest, 12 s; the longest lasts 24 s"
+
+
+def test_flights_of_different_sample_periods_are_refused_before_the_work(flights):
+    with pytest.raises(BadInput, match="sample_period_s"):
+        study([*flights[1:], replace(flights[0], sample_period_s=0.1)], stage=lambda name: pytest.fail(name))
 
 
 def test_flights_of_two_conditions_are_not_joined(flights):
