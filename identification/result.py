@@ -89,7 +89,8 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for entry in stage.discords[:3]
     ]
     coloured = [
-        f"{title}: residuals of {test.channel} are correlated ({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
+        f"{test.run if test.run in title.split(', ') else title}: residuals of {test.channel} are correlated "
+        f"({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
         "its samples count for fewer"
         for test in stage.residuals
         if not test.white
@@ -120,12 +121,10 @@ def identification(
     """Put the final belief into the plant; what the data do not tell keeps the file's value and sd."""
     starts = _numbers(plant)
     factors: dict[str, float] = {}
-    scales: dict[str, float] = {}
     for _, stage in stages:
         for name in stage.own:
             factors.setdefault(name, interval_factor(stage.dof))
-    for name in belief.names:
-        scales[name] = max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1])
+    scales = {name: max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1]) for name in belief.names}
     estimates = tuple(
         _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), TOLD * scales[name])
         for name in belief.names

@@ -20,11 +20,19 @@ def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
             f"{entry.start:.4g}",
             f"{entry.value:.5g}",
             f"{entry.lower:.5g} .. {entry.upper:.5g}",
-            f"{100.0 * entry.sd / abs(entry.value):.2g} %" if entry.value else f"{entry.sd:.2g}",
+            _relative(entry),
             "" if entry.identified else "not identified",
         )
         for entry in estimates
     ]
+
+
+def _relative(entry: Estimated) -> str:
+    """The sd in per cent of the value, without an exponent."""
+    if not entry.value:
+        return f"{entry.sd:.2g}"
+    percent = 100.0 * entry.sd / abs(entry.value)
+    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %" if percent < 1000.0 else "> 1000 %"
 
 
 def aid_rows(aids: Sequence[Estimated]) -> list[tuple[str, ...]]:
