@@ -21,7 +21,11 @@ def page_text(
 ) -> str:
     """The page; the same comparison gives the same bytes."""
     environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=FileSystemLoader(_TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
     )
     effects = tables.effect_rows(rows)
     return environment.get_template("controllers.md.j2").render(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twinlaw.comparing import Compared, spread_of
-from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, stack
+from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
@@ -162,15 +162,18 @@ def figure_plot(rows: Sequence[Compared], figure: str) -> str:
         Curve(*_thinned(first.t_s, np.degrees(first.reference_rad[:, axis])), "reference", GREY, ":") for axis in (0, 1)
     ]
     degrees = 180.0 / math.pi
-    return stack(
-        [
-            Panel("elevation [deg]", [*curves(angles, 0, degrees), wanted[0]]),
-            Panel("azimuth [deg]", [*curves(angles, 1, degrees), wanted[1]]),
-            Panel("u_M [V]", curves(voltages, 0, 1.0)),
-            Panel("u_T [V]", curves(voltages, 1, 1.0)),
-        ],
-        "time [s]",
+    panels = (
+        Panel("elevation [deg]", [*curves(angles, 0, degrees), wanted[0]]),
+        Panel("azimuth [deg]", [*curves(angles, 1, degrees), wanted[1]]),
+        Panel("u_M [V]", sorted(curves(voltages, 0, 1.0), key=_travel, reverse=True)),
+        Panel("u_T [V]", sorted(curves(voltages, 1, 1.0), key=_travel, reverse=True)),
     )
+    return grid([(panel,) for panel in panels], ("",), "time [s]", height_in=1.9)
+
+
+def _travel(curve: Curve) -> float:
+    """How far its line goes up and down: the busiest is drawn first, so that it hides none."""
+    return float(np.abs(np.diff(curve.y)).sum())
 
 
 def _thinned(t_s: Array, values: Array) -> tuple[Array, Array]:
