@@ -17,10 +17,11 @@ PATIENCE_S = 10.0  # for a cluster to answer
 
 @dataclass(frozen=True)
 class Hands:
-    """An open executor and how many jobs it does at once."""
+    """An open executor, how many jobs it does at once, and whether anybody is left to do them (which may take seconds to find out)."""
 
     executor: Executor
     width: int
+    manned: Callable[[], bool] = lambda: True
 
 
 Crew = Callable[[], AbstractContextManager[Hands]]  # opened once, and once more where a process of it has died
@@ -60,14 +61,15 @@ def cluster(address: str) -> Crew:
         except ImportError as error:
             got, remedy = "no library distributed", "pip install --editable '.[cluster]', or leave --cluster out"
             raise BadInput("Dask", f"--cluster {address}", got, "the extra `cluster`", remedy) from error
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it would tell in its words we tell in ours
+        for name in ("distributed", "distributed.client"):  # what it would tell in its words we tell in ours
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             client = Client(address, timeout=PATIENCE_S, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             remedy = "start one with `dask scheduler`, or correct the address"
             raise BadInput("Dask scheduler", address, _short(error), "one that answers", remedy) from error
         try:
-            yield Hands(client.get_executor(), _width(client, address))
+            yield Hands(client.get_executor(), _width(client, address), lambda: _manned(client))
         finally:
             client.close()
 
@@ -90,6 +92,15 @@ def _width(client: object, address: str) -> int:
         remedy = "update them: the same sources, libraries and Python give the same answers"
         raise BadInput("Dask workers", others[0], "other sources or libraries", "those of this checkout", remedy)
     return sum(threads.values())
+
+
+def _manned(client: object) -> bool:
+    """Whether there is a worker, or one comes while we wait: a nanny takes seconds to replace one that died."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE_S)  # type: ignore[attr-defined]
+    except TimeoutError:
+        return False
+    return True
 
 
 def _short(error: Exception) -> str:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
+import numpy as np
+
 Answer = Any  # what JSON can hold: str, int, float, bool, None, lists and mappings of these
 
 
@@ -39,7 +41,8 @@ class Done:
 
 
 def canonical(value: Any) -> bytes:
-    """The bytes of plain data, other for other data: None, bool, int, float, str, bytes, tuples, lists, mappings, dataclasses of these.
+    """The bytes of plain data, other for other data: None, bool, int, float, str, bytes, arrays of numbers; tuples, lists, mappings,
+    dataclasses of these.
 
     Raises TypeError for anything else, since what cannot be told apart must not share an answer.
     """
@@ -51,6 +54,8 @@ def canonical(value: Any) -> bytes:
         return _framed("str", value.encode())
     if isinstance(value, bytes):
         return _framed("bytes", value)
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+        return _framed(f"array {value.dtype.str} {value.shape}", value.tobytes())
     if isinstance(value, tuple | list):
         return _framed("list", b"".join(map(canonical, value)))
     if isinstance(value, Mapping):

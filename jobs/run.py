@@ -15,6 +15,7 @@ from records.errors import BadInput
 
 AHEAD = 2  # jobs handed out for each that is worked on, so that no worker waits for the next
 DIED = "the worker process died in the middle of it (killed, or out of memory); see whether it fits into memory alone"
+LOOK_s = 30.0  # without an answer until it is looked whether anybody works
 Watch = Callable[[Done], None]
 
 
@@ -81,8 +82,10 @@ class _Shift:
         return place
 
     def wait(self) -> None:
-        """Until at least one job is done."""
-        finished, _ = wait(self.out, return_when=FIRST_COMPLETED)
+        """Until at least one job is done; raises BadInput where nobody is left to do one."""
+        finished, _ = wait(self.out, LOOK_s, return_when=FIRST_COMPLETED)
+        if not finished and self._hands is not None and not self._hands.manned():
+            raise _lost("its last worker gone", "a worker until the end")
         try:
             for future in sorted(finished, key=list(self.out).index):
                 outcome = _outcome(future)
@@ -136,9 +139,13 @@ def _outcome(future: Future[Outcome]) -> Outcome:
     except BrokenExecutor:
         raise
     except CancelledError as error:
-        remedy = "look after it, and give the same command: it goes on from what is kept"
-        raise BadInput(
-            "Dask cluster", "--cluster", "the connection lost", "a scheduler until the end", remedy
-        ) from error
+        raise _lost("the connection lost", "a scheduler until the end") from error
     except Exception as error:
+        if type(error).__name__ == "KilledWorker":  # Dask's, after it has tried the job on one worker after another
+            return Outcome(None, DIED, 0.0)
         return Outcome(None, f"{type(error).__name__}: {' '.join(str(error).split())[:200]}", 0.0)
+
+
+def _lost(got: str, expected: str) -> BadInput:
+    remedy = "look after it, and give the same command: it goes on from what is kept"
+    return BadInput("Dask cluster", "--cluster", got, expected, remedy)

@@ -8,7 +8,6 @@ from typing import Any, TypeVar
 
 from records import checks
 from records.errors import BadInput
-from records.files import write_atomic
 from records.reading import read_json
 
 SCHEMA = "diagnosis/1"
@@ -173,11 +172,6 @@ def diagnosis_text(diagnosis: Diagnosis) -> str:
         return json.dumps({"schema": SCHEMA, **_plain(diagnosis)}, indent=1, allow_nan=False) + "\n"
     except ValueError as error:
         raise BadInput("number", "diagnosis", str(error), "finite numbers", "write null for what is unknown") from error
-
-
-def save_diagnosis(path: Path, diagnosis: Diagnosis) -> None:
-    """Write diagnosis.json; raises BadInput when it is unwritable or out of range."""
-    write_atomic(path, diagnosis_text(diagnosis))
 
 
 def load_diagnosis(path: Path) -> Diagnosis:

@@ -4,6 +4,7 @@ import json
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -127,16 +128,23 @@ def parcel(asked: Question) -> Parcel:
 
 def answer(asked: Parcel) -> dict[str, str]:
     """The files of the diagnosis by name; raises BadInput that names the parcel's files without the folder they were put into."""
+    with opened(asked) as (plant, logs, holdout):
+        result = diagnose(*read_material(plant, logs, holdout))
+        return dict(result_files(result, [path.name for path in logs]))
+
+
+@contextmanager
+def opened(asked: Parcel) -> Iterator[tuple[Path, list[Path], list[Path]]]:
+    """Its plant, logs and held-out logs as files of a folder that is there for the body; a BadInput of the body names them without it."""
     with tempfile.TemporaryDirectory() as work:
         for name, content in asked.files.items():
             (Path(work) / name).parent.mkdir(exist_ok=True)
             (Path(work) / name).write_bytes(content)
         logs, holdout = ([Path(work) / name for name in names] for names in (asked.logs, asked.holdout))
         try:
-            result = diagnose(*read_material(Path(work) / asked.plant, logs, holdout))
+            yield Path(work) / asked.plant, logs, holdout
         except BadInput as error:
             raise _without(work, error) from error
-        return dict(result_files(result, [path.name for path in logs]))
 
 
 def _without(folder: str, error: BadInput) -> BadInput:

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from identification.envelope.by_hand import Tried
+from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import outside_percent
 from identification.envelope.record import summary
-from identification.envelope.study import FINAL, Check, ConditionResult, Study
+from identification.envelope.study import ConditionResult, Study
 from twinlaw import envelope_plots as plots
 from twinlaw import envelope_tables as tables
 from twinlaw.page import Page, Section, Table

@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from identification.envelope.by_hand import Tried
+from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import WEIGHTS, Match, error_margins, outside_percent, passed, score_percent
 from identification.envelope.flight import OUTPUTS, STATES
 from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.outputs import METHODS
-from identification.envelope.study import FINAL, Check, ConditionResult, Study
+from identification.envelope.study import ConditionResult, Study
 from identification.margins import MARGINS, FOOT_m
 from twinlaw.page import Table
 

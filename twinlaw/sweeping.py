@@ -46,7 +46,7 @@ def swept(title: str, jobs: Iterable[Job], count: int, crew: Crew, keep: Keep) -
         with console.tally(title, count) as tell:
             yield from run(jobs, crew, keep, watch)
     except KeyboardInterrupt as error:
-        told = f"interrupted; {finished} of {count} done and kept, the same command goes on from there"
+        told = f"{finished} of {count} done and kept, the same command goes on from there"
         raise KeyboardInterrupt(told) from error
 
 

@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from identification.envelope.check import Check, margins_of
 from identification.envelope.criteria import Match, matches
 from identification.envelope.flight import STATES
 from identification.envelope.starts import Starts
-from identification.envelope.study import Check, Study, margins_of
+from identification.envelope.study import Study
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,54 +1,28 @@
 """The whole chain of seed 003: for each flight condition open loop, closed loop, starts, output equation; then interpolation."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.envelope.check import Check, check, margins_of
 from identification.envelope.closed_loop import Training, optimise
 from identification.envelope.conditions import Condition
-from identification.envelope.criteria import Match, flights_passed, matches
-from identification.envelope.flight import OUTPUTS, STATES, Deviations, Flight, joined, one_by_one
-from identification.envelope.free_run import Model, model_of, one_step
+from identification.envelope.flight import Deviations, Flight, joined
+from identification.envelope.free_run import Model, model_of
 from identification.envelope.fuzzy import Trained
-from identification.envelope.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
-from identification.envelope.outputs import Equation, Linear, equations
+from identification.envelope.outputs import Linear, equations
 from identification.envelope.recursive import best, history, pairs
 from identification.envelope.shortcomings import poor, unused
 from identification.envelope.starts import NONE, Starts
-from identification.margins import MARGINS
+from jobs.plain import plain, typed
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
-FINAL = "with trim"  # whose states the output equation of the global model takes
-
-
-@dataclass(frozen=True, eq=False)
-class Check:
-    """A model tried on flights of one mission: its states by tuning and its accelerations by method, and how both match.
-
-    `start` (flights, 8) are the tuned starts as whole signals, by tuning; "by hand" is among the tunings where any were typed in.
-    `open_loop` is one step ahead, `open_loop_whole` the same with the trim put back, which flatters Theil's fit; `outputs` come from
-    measured states (chapter 3), `overall` from the run's own (chapter 4). `held` counts the flights whose states all stay within their
-    margins for three seconds, by tuning.
-    """
-
-    name: str
-    mission: str
-    data: Deviations
-    start: Mapping[str, Array]
-    x: Mapping[str, Array]
-    y: Mapping[str, Array]
-    y_overall: Mapping[str, Array]
-    open_loop: tuple[Match, ...]
-    open_loop_whole: tuple[Match, ...]
-    held: Mapping[str, int]
-    states: Mapping[str, tuple[Match, ...]]
-    outputs: Mapping[str, tuple[Match, ...]]
-    overall: Mapping[str, tuple[Match, ...]]
+Each = Callable[[Callable[[Any], Any], Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +54,37 @@ class Interpolated:
 
 
 @dataclass(frozen=True, eq=False)
+class Order:
+    """One condition with all that its identification depends on."""
+
+    condition: Condition
+    flights: tuple[Flight, ...]
+    forgetting: float
+    starts: Starts
+
+    @property
+    def name(self) -> str:
+        """The condition's."""
+        return self.condition.name
+
+
+@dataclass(frozen=True, eq=False)
+class OrderBetween:
+    """One condition left out, with the two models to be tried on its flights."""
+
+    condition: Condition
+    flights: tuple[Flight, ...]
+    between: GlobalModel
+    nearest: GlobalModel
+    starts: Starts
+
+    @property
+    def name(self) -> str:
+        """The condition's, and that it was left out."""
+        return f"{self.condition.name}, left out"
+
+
+@dataclass(frozen=True, eq=False)
 class Study:
     """All conditions, those left out, the number of flights, and which of them served nothing."""
 
@@ -93,10 +98,6 @@ class Study:
         return next((entry for entry in self.conditions if entry.condition.name == name), self.conditions[0])
 
 
-def _silent(_: str) -> AbstractContextManager[None]:
-    return nullcontext()
-
-
 def _unsaved(_: Study) -> None:
     pass
 
@@ -104,11 +105,11 @@ def _unsaved(_: Study) -> None:
 def study(
     flights: Sequence[Flight],
     forgetting: float = 1.0,
-    stage: Callable[[str], AbstractContextManager[None]] = _silent,
+    each: Each = map,
     save: Callable[[Study], None] = _unsaved,
     starts: Starts = NONE,
 ) -> Study:
-    """Identify every condition that has flights for it, then interpolate where others are given; `stage` is entered for each.
+    """Identify every condition that has flights for it, then interpolate where others are given; `each` does the orders as `map` does.
 
     `starts` are those typed in by hand. `save` is told what is known after each, so that an interrupted study leaves what it has.
     Raises BadInput for flights that cannot be joined or have different sample periods, and for a condition left out without
@@ -120,19 +121,20 @@ def study(
         return Study(tuple(found), tuple(left_out), len(flights), unused(flights))
 
     _one_period(flights)
-    known = _conditions(flights, "identification")
-    for condition in _conditions(flights, "interpolation"):
+    known, unknown = _conditions(flights, "identification"), _conditions(flights, "interpolation")
+    for condition in unknown:
         neighbours(known, condition)
-    for condition in known:
-        with stage(condition.name):
-            mine = [entry for entry in flights if entry.condition == condition]
-            found.append(identify(condition, mine, forgetting, starts))
+    orders = [Order(at, _of(flights, at), forgetting, dict(starts)) for at in known]
+    for answer in each(identified, orders):
+        found.append(typed(ConditionResult, answer))
         save(so_far())
     models = {entry.condition: entry.model for entry in found}
-    for condition in _conditions(flights, "interpolation"):
-        with stage(f"{condition.name}, left out"):
-            mine = [entry for entry in flights if entry.condition == condition and entry.use == "interpolation"]
-            left_out.append(_interpolated(condition, models, mine, starts))
+    tries = [
+        OrderBetween(at, _of(flights, at, "interpolation"), between(models, at), nearest(models, at), dict(starts))
+        for at in unknown
+    ]
+    for answer in each(interpolated, tries):
+        left_out.append(typed(Interpolated, answer))
         save(so_far())
     return so_far()
 
@@ -143,6 +145,31 @@ def _one_period(flights: Sequence[Flight]) -> None:
     if len(by_period) > 1:
         got = " and ".join(f"{period_s:g} s ({name})" for period_s, name in sorted(by_period.items()))
         raise BadInput("sample_period_s", "flights", got, "one for all flights", "resample the others")
+
+
+def identified(order: Order) -> dict[str, Any]:
+    """The plain form of a ConditionResult; raises BadInput as `identify` does."""
+    found: dict[str, Any] = plain(identify(order.condition, order.flights, order.forgetting, order.starts))
+    return found
+
+
+def interpolated(order: OrderBetween) -> dict[str, Any]:
+    """The plain form of an Interpolated; raises BadInput for flights that cannot be joined."""
+    data, mission = joined(order.flights), order.flights[0].mission
+
+    def tried(model: GlobalModel) -> Check:
+        return check(
+            order.condition.name, mission, data, model.state, model.state, {"linear": model.output}, order.starts
+        )
+
+    found: dict[str, Any] = plain(
+        Interpolated(order.condition, order.between, tried(order.between), tried(order.nearest))
+    )
+    return found
+
+
+def _of(flights: Iterable[Flight], condition: Condition, use: str | None = None) -> tuple[Flight, ...]:
+    return tuple(entry for entry in flights if entry.condition == condition and use in (None, entry.use))
 
 
 def _conditions(flights: Iterable[Flight], use: str) -> list[Condition]:
@@ -172,63 +199,3 @@ def identify(
     return ConditionResult(
         condition, poor(mine, data), row, potentials, open_loop, training, trained, model, tuple(checks)
     )
-
-
-def margins_of(mission: str) -> tuple[Array, Array]:
-    """Margins of the states (8,) and of the accelerations (3,) for a mission."""
-    return np.array([MARGINS[mission][name] for name in STATES]), np.array([MARGINS[mission][name] for name in OUTPUTS])
-
-
-def check(
-    name: str,
-    mission: str,
-    data: Deviations,
-    open_loop: Model,
-    model: Model,
-    ways: Mapping[str, Equation],
-    starts: Starts = NONE,
-) -> Check:
-    """Try `open_loop` one step ahead and `model` in free runs, tuned flight by flight."""
-    margins_x, margins_y = margins_of(mission)
-    period_s = data.sample_period_s
-    tuned = _tuned(model, data, margins_x, starts)
-    x = {how: np.stack([flight.x for flight in flights]) for how, flights in tuned.items()}
-    y = {way: equation(data, data.x) for way, equation in ways.items()}
-    y_overall = {way: equation(data, x[FINAL]) for way, equation in ways.items()}
-    ahead, trim = one_step(open_loop, data), data.trim[:, None, 4:12]
-    start = {how: np.stack([flight.start for flight in flights]) + trim[:, 0] for how, flights in tuned.items()}
-    return Check(
-        name, mission, data, start, x, y, y_overall,
-        matches(STATES, data.x, ahead, margins_x, period_s),
-        matches(STATES, data.x + trim, ahead + trim, margins_x, period_s),
-        {how: flights_passed(data.x, run, margins_x, period_s) for how, run in x.items()},
-        {how: matches(STATES, data.x, run, margins_x, period_s) for how, run in x.items()},
-        {way: matches(OUTPUTS, data.y, guess, margins_y, period_s) for way, guess in y.items()},
-        {way: matches(OUTPUTS, data.y, guess, margins_y, period_s) for way, guess in y_overall.items()},
-    )  # fmt: skip
-
-
-def _tuned(model: Model, data: Deviations, margins: Array, starts: Starts) -> Mapping[str, Sequence[Tuned]]:
-    """The free run of each flight, by tuning; by hand only where starts were typed in, and then the other flights start as measured."""
-    ways: dict[str, Callable[[Deviations], Tuned]] = {
-        "measured": lambda flight: as_measured(model, flight),
-        "by hand": lambda flight: by_hand(model, flight, starts.get(flight.names[0], {})),
-        "grid": lambda flight: over_grid(model, flight, margins),
-        "automatic": lambda flight: automatic(model, flight, margins),
-        FINAL: lambda flight: automatic(model, flight, margins, trim=True),
-    }
-    if not starts:
-        del ways["by hand"]
-    return {how: [tune(flight) for flight in one_by_one(data)] for how, tune in ways.items()}
-
-
-def _interpolated(
-    condition: Condition, models: Mapping[Condition, GlobalModel], flights: Sequence[Flight], starts: Starts
-) -> Interpolated:
-    data, mission = joined(flights), flights[0].mission
-
-    def tried(model: GlobalModel) -> Check:
-        return check(condition.name, mission, data, model.state, model.state, {"linear": model.output}, starts)
-
-    model = between(models, condition)
-    return Interpolated(condition, model, tried(model), tried(nearest(models, condition)))

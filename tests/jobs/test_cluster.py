@@ -1,6 +1,8 @@
 """The same jobs on a Dask cluster of this computer: the same bytes, and a clear line where the cluster cannot do them."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -48,6 +50,35 @@ def test_a_failure_there_names_its_record_and_the_others_go_on(address: str, tmp
     done = swept(doing.odd_fails, list(range(4)), tmp_path, cluster(address))
     assert [entry.answer for entry in done] == [0, None, 2, None]
     assert "record 3: number" in str(done[3].failure)
+
+
+def test_a_worker_that_dies_costs_the_job_that_killed_it_and_no_other(address: str, tmp_path: Path) -> None:
+    culprit, marks = 2, tmp_path / "marks"
+    marks.mkdir()
+    records = [(index, culprit, str(marks)) for index in range(4)]
+    done = swept(doing.deadly, records, tmp_path / "kept", cluster(address))
+    assert [entry.answer for entry in done] == [0, 1, None, 3]
+    assert "the worker process died" in str(done[culprit].failure)
+
+
+def test_a_cluster_whose_last_worker_died_is_told_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("jobs.run.LOOK_s", 0.5)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with distributed.LocalCluster(n_workers=0, host="127.0.0.1", dashboard_address=":0") as local:
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", local.scheduler_address]
+        options = ["--no-nanny", "--no-dashboard", "--nthreads", "1", "--local-directory", str(tmp_path)]
+        with subprocess.Popen([*command, *options], env=environment, stderr=subprocess.DEVNULL) as worker:
+            with distributed.Client(local.scheduler_address, set_as_default=False) as client:
+                client.wait_for_workers(1)
+            monkeypatch.setattr("jobs.crew.PATIENCE_S", 2.0)
+            with pytest.raises(BadInput, match="Dask cluster: got its last worker gone"):
+                swept(
+                    doing.deadly,
+                    [(0, 1, str(tmp_path)), (1, 1, str(tmp_path))],
+                    tmp_path / "kept",
+                    cluster(local.scheduler_address),
+                )
+            worker.wait()
 
 
 def test_workers_with_other_sources_are_refused_by_name(

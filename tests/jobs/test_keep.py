@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from jobs.job import Job, canonical
@@ -24,10 +25,20 @@ def test_a_key_tells_function_record_and_code_apart() -> None:
 
 def test_plain_data_that_differ_have_other_bytes() -> None:
     values = [None, 0, 1, True, 0.0, -0.0, 1.0, "1", b"1", (), (1,), (1, 1), ((1,), 1), {}, {"a": 1}, {"a": (1,)}, "a1"]
+    values += [
+        np.zeros(2),
+        np.zeros((1, 2)),
+        np.zeros((2, 1)),
+        np.zeros(2, np.int64),
+        np.array([0.0, -0.0]),
+        np.zeros(0),
+    ]
     assert len({canonical(value) for value in values}) == len(values)
     assert canonical({"a": 1, "b": 2}) == canonical({"b": 2, "a": 1})
     with pytest.raises(TypeError, match="set"):
         canonical({1, 2})
+    with pytest.raises(TypeError, match="ndarray"):
+        canonical(np.array([None]))
 
 
 def test_a_folder_of_files_comes_back_only_whole_and_for_its_own_key(tmp_path: Path) -> None:

@@ -1,13 +1,17 @@
 """`twinlaw envelope` on two conditions and one between: files back and forth, what is written, what is refused."""
 
 import json
+<<<<<<< HEAD
 from dataclasses import replace
+=======
+import sys
+from contextlib import redirect_stdout
+>>>>>>> 9948a00 (envelope, blind: flight conditions and baselines on the executors of the other sweeps, going on where they were; a dead Dask worker told plainly)
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from identification.envelope import study
 from identification.envelope.conditions import Condition
 from identification.envelope.flight import STATES, Flight
 from identification.envelope.flight_file import load_flight, load_flights, save_flight
@@ -38,16 +42,24 @@ def test_a_flight_reads_back_as_it_was_written(folder: Path) -> None:
         assert np.array_equal(mine, true)
 
 
-def test_the_verb_identifies_interpolates_and_draws(folder: Path, tmp_path: Path, capsys) -> None:
-    assert main(["envelope", "--out", str(tmp_path), str(folder)]) == 0
-    told = json.loads((tmp_path / "envelope.json").read_text())
+@pytest.fixture(scope="module")
+def answered(folder: Path, tmp_path_factory) -> Path:
+    """What the verb leaves of these flights with one worker, and in said.txt what it says."""
+    out = tmp_path_factory.mktemp("answered")
+    with (out / "said.txt").open("w") as said, redirect_stdout(said):
+        assert main(["envelope", "--workers", "1", "--out", str(out), str(folder)]) == 0
+    return out
+
+
+def test_the_verb_identifies_interpolates_and_draws(answered: Path) -> None:
+    told = json.loads((answered / "envelope.json").read_text())
     assert [entry["condition"] for entry in told["conditions"]] == [at.name for at in ENDS]
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
     assert told["summary"]["interpolation"]["flights"] == 4
-    page = (tmp_path / "report.html").read_text()
+    page = (answered / "report.html").read_text()
     for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
         assert words in page
-    assert "HF3000ft-50kts, one step ahead" in capsys.readouterr().out
+    assert "HF3000ft-50kts, one step ahead" in (answered / "said.txt").read_text()
 
 
 VALIDATION = "HF3000ft-50kts-level-lateral-3"
@@ -167,17 +179,33 @@ def test_an_empty_folder_is_refused(tmp_path: Path, capsys) -> None:
     assert "flight tests" in capsys.readouterr().err
 
 
-def test_an_interrupted_study_leaves_the_conditions_that_were_done(monkeypatch, folder: Path, tmp_path: Path) -> None:
-    original, calls = study.identify, []
+def stops_at(monkeypatch: pytest.MonkeyPatch, name: str, call: int) -> None:
+    """Ctrl-C as the function of this name of the verb is called so many times."""
+    verb, calls = sys.modules["twinlaw.verbs.envelope"], []
+    original = getattr(verb, name)
 
-    def stops_at_the_second(*given):
+    def stopping(*given):
         calls.append(given)
-        if len(calls) == 2:
+        if len(calls) == call:
             raise KeyboardInterrupt
         return original(*given)
 
-    monkeypatch.setattr(study, "identify", stops_at_the_second)
-    assert main(["envelope", "--out", str(tmp_path), str(folder)]) == 130
+    monkeypatch.setattr(verb, name, stopping)
+
+
+def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_bytes(
+    monkeypatch, folder: Path, answered: Path, tmp_path: Path, capsys
+) -> None:
+    words = ["envelope", "--workers", "2", "--out", str(tmp_path), str(folder)]
+    with monkeypatch.context() as patch:
+        stops_at(patch, "write_atomic", 2)
+        assert main(words) == 130
+    assert "1 condition identified, and 0 predicted between them; the same command goes on" in capsys.readouterr().err
     told = json.loads((tmp_path / "envelope.json").read_text())
     assert [entry["condition"] for entry in told["conditions"]] == [ENDS[0].name]
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
+
+    assert main(words) == 0
+    for name in ("envelope.json", "report.html"):
+        assert (tmp_path / name).read_bytes() == (answered / name).read_bytes()
+    assert not (tmp_path / "jobs").exists()

@@ -3,7 +3,7 @@
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld; `twinlaw blind score DIR RESULTS` opens the seal and
 scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind
 baseline NAME DIR RESULTS` answers them in a plain way, to be beaten. The generator shares no code with simulation or diagnosis. What was
-interrupted, `make` or `diagnose`, goes on where it was.
+interrupted goes on where it was.
 """
 
 import argparse
@@ -13,15 +13,10 @@ from pathlib import Path
 
 import blind
 from diagnosis.baselines import BASELINES
-from records.diagnosis import save_diagnosis
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log import load_log
-from records.plant import load_plant
-from sim.bind import bind
-from sim.columns import log_columns
 from twinlaw import options, plots, sweeping
-from twinlaw.console import stage
+from twinlaw.answering_plainly import plain_answers
 from twinlaw.diagnosing_each import answers, questions
 
 
@@ -57,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
     )
     scorer.set_defaults(part=_score)
-    for part in (maker, asker):
+    for part in (maker, asker, plain):
         sweeping.workers(part)
     for part in (maker, asker, plain, scorer):
         part.add_argument("--json", action="store_true", help="print one JSON object instead of text")
@@ -100,17 +95,17 @@ def _diagnose(chosen: argparse.Namespace) -> int:
 
 
 def _baseline(chosen: argparse.Namespace) -> int:
-    folders = _folders(chosen.cases)
-    for folder in folders:
-        bound = bind(load_plant(folder / "plant.toml"))
-        columns = log_columns(bound.model)
-        with stage(f"answering {folder.name} by {chosen.name}"):
-            logs = [load_log(path, columns) for path in sorted(folder.glob("train-*.csv"))]
-            answer = BASELINES[chosen.name](bound, logs)
-        save_diagnosis(chosen.results / folder.name / "diagnosis.json", answer)
-    told = {"results": str(chosen.results), "cases": len(folders), "baseline": chosen.name}
-    print(json.dumps(told) if chosen.json else f"{chosen.results}  {len(folders)} cases answered by {chosen.name}")
-    return 0
+    asked = questions(Path(), _folders(chosen.cases), ())
+    done = list(plain_answers(asked, chosen.name, chosen.results, sweeping.crew_of(chosen)))
+    status = sweeping.failures([(entry.name, entry.failure) for entry in done])
+    told = {"results": str(chosen.results), "cases": len(done), "baseline": chosen.name}
+    answered = sum(entry.failure is None for entry in done)
+    print(
+        json.dumps(told)
+        if chosen.json
+        else f"{chosen.results}  {answered} of {len(done)} cases answered by {chosen.name}"
+    )
+    return status
 
 
 def _score(chosen: argparse.Namespace) -> int:

@@ -2,12 +2,14 @@
 
 Without FLIGHTS the tests are flown on a simulated helicopter: 22 conditions to identify, each with three flights to validate it, and nine
 between them that are only predicted. FLIGHTS is a folder of sidecars NAME.toml with their NAME.csv, as --keep-flights writes them. Writes
-DIR/envelope.json, after each condition, and DIR/report.html; models are judged by the FAA's margins and the three-second rule.
+DIR/envelope.json, after each condition, and DIR/report.html; models are judged by the FAA's margins and the three-second rule. Conditions
+are shared out among processes; DIR/jobs keeps what is done until all is, so that the same command goes on where it was interrupted.
 Initial states are tuned automatically; --starts takes others, typed in by flight, to lay beside them.
 """
 
 import argparse
 import json
+import shutil
 from pathlib import Path
 
 from identification.envelope.by_hand import tried
@@ -21,14 +23,14 @@ from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import console, options
+from twinlaw import console, options, sweeping
 from twinlaw.envelope_report import SHOWN, envelope_page, notes_of, verdict
 from twinlaw.envelope_tables import by_hand, conditions, interpolation, open_loop
 from twinlaw.page import Table, page_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--seed, --keep-flights, --forgetting, --starts, --out, --json, FLIGHTS."""
+    """--seed, --keep-flights, --forgetting, --starts, --workers, --cluster, --out, --json, FLIGHTS."""
     parser.add_argument(
         "--seed",
         type=options.count,
@@ -44,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--starts", type=Path, metavar="STARTS.toml", help="initial states to try: sections [FLIGHT] of STATE = VALUE"
     )
+    sweeping.workers(parser)
     options.out(parser)
     options.as_json(parser)
     parser.add_argument("flights", nargs="?", type=Path, metavar="FLIGHTS", help="folder of flight tests")
@@ -62,11 +65,14 @@ def run(chosen: argparse.Namespace) -> int:
         write_atomic(path, json.dumps(facts(so_far), indent=1) + "\n")
         saved.append(so_far)
 
+    kept = chosen.out / "jobs"
+    each = sweeping.each("flight conditions", sweeping.crew_of(chosen), kept, lambda order: order.name)
     with console.leaving(lambda: _left(path, saved)):
-        found = study(flights, chosen.forgetting, console.stage, save, starts)
+        found = study(flights, chosen.forgetting, each, save, starts)
     tries = tried(found, starts)
     with console.stage("drawing the report"):
         write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries)))
+    shutil.rmtree(kept, ignore_errors=True)
     if chosen.json:
         print(json.dumps({**summary(found), "notes": list(notes_of(found))}))
         return 0
@@ -85,10 +91,12 @@ def run(chosen: argparse.Namespace) -> int:
 
 
 def _left(path: Path, saved: list[Study]) -> str:
+    again = "the same command goes on from what is done"
     if not saved:
-        return ""
+        return again
     done = len(saved[-1].conditions)
-    return f"{path} holds {done} condition{'s' if done > 1 else ''} identified, and {len(saved[-1].left_out)} predicted between them"
+    held = f"{done} condition{'s' if done > 1 else ''} identified, and {len(saved[-1].left_out)} predicted between them"
+    return f"{path} holds {held}; {again}"
 
 
 def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str]:

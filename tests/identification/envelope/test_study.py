@@ -5,11 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from identification.envelope.check import FINAL
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import error_margins, outside_percent, passed
 from identification.envelope.flight import joined
+<<<<<<< HEAD
 from identification.envelope.shortcomings import poor, unused
 from identification.envelope.study import FINAL, Interpolated, study
+=======
+from identification.envelope.study import Interpolated, poor, study
+>>>>>>> 9948a00 (envelope, blind: flight conditions and baselines on the executors of the other sweeps, going on where they were; a dead Dask worker told plainly)
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.linear import linearised
@@ -109,7 +114,7 @@ def test_what_the_flights_cannot_tell_is_said_by_control(flights, found):
 def test_a_condition_without_neighbours_is_refused_before_the_work(flights):
     alone = [entry for entry in flights if entry.condition != ENDS[1]]
     with pytest.raises(BadInput, match="speed"):
-        study(alone, stage=lambda name: pytest.fail(name))
+        study(alone, each=lambda *_: pytest.fail("the work was begun"))
 
 
 def test_flights_that_serve_nothing_and_flights_that_are_cut_are_named(flights):
