@@ -1,4 +1,4 @@
-"""`twinlaw import --from --until`: the rows of a part, unchanged, and no log where there are none."""
+"""`twinlaw import --from --until --every`: the rows of a part, unchanged, and no log where there are none."""
 
 from pathlib import Path
 
@@ -25,6 +25,14 @@ def test_a_part_holds_the_rows_between_its_times(recording: Path, tmp_path: Path
     rows = np.loadtxt(out, delimiter=",", skiprows=1)
     assert rows[:, 0] == pytest.approx(np.arange(0.20, 0.405, 0.01))
     assert rows[:, -1] == pytest.approx(1e-3 * np.arange(20, 41))
+
+
+def test_one_row_in_so_many_has_its_own_sample_period(recording: Path, tmp_path: Path) -> None:
+    out = tmp_path / "part.csv"
+    part = ["--from", "0.2", "--every", "5"]
+    assert main(["import", str(recording), "--plant", "emps", *part, "--out", str(out)]) == 0
+    assert np.loadtxt(out, delimiter=",", skiprows=1)[:, -1] == pytest.approx(1e-3 * np.arange(20, 100, 5))
+    assert "sample_period_s = 0.05\n" in out.with_suffix(".toml").read_text()
 
 
 def test_no_rows_between_the_times_is_bad_input(

@@ -3,7 +3,8 @@
 `twinlaw import quanser_aero model_verification --out mv.csv` writes mv.csv and mv.toml. A dataset without a record lists its records.
 `twinlaw import FILE.mat --plant ce150 --column psi_rad=Pitch*0.01745329252 --out run.csv` takes vectors or channels that are named
 like the columns of a run log (t_s, u_M_V, ...), or that --column names, with a factor where their unit is another. --from and --until
-keep a part, in the record's own time, where not all of it is of the plant: motors off, a wall.
+keep a part, in the record's own time, where not all of it is of the plant: motors off, a wall. --every 5 keeps one row in five, for a
+record that is sampled much faster than the plant moves; an input that changed between two kept rows is then late by up to four rows.
 """
 
 import argparse
@@ -22,7 +23,7 @@ from twinlaw import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """DATASET, RECORD or FILE, --plant, --column, --loop, --from, --until, --out, --json."""
+    """DATASET, RECORD or FILE, --plant, --column, --loop, --from, --until, --every, --out, --json."""
     parser.add_argument("dataset", metavar="DATASET|FILE", help=f"{', '.join(IMPORTERS)}; or a .mat or .mf4 file")
     parser.add_argument("record", metavar="RECORD", nargs="?", help="left out: list the dataset's records")
     parser.add_argument("--plant", default="ce150", metavar="NAME", help="of a file: its rig; default: %(default)s")
@@ -37,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--loop", choices=LOOPS, help="of a file; default: closed where it holds references")
     parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="leave out rows before this time")
     parser.add_argument("--until", dest="until_s", type=float, metavar="S", help="leave out rows after this time")
+    parser.add_argument("--every", type=options.count, default=1, metavar="N", help="keep one row in N; default: all")
     parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: RECORD.csv here")
     options.as_json(parser)
 
@@ -55,27 +57,32 @@ def run(chosen: argparse.Namespace) -> int:
     path = chosen.out or Path(f"{Path(chosen.dataset if is_file else chosen.record).stem}.csv")
     if path.suffix != ".csv":
         raise BadInput("--out", str(path), f"a name that ends in {path.suffix!r}", "NAME.csv", "call it .csv")
-    log = _between(log, chosen.from_s, chosen.until_s)
+    log = _part(log, chosen.from_s, chosen.until_s, chosen.every)
     save_log(path, log)
     _tell(path, log, chosen.json)
     return 0
 
 
-def _between(log: RunLog, from_s: float | None, until_s: float | None) -> RunLog:
-    """The rows within the times that were asked for."""
-    if from_s is None and until_s is None:
+def _part(log: RunLog, from_s: float | None, until_s: float | None, every: int) -> RunLog:
+    """One row in `every` of those within the times that were asked for."""
+    if from_s is None and until_s is None and every == 1:
         return log
-    rows = (log.t_s >= (-np.inf if from_s is None else from_s)) & (log.t_s <= (np.inf if until_s is None else until_s))
-    if rows.sum() < 2:
-        within = f"two or more of the record's, which lasts from {log.t_s[0]:g} s to {log.t_s[-1]:g} s"
-        raise BadInput("part of a record", "--from, --until", f"{rows.sum()} rows", within, "choose other times")
+    inside = (log.t_s >= (-np.inf if from_s is None else from_s)) & (
+        log.t_s <= (np.inf if until_s is None else until_s)
+    )
+    rows = np.flatnonzero(inside)[::every]
+    if len(rows) < 2:
+        within = f"two or more of the record's, {len(log.t_s)} from {log.t_s[0]:g} s to {log.t_s[-1]:g} s"
+        remedy = "choose other times, or a smaller step"
+        raise BadInput("part of a record", "--from, --until, --every", f"{len(rows)} rows", within, remedy)
     return replace(
         log,
+        sample_period_s=every * log.sample_period_s,
         t_s=log.t_s[rows],
         u=log.u[rows],
         y=log.y[rows],
         extra={name: column[rows] for name, column in log.extra.items()},
-        seq=None if log.seq is None else log.seq[rows],
+        seq=None if log.seq is None or every > 1 else log.seq[rows],  # else the rows left out would look lost
     )
 
 
