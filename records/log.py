@@ -103,7 +103,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     truncated row, a number that is none, time that does not increase, an input that is not finite.
     """
     sidecar_path = path.with_suffix(".toml")
-    sidecar = read_toml(sidecar_path, "sidecar of the run log")
+    sidecar = _sidecar(path)
     controller = _check_sidecar(sidecar, str(sidecar_path), columns)
     names, rows = read_rows(path, lambda header: _check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}
@@ -126,9 +126,17 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
 def plant_of_log(path: Path) -> str:
     """The name of the plant that a log's sidecar states; raises BadInput."""
     sidecar_path = path.with_suffix(".toml")
-    sidecar = read_toml(sidecar_path, "sidecar of the run log")
+    sidecar = _sidecar(path)
     checks.keys(sidecar, str(sidecar_path), ("plant",), sidecar.keys())
     return checks.text(sidecar["plant"], f"{sidecar_path}: plant")
+
+
+def _sidecar(path: Path) -> Mapping[str, Any]:
+    """What stands beside the log at `path`; a log that is not there at all is told by its own name."""
+    if not path.exists():
+        raise BadInput("run log", str(path), "No such file or directory", "a readable file", "check the path")
+    beside = "a log is NAME.csv with NAME.toml beside it; `twinlaw import` makes both of a recording"
+    return read_toml(path.with_suffix(".toml"), "sidecar of the run log", beside)
 
 
 def _check_sidecar(sidecar: Mapping[str, Any], where: str, columns: LogColumns) -> str | None:

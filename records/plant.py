@@ -14,6 +14,7 @@ from records.reading import read_toml
 from records.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
+PLANTS = Path(__file__).resolve().parent.parent / "plants"  # what the project comes with
 Value = float | tuple[float, ...]
 
 
@@ -65,7 +66,8 @@ def load_plant(path: Path) -> Plant:
 
     Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
     """
-    return parse_plant(read_toml(path, "plant file"), path.stem, str(path))
+    missing = f"name yours with --plant, or one of {PLANTS}"
+    return parse_plant(read_toml(path, "plant file", missing), path.stem, str(path))
 
 
 def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:

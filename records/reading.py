@@ -20,10 +20,10 @@ def read_text(path: Path, what: str, remedy: str = "check the path") -> str:
         raise BadInput(what, str(path), got, "a text file", "give the right file, or save it as UTF-8") from error
 
 
-def read_toml(path: Path, what: str) -> Mapping[str, Any]:
-    """Content of a TOML file; raises BadInput when it is missing, unreadable or no TOML."""
+def read_toml(path: Path, what: str, missing: str = "check the path") -> Mapping[str, Any]:
+    """Content of a TOML file; raises BadInput, with the remedy `missing` when it cannot be read, and when it is no TOML."""
     try:
-        return tomllib.loads(read_text(path, what))
+        return tomllib.loads(read_text(path, what, missing))
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BadInput(what, str(path), f"no TOML ({error})", "a TOML file", "mend that line") from error
     except ValueError as error:  # digits beyond what Python reads as one whole number

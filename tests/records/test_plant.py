@@ -106,7 +106,11 @@ def test_two_coefficients_for_three_are_refused(content):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [(None, "got No such file"), ("model = [", "got no TOML"), (b"\xff\xfe", "got no UTF-8 text")],
+    [
+        (None, r"got No such file .*; name yours with --plant, or one of .*/plants"),
+        ("model = [", "got no TOML"),
+        (b"\xff\xfe", "got no UTF-8 text"),
+    ],
 )
 def test_a_file_that_is_no_plant_is_refused(tmp_path, text, message):
     path = tmp_path / "p.toml"

@@ -79,7 +79,7 @@ def test_what_travels_knows_nothing_of_this_computer_s_folders(folder: Path, tmp
     assert one == other
     with pytest.raises(BadInput) as refused:
         answer(parcel(questions(PLANT, [folder / "none.csv"], [])[0]))
-    assert str(refused.value).startswith("none.toml: sidecar of the run log: got No such file")
+    assert str(refused.value).startswith("none.csv: run log: got No such file")
 
 
 def test_each_is_answered_as_alone_and_only_once(
