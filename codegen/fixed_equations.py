@@ -9,14 +9,13 @@ is carried to the next sample, so that rounding never adds up. A broken state is
 on from a bounded one, and forgets it as it forgets any disturbance.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar
 
 from codegen.fixed_arithmetic import Words
 from codegen.fixed_constants import FixedAxis, FixedLaw, FixedPolynomial
 from codegen.fixed_formats import FILTERED_BITS
-from codegen.law_equations import LawInput, LawOutput
+from codegen.law_frame import LawInput, LawOutput, LawState, state_of_words
 
 N = TypeVar("N")
 
@@ -39,36 +38,12 @@ class AxisState(Generic[N]):
     w_2_V: N
 
 
-@dataclass(frozen=True)
-class LawState(Generic[N]):
-    """Both axes and the last accepted measurements and references."""
-
-    elevation: AxisState[N]
-    azimuth: AxisState[N]
-    psi_rad: N
-    phi_rad: N
-    psi_ref_rad: N
-    phi_ref_rad: N
-
-
 AXIS_STATE_FIELDS = tuple(field.name for field in fields(AxisState))
 
 
 def state_from_words(words: Any) -> LawState[Any]:
     """A state from its words in the order of the C structure; `words[i]` is word i."""
-    count = len(AXIS_STATE_FIELDS)
-    return LawState(
-        AxisState(*(words[index] for index in range(count))),
-        AxisState(*(words[index] for index in range(count, 2 * count))),
-        *(words[index] for index in range(2 * count, 2 * count + 4)),
-    )
-
-
-def words_from_state(state: LawState[N]) -> Iterator[N]:
-    """The words of a state in the order of the C structure."""
-    for axis in (state.elevation, state.azimuth):
-        yield from (getattr(axis, name) for name in AXIS_STATE_FIELDS)
-    yield from (state.psi_rad, state.phi_rad, state.psi_ref_rad, state.phi_ref_rad)
+    return state_of_words(words, AxisState)
 
 
 def law_reset(law: FixedLaw[Any], words: Words[Any], psi_rad: Any, phi_rad: Any) -> LawState[Any]:

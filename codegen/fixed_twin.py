@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from codegen.fixed_arithmetic import LaneWords, Scalars
 from codegen.fixed_constants import fixed_constants, word_number
-from codegen.fixed_equations import LawState, law_reset, law_step, state_from_words, words_from_state
+from codegen.fixed_equations import law_reset, law_step, state_from_words
 from codegen.fixed_formats import MISSING, count_format, law_formats, value_of, word_of
-from codegen.law_equations import STATE_WORDS, LawInput
+from codegen.law_equations import STATE_WORDS, LawInput, LawState, words_from_state
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import AxisLaw, ControllerTable
 
