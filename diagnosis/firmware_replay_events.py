@@ -115,7 +115,7 @@ class Follower:
             if row == stop:
                 last_gap = (self._law.copied(state), gaps.pop(0))
                 continue
-            best = self._best(row, state, last_gap)
+            best = self._best(row, state, last_gap, {incident.kind for incident in incidents})
             if best is None:
                 return Trace(row, tuple(incidents))
             incidents.append(Incident(best.kind, best.first, max(1, best.behind - best.first)))
@@ -137,18 +137,25 @@ class Follower:
         given = self.inputs if inputs is None else inputs
         return self._law.run(state, (first, behind), given, self._wanted, self._slack)
 
-    def _best(self, row: int, state: Any, last_gap: _Gap | None) -> _Hypothesis | None:
-        """The hypothesis that carries furthest, if it carries at all; of equals the first."""
-        best, furthest = None, 0
+    def _best(self, row: int, state: Any, last_gap: _Gap | None, met: set[str]) -> _Hypothesis | None:
+        """The hypothesis that carries furthest, if it carries at all; of equals the first.
+
+        One that carries to the log's end meets nothing more that could refute it, and where the output rests too little
+        before: there a kind that was `met` before is believed, if it carries at all.
+        """
+        n, carrying = len(self.inputs), []
         for hypothesis in self._hypotheses(row, state, last_gap):
-            ahead = min(hypothesis.behind + LOOK_AHEAD, len(self.inputs))
+            ahead = min(hypothesis.behind + LOOK_AHEAD, n)
             reached = self._run(self._law.copied(hypothesis.state), hypothesis.behind, ahead)
-            carries = reached > hypothesis.behind or reached == len(self.inputs)
+            carries = reached > hypothesis.behind or reached == n
             # Behind a number that was found because its answer fits, the next may be missing as well.
             carries = carries or (hypothesis.kind == UNLOGGED and bool(np.isnan(self.inputs[reached]).any()))
-            if reached > max(furthest, row) and carries:
-                best, furthest = hypothesis, reached
-        return best
+            if reached > row and carries:
+                carrying.append((reached, hypothesis))
+        furthest = max((reached for reached, _ in carrying), default=0)
+        known = [(reached, hypothesis) for reached, hypothesis in carrying if hypothesis.kind in met]
+        choice = known if furthest == n and known else carrying
+        return max(choice, key=lambda entry: entry[0], default=(0, None))[1]
 
     def _hypotheses(self, row: int, state: Any, last_gap: _Gap | None) -> Iterator[_Hypothesis]:
         if row == len(self.inputs) or row == 0:
