@@ -30,6 +30,9 @@ class Arithmetic(Protocol[N]):
     def settle(self, value: N, least: N) -> N:
         """`value`, or zero where |value| < least."""
 
+    def advanced(self, last: N, step: N, target: N) -> N:
+        """`last` + `step`; where that is `last` itself and not `target`, the number next to it towards `target`."""
+
     def is_plausible(self, value: N, bound: N) -> Any:
         """Condition |value| <= bound; false for NaN."""
 
@@ -205,16 +208,16 @@ def law_step(
 
 
 def prefilter(axis: AxisFrame[N], arithmetic: Arithmetic[N], state: Any, reference_rad: N) -> Any:
-    """1/(T s + 1)^2 as two one-poles; both stay within the reference's range, so a broken state heals at once."""
+    """1/(T s + 1)^2 as two one-poles that arrive; both stay within the reference's range, so a broken state heals at once."""
     low_rad, high_rad = axis.reference_min_rad, axis.reference_max_rad
     target_rad: Any = arithmetic.clamp(reference_rad, low_rad, high_rad)
     if axis.prefilter_gain is None:
         return replace(state, reference_1_rad=target_rad, reference_2_rad=target_rad)
     first_rad: Any = state.reference_1_rad
-    first_rad = first_rad + axis.prefilter_gain * (target_rad - first_rad)
+    first_rad = arithmetic.advanced(first_rad, axis.prefilter_gain * (target_rad - first_rad), target_rad)
     first_rad = arithmetic.saturate(first_rad, low_rad, high_rad, target_rad)
     second_rad: Any = state.reference_2_rad
-    second_rad = second_rad + axis.prefilter_gain * (first_rad - second_rad)
+    second_rad = arithmetic.advanced(second_rad, axis.prefilter_gain * (first_rad - second_rad), first_rad)
     second_rad = arithmetic.saturate(second_rad, low_rad, high_rad, target_rad)
     return replace(state, reference_1_rad=first_rad, reference_2_rad=second_rad)
 

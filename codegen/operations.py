@@ -45,6 +45,9 @@ class _NoDecisions:
     def settle(self, value: _Counted, least: _Counted) -> _Counted:
         return value
 
+    def advanced(self, last: _Counted, step: _Counted, target: _Counted) -> _Counted:
+        return last + step
+
     def is_plausible(self, value: _Counted, bound: _Counted) -> bool:
         return True
 

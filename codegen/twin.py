@@ -29,6 +29,16 @@ PWM_TICKS = 3200
 FULL_SCALE_V = 10.0
 
 
+def same_bits(value: Any, other: Any) -> Any:
+    """Condition that both are the same float32, a zero of the other sign being another."""
+    return value.view(np.uint32) == other.view(np.uint32)
+
+
+def next_towards(last: Any, target: Any) -> Any:
+    """The number next to `last` towards `target`; a zero that is reached from below is +0, as ranks have but one zero."""
+    return np.nextafter(last, target) + np.float32(0.0)
+
+
 class Float32Scalars:
     """Decisions of the law on single float32 numbers."""
 
@@ -45,6 +55,10 @@ class Float32Scalars:
 
     def settle(self, value: np.float32, least: np.float32) -> np.float32:
         return type(value)(0) if abs(value) < least else value
+
+    def advanced(self, last: np.float32, step: np.float32, target: np.float32) -> np.float32:
+        moved = last + step
+        return next_towards(last, target) if same_bits(moved, last) and last != target else moved
 
     def is_plausible(self, value: np.float32, bound: np.float32) -> bool:
         return bool(abs(value) <= bound)
@@ -67,6 +81,10 @@ class Float32Lanes:
 
     def settle(self, value: Any, least: Any) -> Any:
         return np.where(np.abs(value) < least, np.float32(0.0), value)
+
+    def advanced(self, last: Any, step: Any, target: Any) -> Any:
+        moved = last + step
+        return np.where(same_bits(moved, last) & (last != target), next_towards(last, target), moved)
 
     def is_plausible(self, value: Any, bound: Any) -> Any:
         return np.abs(value) <= bound

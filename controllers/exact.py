@@ -50,6 +50,9 @@ class Doubles:
     def settle(self, value: float, least: float) -> float:
         return 0.0 if abs(value) < least else value
 
+    def advanced(self, last: float, step: float, target: float) -> float:
+        return last + step
+
     def is_plausible(self, value: float, bound: float) -> bool:
         return abs(value) <= bound
 

@@ -100,6 +100,16 @@ static number value_at(const polynomial *terms, number x)
     return value;
 }
 
+/* `last` + `step`; in float32, where the step is too small to move it, the next number towards `target`. */
+static number advanced(number last, number step, number target)
+{
+    const number moved = last + step;
+    if (sizeof(number) != sizeof(float) || memcmp(&moved, &last, sizeof moved) != 0 || last == target) {
+        return moved;
+    }
+    return nextafterf((float)last, (float)target) + 0.0f; /* + 0: a zero that is reached from below is +0, as in the law */
+}
+
 static void prefilter(const axis_law *axis, axis_state *state, number reference_rad)
 {
     const number low_rad = axis->reference_min_rad;
@@ -110,14 +120,16 @@ static void prefilter(const axis_law *axis, axis_state *state, number reference_
         state->reference_2_rad = target_rad;
         return;
     }
-    const number first_rad = state->reference_1_rad + axis->prefilter_gain * (target_rad - state->reference_1_rad);
+    const number first_rad =
+        advanced(state->reference_1_rad, axis->prefilter_gain * (target_rad - state->reference_1_rad), target_rad);
     state->reference_1_rad = saturate(first_rad, low_rad, high_rad, target_rad);
     if (axis->prefilter_poles == 1) {
         state->reference_2_rad = state->reference_1_rad;
         return;
     }
     const number second_rad =
-        state->reference_2_rad + axis->prefilter_gain * (state->reference_1_rad - state->reference_2_rad);
+        advanced(state->reference_2_rad, axis->prefilter_gain * (state->reference_1_rad - state->reference_2_rad),
+                 state->reference_1_rad);
     state->reference_2_rad = saturate(second_rad, low_rad, high_rad, target_rad);
 }
 

@@ -103,6 +103,13 @@ class AffineArithmetic:
             return value
         return value.with_error(value.value, value.error + upper_bound(least.value))
 
+    def advanced(self, last: Tracked, step: Tracked, target: Tracked) -> Tracked:
+        """The sum, off by an ulp in place of half of one: where it is `last`, the step was no more than half an ulp."""
+        moved = last + step
+        return Tracked(
+            moved.value, {**moved.errors, next(self._symbols): arb(half_ulp(moved.magnitude))}, self._symbols
+        )
+
     def is_plausible(self, value: Tracked, bound: Tracked) -> bool:
         if not value.magnitude < float(bound.value):
             raise ValueError(

@@ -22,10 +22,13 @@ from tests.design.helicopter import helicopter, table_for
 
 
 class Doubles(Float32Scalars):
-    """The generated law's decisions on doubles: only its zero is a float32 of itself."""
+    """The generated law's decisions on doubles: only its zero and its least step are those of float32."""
 
     def finite_or(self, value, last):
         return float(super().finite_or(value, last))
+
+    def advanced(self, last, step, target):
+        return last + step
 
 
 TABLE = table_for(read_settings(helicopter()))

@@ -10,6 +10,18 @@ from collections.abc import Mapping
 from codegen.law_equations import LawInput
 from verification.ranges import Range
 
+# A filter that does not move by its step moves to somewhere between where it is and where it is to go.
+_ADVANCED = """#include "__fc_builtin.h"
+
+static law_number advanced(law_number last, law_number step, law_number target)
+{
+    const law_number moved = last + step;
+    const law_number low = (last < target) ? last : target;
+    const law_number high = (last < target) ? target : last;
+    const law_number anywhere = Frama_C_float_interval(-FLT_MAX, FLT_MAX);
+    return (moved != last || anywhere < low || high < anywhere) ? moved : anywhere;
+}
+"""
 # The law's predicates on bits, and what they mean.
 _MEANING: Mapping[str, str] = {
     "bits_of": "",
@@ -20,6 +32,8 @@ _MEANING: Mapping[str, str] = {
     "is_nan": "#define is_nan(value) ((value) != (value))\n",
     "is_plausible": "#define is_plausible(value, bound) (-(bound) <= (value) && (value) <= (bound))\n",
     "settle": "#define settle(value, least) ((-(least) < (value) && (value) < (least)) ? 0.0f : (value))\n",
+    "number_of": "",
+    "advanced": _ADVANCED,
 }
 
 _DRIVER = """#include "law.h"
@@ -76,6 +90,7 @@ int main(void)
         const law_number other = any_number();
         const bool answers[] = {is_less(one, other), is_finite(one), is_nan(one), is_plausible(one, other)};
         const law_number settled = settle(one, other);
+        const law_number arrived = advanced(one, 0.0f, other);
     }
 }
 """

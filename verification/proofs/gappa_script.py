@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from verification.affine import half_ulp
 from verification.ranges import Range
 
 # Answers a script whose goal is `x in ?` with a bound of |x|.
@@ -173,6 +174,16 @@ class GappaArithmetic(GappaBook):
         """Off by `least` at most; zero belongs to its range."""
         low, high = self._ranges[value.f]
         return self._limited((min(low, 0.0), max(high, 0.0)), (value.error or 0.0) + self._constants[least.f][0])
+
+    def advanced(self, last: Pair, step: Pair, target: Pair) -> Pair:
+        """The sum, off by up to an ulp either way: where it is `last`, the step was no more than half an ulp."""
+        ulp = 2.0 * half_ulp(max(abs(end) for number in (last, target) for end in self._ranges[number.f]))
+        off = f"x{len(self._lines)}"
+        self._lines[off] = Line("", (), (-ulp, ulp))
+        rounding = self._pair(off, "0", (off,))
+        moved = self._pair(f"{last.f} + {step.f}", f"{last.r} + {step.r}", (last.f, step.f), (last.r, step.r))
+        sums = (f"{moved.f} + {rounding.f}", f"{moved.r} + {rounding.r}")
+        return self._pair(*sums, (moved.f, rounding.f), (moved.r, rounding.r))
 
     def restricted(self, number: Pair, limits: Range) -> Pair:
         """The number where its real value is within `limits`."""

@@ -33,6 +33,9 @@ PREAMBLE = """(set-logic QF_BVFP)
 (define-fun is_settled ((a Word) (least Word)) Bool (bvult (magnitude a) least))
 (define-fun clamp ((a Word) (low Word) (high Word)) Word (ite (is_less a low) low (ite (is_less high a) high a)))
 (define-fun saturate ((a Word) (low Word) (high Word) (safe Word)) Word (ite (is_nan a) safe (clamp a low high)))
+(define-fun number_of ((rank Word)) Word (ite (bvslt rank #x00000000) (bvsub #x80000000 rank) rank))
+(define-fun next ((a Word) (b Word)) Word
+  (number_of (ite (bvslt (rank a) (rank b)) (bvadd (rank a) #x00000001) (bvsub (rank a) #x00000001))))
 (define-fun within ((a Word) (low Word) (high Word)) Bool
   (and (fp.leq (float low) (float a)) (fp.leq (float a) (float high))))
 (declare-const a Word)
@@ -94,6 +97,16 @@ def _predicates() -> Iterator[Question]:
     for name, relation, bound in (("is_plausible", "leq", PLAUSIBLE_V), ("is_settled", "lt", LEAST_SCHEDULE_RAD)):
         meaning = f"(fp.{relation} (fp.abs (float a)) (float {_bits(bound)}))"
         yield Question(f"{name} is a comparison of |a|", _refute(f"(= ({name} a {_bits(bound)}) {meaning})"))
+    yield Question(
+        "a filter that a step does not move is led to the next number towards its target, and not beyond",
+        _refute(
+            "(let ((x (float (next a b))) (low (fp.min (float a) (float b))) (high (fp.max (float a) (float b))))"
+            " (and (fp.leq low x) (fp.leq x high) (not (fp.eq x (float a)))))",
+            "(is_finite a)",
+            "(is_finite b)",
+            "(not (fp.eq (float a) (float b)))",
+        ),
+    )
 
 
 def _saturation(name: str, axis: AxisConstants[float]) -> Question:
