@@ -45,16 +45,18 @@ class Stimulus:
 def standard_stimuli(
     table: FlownTable, steps: int = 100_000, seed: int = 1, state_words: int = STATE_WORDS
 ) -> tuple[Stimulus, ...]:
-    """At least `steps` control steps: reference jumps, saturation, missing and special numbers, broken and random states."""
+    """At least `steps` control steps: reference jumps, saturation, missing and special numbers, broken and random states, arrivals."""
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
     lanes = -(-share // 250)
+    arrivals = -(-lanes // 5)
     return (
         reference_jumps(table, rng, 250, lanes),
         saturating(table, rng, 250, lanes),
         with_special_numbers(table, rng, 250, lanes),
         from_random_states(table, rng, 2 * lanes, 125, state_words),
-        from_random_bits(rng, share, state_words),
+        from_random_bits(rng, max(1, share - 125 * arrivals), state_words),
+        arriving(table, rng, 125, arrivals),
     )
 
 
@@ -117,6 +119,21 @@ def from_random_bits(rng: np.random.Generator, lanes: int, state_words: int = ST
     words = np.where(wild | (draw == 0), any_bits, np.where(draw == 1, special, words))
     inputs = words[np.newaxis, :, state_words:].copy()
     return Stimulus("random bits", inputs[0, :, 2:].copy(), inputs, words[:, :state_words].copy())
+
+
+def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
+    """References up to 60 last places from where the filters rest, every other lane around zero: too near for a rounded step."""
+    starts = np.stack(
+        [
+            rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes)
+            for axis in (table.elevation, table.azimuth)
+        ],
+        axis=-1,
+    ).astype(np.float32)
+    starts[::2] = rng.integers(-30, 31, starts[::2].shape) * np.spacing(np.float32(0.0))
+    references = starts + rng.integers(-60, 61, starts.shape).astype(np.float32) * np.abs(np.spacing(starts))
+    inputs = np.repeat(np.concatenate([references, starts], axis=-1)[np.newaxis], steps, axis=0)
+    return Stimulus("arrivals", _bits(starts), _bits(inputs))
 
 
 def replayed(name: str, psi_ref_rad: Numbers, phi_ref_rad: Numbers, psi_rad: Numbers, phi_rad: Numbers) -> Stimulus:
