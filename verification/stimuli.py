@@ -122,7 +122,7 @@ def from_random_bits(rng: np.random.Generator, lanes: int, state_words: int = ST
 
 
 def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
-    """References up to 60 last places from where the filters rest, every other lane around zero: too near for a rounded step."""
+    """References up to 60 last places from where the filters rest: too near for a rounded step."""
     starts = np.stack(
         [
             rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes)
@@ -130,7 +130,6 @@ def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int
         ],
         axis=-1,
     ).astype(np.float32)
-    starts[::2] = rng.integers(-30, 31, starts[::2].shape) * np.spacing(np.float32(0.0))
     references = starts + rng.integers(-60, 61, starts.shape).astype(np.float32) * np.abs(np.spacing(starts))
     inputs = np.repeat(np.concatenate([references, starts], axis=-1)[np.newaxis], steps, axis=0)
     return Stimulus("arrivals", _bits(starts), _bits(inputs))
