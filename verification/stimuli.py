@@ -49,7 +49,7 @@ def standard_stimuli(
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
     lanes = -(-share // 250)
-    arrivals = -(-lanes // 5)
+    arrivals = -(-lanes // 20)
     return (
         reference_jumps(table, rng, 250, lanes),
         saturating(table, rng, 250, lanes),
