@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from identification.envelope.check import Check, check, margins_of
 from identification.envelope.closed_loop import Training, optimise
 from identification.envelope.conditions import Condition
-from identification.envelope.flight import Deviations, Flight, joined
+from identification.envelope.flight import Flight, joined
 from identification.envelope.free_run import Model, model_of
 from identification.envelope.fuzzy import Trained
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours

@@ -1,12 +1,9 @@
 """`twinlaw envelope` on two conditions and one between: files back and forth, what is written, what is refused."""
 
 import json
-<<<<<<< HEAD
-from dataclasses import replace
-=======
 import sys
 from contextlib import redirect_stdout
->>>>>>> 9948a00 (envelope, blind: flight conditions and baselines on the executors of the other sweeps, going on where they were; a dead Dask worker told plainly)
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np

@@ -9,12 +9,8 @@ from identification.envelope.check import FINAL
 from identification.envelope.conditions import Condition
 from identification.envelope.criteria import error_margins, outside_percent, passed
 from identification.envelope.flight import joined
-<<<<<<< HEAD
 from identification.envelope.shortcomings import poor, unused
-from identification.envelope.study import FINAL, Interpolated, study
-=======
-from identification.envelope.study import Interpolated, poor, study
->>>>>>> 9948a00 (envelope, blind: flight conditions and baselines on the executors of the other sweeps, going on where they were; a dead Dask worker told plainly)
+from identification.envelope.study import Interpolated, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.linear import linearised
