@@ -30,8 +30,10 @@ FULL_SCALE_V = 10.0
 
 
 def same_bits(value: Any, other: Any) -> Any:
-    """Condition that both are the same float32, a zero of the other sign being another."""
-    return value.view(np.uint32) == other.view(np.uint32)
+    """Condition that both are the same number, of the wider format of both, a zero of the other sign being another."""
+    number = np.result_type(value, other)
+    word = f"u{number.itemsize}"
+    return np.asarray(value, number).view(word) == np.asarray(other, number).view(word)
 
 
 def next_towards(last: Any, target: Any) -> Any:

@@ -52,8 +52,8 @@ def deadly(record: tuple[int, int, str]) -> int:
 def endless(folder: str) -> int:
     """Says that it has begun and waits to be stopped; says so when it is."""
     place = Path(folder)
-    (place / f"begun-{os.getpid()}").touch()
     try:
+        (place / f"begun-{os.getpid()}").touch()
         threading.Event().wait()
     finally:
         (place / f"closed-{os.getpid()}").touch()

@@ -169,6 +169,13 @@ def _float32_against_float64(
     return np.abs(np.stack([single.u_M_V - double.u_M_V, single.u_T_V - double.u_T_V], axis=-1))
 
 
+class _Rational(Float32Scalars):
+    """Decisions on rational numbers, which have no next one."""
+
+    def advanced(self, last: Any, step: Any, target: Any) -> Any:
+        return last + step
+
+
 def _exact_difference(
     table: ControllerTable, state: LawState[Lanes], given: LawInput[Lanes], lane: int
 ) -> tuple[float, float]:
@@ -176,7 +183,7 @@ def _exact_difference(
     inputs = [Fraction(float(getattr(given, name)[lane])) for name in LawInput.__dataclass_fields__]
     law: Any = law_constants(table, Fraction)
     decisions: Any = Float32Scalars()
-    _, exact = law_step(law, decisions, state_from_words(words), LawInput(*inputs))
+    _, exact = law_step(law, _Rational(), state_from_words(words), LawInput(*inputs))
     single_state = state_from_words([word[lane] for word in words_from_state(state)])
     single_given = LawInput(*(getattr(given, name)[lane] for name in LawInput.__dataclass_fields__))
     _, single = law_step(law_constants(table, np.float32), decisions, single_state, single_given)

@@ -125,7 +125,7 @@ def test_flights_that_serve_nothing_and_flights_that_are_cut_are_named(flights):
 
 def test_flights_of_different_sample_periods_are_refused_before_the_work(flights):
     with pytest.raises(BadInput, match="sample_period_s"):
-        study([*flights[1:], replace(flights[0], sample_period_s=0.1)], stage=lambda name: pytest.fail(name))
+        study([*flights[1:], replace(flights[0], sample_period_s=0.1)], each=lambda *_: pytest.fail("begun"))
 
 
 def test_flights_of_two_conditions_are_not_joined(flights):
