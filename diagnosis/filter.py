@@ -84,7 +84,7 @@ class Filter:
     ) -> Pass | None:
         """Filter one tape; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p.
 
-        None where the state left all bounds: the parameters do not fit at all.
+        None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
         assert len(columns) <= MAX_COLUMNS
         rows, width = tape.rows, max(slots) + 1

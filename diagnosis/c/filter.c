@@ -12,6 +12,8 @@
 #define N N_STATES
 #define WIDTH ((N + 7) / 8 * 8)
 #define MAX_COLUMNS 256
+#define PIECES_ALLOWED 200 /* of the motion between events, */
+#define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
 typedef double matrix[N][WIDTH]; /* N by N, its rows filled up with zeros to whole vectors */
 
@@ -24,6 +26,7 @@ typedef struct {
     filter_request *request;
     double c[N_CONSTANTS], u[N_INPUTS];
     plant_body body;
+    int64_t pieces;
     jacobians j;
     matrix P;
     double S[N][MAX_COLUMNS];
@@ -48,6 +51,7 @@ static void start(filter_state *at, filter_request *request)
         }
     for (int a = 0; a < AXES; a++)
         at->body.sign[a] = at->body.move[a] = 0.0;
+    at->pieces = 0;
     request->log_likelihood = 0.0;
 }
 
@@ -261,7 +265,7 @@ static void advance(filter_state *at, int64_t step)
     rk4_step(t_s, h_s, &at->body, at->u, at->c, x, &seen);
     const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, h_s, at->c, &seen));
     if (suspect)
-        events_advance(at->body.x, at->body.sign, at->body.move, t_s, h_s, at->u, at->c, 0);
+        at->pieces += events_advance(at->body.x, at->body.sign, at->body.move, t_s, h_s, at->u, at->c, 0);
     else
         for (int i = 0; i < N; i++)
             at->body.x[i] = x[i];
@@ -300,7 +304,7 @@ static void advance(filter_state *at, int64_t step)
                 r->F[(step * N + i) * N + k] = F[i][k];
 }
 
-/* Returns the number of instants done; fewer than asked when the state left all bounds. */
+/* Returns the number of instants done; fewer than asked when the state left all bounds, or rattles in nearly every step. */
 int32_t filter_run(filter_request *request)
 {
     static _Thread_local filter_state at;
@@ -316,6 +320,8 @@ int32_t filter_run(filter_request *request)
         for (int i = 0; i < N; i++)
             if (!(fabs(at.body.x[i]) < 1e9))
                 return (int32_t)step;
+        if (at.pieces > PIECES_ALLOWED + PIECES_A_STEP * step)
+            return (int32_t)step;
     }
     return (int32_t)request->steps;
 }
