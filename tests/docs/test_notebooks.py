@@ -34,8 +34,6 @@ def test_a_notebook_runs_to_its_end_and_draws(path: Path, monkeypatch: pytest.Mo
     pytest.importorskip("ipykernel", reason="no ipykernel: pip install --editable '.[test]'")
     if "quanser" in path.stem and not (datasets_folder() / "quanser_aero").is_dir():
         pytest.skip(f"no recordings of the Quanser Aero in {datasets_folder()}: see recordings/registry.toml")
-    if "quanser" in path.stem and not os.environ.get("TWINLAW_LONG"):
-        pytest.skip("compiling the Quanser Aero's library takes minutes the first time: set TWINLAW_LONG=1")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
     monkeypatch.setenv("TWINLAW_CACHE", str(CACHE_DIR))
     monkeypatch.setenv("TWINLAW_DATASETS", str(datasets_folder()))
