@@ -207,7 +207,9 @@ def _fit_all(
     for job in jobs:
         fresh.setdefault((frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job.calm), job)
     wanted = [job for (names, _), job in fresh.items() if names not in found]
-    rough = best_of_each(entry for entry in each(lambda job: _rough(case, job), wanted) if entry)
+    firsts: dict[frozenset[str], Tried] = {}
+    _keep_better(firsts, (entry for entry in each(lambda job: _rough(case, job), wanted) if entry))
+    rough = list(firsts.values())
     if not rough:
         return False
     best, first = max(entry.evidence for entry in rough), known.evidence
@@ -238,10 +240,7 @@ def _exchanged(case: Case, best: Tried, found: dict[frozenset[str], Tried], wort
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
     jobs = [job for jobs in each(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
     tried = [entry for entry in each(lambda job: _at_its_place(case, job), jobs) if entry]
-    for entry in tried:
-        known = found.setdefault(frozenset(entry.effects), entry)
-        if entry.evidence > known.evidence:
-            found[frozenset(entry.effects)] = entry
+    _keep_better(found, tried)
     first = max(tried, key=lambda entry: entry.evidence, default=None)
     if first is None or first.evidence < best.evidence - NEAR_BEST:
         return None
@@ -268,14 +267,12 @@ def _instead(case: Case, tried: Tried, name: str, worth: Set[str]) -> list[Job]:
     return [Job(start, entry, True) for entry in looks if entry.gain > least][:INSTEAD]
 
 
-def best_of_each(tried: Iterable[Tried]) -> list[Tried]:
-    """The best fit of each set of effects."""
-    best: dict[frozenset[str], Tried] = {}
+def _keep_better(found: dict[frozenset[str], Tried], tried: Iterable[Tried]) -> None:
+    """Of each set of effects the better of what was found and what was tried."""
     for entry in tried:
-        known = best.setdefault(frozenset(entry.effects), entry)
+        known = found.setdefault(frozenset(entry.effects), entry)
         if entry.evidence > known.evidence:
-            best[frozenset(entry.effects)] = entry
-    return list(best.values())
+            found[frozenset(entry.effects)] = entry
 
 
 def _once_more(case: Case, tried: Tried) -> Tried:
