@@ -9,7 +9,8 @@ from diagnosis.case import Case
 from diagnosis.contradiction import Contradiction, contradiction, parted_gain
 from diagnosis.instants import TIMES
 from diagnosis.misfit import ignorance
-from diagnosis.search import Search, Tried
+from diagnosis.search import Search
+from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed
 
 WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from diagnosis.detect import Detection, detect
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import Ground, ground_of
+from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, worse
 from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.improved import estimates, improved_plant
 from diagnosis.inputs import LOST_FRAMES
@@ -25,13 +27,14 @@ from diagnosis.result import Result
 from diagnosis.retune import Retune, retune
 from diagnosis.reveal import revealing_experiment
 from diagnosis.screen import Look, look
-from diagnosis.search import Search, Tried, evidence, search
-from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.search import Search, search
+from diagnosis.shrinkage import Predicted
 from diagnosis.sparse import suggestion
+from diagnosis.trial import Tried, evidence
 from diagnosis.unknown import Suspect, left_beside, suspects
 from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, with_unrest
 from diagnosis.usual import with_usual
-from diagnosis.weigh import Weighed, alike, confirmed, weigh
+from diagnosis.weigh import Weighed, alike, weigh
 from diagnosis.wiring import demand_wiring
 from records.diagnosis import Diagnosis, Firmware, Hypothesis, PlaceShare, Unknown
 from records.errors import BadInput
@@ -44,9 +47,6 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
-LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
-NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
-HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +63,10 @@ class Material:
         ControllerTable | None
     ] = ()  # the controller that flew each hold-out log, None where it is not at hand
     names: Sequence[str] = ()  # of the logs to fit
+
+    def noted(self, sentences: Sequence[str]) -> Self:
+        """The same with further sentences."""
+        return replace(self, notes=(*self.notes, *sentences))
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -93,12 +97,16 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     blamed = suspects(detection)
     if checked is not None and weighed.tried and LOST_FRAMES in weighed.tried[0].effects:
         checked = with_losses(checked, ground_of(checked, nominal_fit(checked)))[0]
-    weighed = _checked(checked, material, weighed, stated, left)
-    doubts = doubt(case, found, weighed, material.names, _worse(checked, material, weighed, stated))
-    weighed, material = doubts.applied(weighed), replace(material, notes=(*material.notes, *doubts.sentences))
-    chosen, predicted = _added(checked, material, weighed, stated, beyond)
+    holdout = _holdout(case, checked, material, stated)
+    weighed = weighed if holdout is None else overruled(holdout, weighed, stated, left)
+    doubts = doubt(case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
+    weighed, material = doubts.applied(weighed), material.noted(doubts.sentences)
+    chosen = likeliest(weighed, stated, beyond)
+    chosen = chosen if holdout is None else helpful(holdout, chosen)
+    predicted = () if holdout is None else holdout.predicted(chosen)
+    material = material if holdout is None or chosen is not holdout.base else material.noted(holdout.notes)
     return Result(
-        diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, checked, looks, beyond),
+        diagnosis=_gap(case, material, detection, found, weighed, blamed, chosen, predicted, holdout, looks, beyond),
         plant=improved_plant(case, chosen.fit),
         case=case,
         detection=detection,
@@ -144,54 +152,9 @@ def nominal_fit(case: Case) -> Fit:
     return found
 
 
-def _checked(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, left: float) -> Weighed:
-    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found."""
-    if checked is None or not weighed.tried or weighed.unknown < weighed.probabilities[0]:
-        return weighed
-    first = weighed.tried[0]
-    if left > LITTLE * (first.evidence - retuned.evidence):
-        return weighed
-    gone = shrinkage(checked, _predicted(checked, material, retuned, first)).fraction
-    return weighed if gone is None or gone < NEARLY_ALL else confirmed(weighed, 1.0 - gone)
-
-
-def _worse(checked: Case | None, material: Material, weighed: Weighed, retuned: Tried) -> float:
-    """How many times as large the hold-out's mean square error is with what is named as without, re-tuned or not; 0 for no name."""
-    if checked is None or not weighed.tried or weighed.probabilities[0] < weighed.unknown:
-        return 0.0
-    predicted = _predicted(checked, material, retuned, weighed.tried[0])
-    return error(checked, predicted, "after") / _without(checked, predicted)
-
-
-def _without(checked: Case, predicted: Sequence[Predicted]) -> float:
-    """The hold-out's error without an effect, as stated or re-tuned, whichever is less; a plant that predicts no row does not count."""
-    errors = [error(checked, predicted, bar) for bar in ("nominal", "before")]
-    return min((value for value in errors if value > 0.0), default=float("inf"))
-
-
-def _added(
-    checked: Case | None, material: Material, weighed: Weighed, retuned: Tried, beyond: Retune | None
-) -> tuple[Tried, tuple[Predicted, ...]]:
-    """The most probable hypothesis if it beats an unknown effect and lowers the hold-out's error, else the re-tuned plant."""
-    named = bool(weighed.tried) and sum(weighed.probabilities) > max(weighed.unknown, weighed.retune)
-    first = weighed.tried[0] if named else retuned
-    if not named and beyond is not None and weighed.retune > weighed.unknown:
-        first = beyond.tried
-    predicted = _predicted(checked, material, retuned, first)
-    if checked is None or first is retuned:
-        return first, predicted
-    if error(checked, predicted, "after") < HELPS * _without(checked, predicted):
-        return first, predicted
-    return retuned, _predicted(checked, material, retuned, retuned)
-
-
-def _predicted(checked: Case | None, material: Material, retuned: Tried, chosen: Tried) -> tuple[Predicted, ...]:
-    if checked is None:
-        return ()
-    stated = nothing_supposed(checked, FIRST_UNREST)
-    stated = replace(stated, unrest=retuned.fit.supposed.unrest)
-    bars: dict[str, Supposed] = {"nominal": stated, "before": retuned.fit.supposed, "after": chosen.fit.supposed}
-    return predict_all(checked, material.holdout_names, bars)
+def _holdout(case: Case, checked: Case | None, material: Material, retuned: Tried) -> Holdout | None:
+    """The logs that check, None where there are none."""
+    return None if checked is None else holdout_of(checked, material.holdout_names, material.tables, case, retuned)
 
 
 def _gap(
@@ -203,7 +166,7 @@ def _gap(
     blamed: Sequence[Suspect],
     chosen: Tried,
     predicted: tuple[Predicted, ...],
-    checked: Case | None,
+    holdout: Holdout | None,
     looks: Sequence[Look],
     beyond: Retune | None,
 ) -> Diagnosis:
@@ -224,7 +187,7 @@ def _gap(
         ),
         unknown=_unknown(found, detection, weighed, first),
         found=chosen.effects,
-        shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
+        shrinkage=None if holdout is None else holdout.shrinkage(predicted),
         next_experiment=next_experiment(case, weighed),
         notes=(*material.notes, *notes_of(case, looks, chosen, weighed)),
     )
@@ -266,7 +229,10 @@ def _no_gap(
     retuned: Tried,
     looks: Sequence[Look],
 ) -> Result:
-    predicted = _predicted(checked, material, retuned, retuned)
+    holdout = _holdout(case, checked, material, retuned)
+    chosen = retuned if holdout is None else holdout.base
+    predicted = () if holdout is None else holdout.predicted(chosen)
+    material = material if holdout is None else material.noted(holdout.notes)
     ranked, blind = suspects(detection), cannot_tell(case, looks)
     places = (PlaceShare(ranked[0].place, 1.0),) if ranked else ()
     diagnosis = Diagnosis(
@@ -274,21 +240,21 @@ def _no_gap(
         false_alarm_probability=detection.p,
         places=places,
         firmware=material.firmware,
-        shrinkage=shrinkage(checked, predicted, material.tables) if checked is not None else None,
+        shrinkage=None if holdout is None else holdout.shrinkage(predicted),
         next_experiment=revealing_experiment(case, retuned.fit.supposed) if blind else None,
-        notes=(*material.notes, *notes_of(case, looks, retuned, None)),
+        notes=(*material.notes, *notes_of(case, looks, chosen, None)),
     )
     return Result(
-        diagnosis,
-        improved_plant(case, retuned.fit),
-        case,
-        detection,
-        None,
-        None,
-        0.0,
-        tuple(ranked),
-        retuned,
-        predicted,
+        diagnosis=diagnosis,
+        plant=improved_plant(case, chosen.fit),
+        case=case,
+        detection=detection,
+        search=None,
+        weighed=None,
+        left=0.0,
+        suspects=tuple(ranked),
+        chosen=chosen,
+        predicted=predicted,
     )
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.filter import Pass
-from diagnosis.hypothesis import Supposed, passes
+from diagnosis.hypothesis import Supposed, nothing_supposed, passes
 from diagnosis.inputs import LOST_FRAMES, share_slopes
 from sim.effects.effect import EffectParameter
 
@@ -186,6 +186,16 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
     _add_prior(case, supposed, free, information, pull)
     found = likelihood(runs)
     return Fit(supposed, found, found + log_prior(case, supposed, free), free, information, pull)
+
+
+def unfitted(case: Case, unrest: Array) -> Fit | None:
+    """The plant as stated, no more known of it than its file says; None where it cannot follow the logs."""
+    start = fit(case, replace(nothing_supposed(case, 0.0), unrest=unrest), rounds=0)
+    if start is None:
+        return None
+    information, pull = np.zeros_like(start.information), np.zeros_like(start.pull)
+    _add_prior(case, start.supposed, start.free, information, pull)
+    return replace(start, information=information, pull=pull)
 
 
 def _add_prior(case: Case, supposed: Supposed, free: Sequence[Free], information: Array, pull: Array) -> None:

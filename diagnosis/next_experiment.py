@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.menu import Plan, plans, rooms
 from diagnosis.rehearsal import Rehearsal, missed, outcomes, recorded, rehearse, setting
-from diagnosis.search import Tried
 from diagnosis.stand_in import StandIn, stand_in
+from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed
 
 Array = NDArray[np.float64]

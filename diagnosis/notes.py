@@ -8,7 +8,7 @@ from diagnosis.case import Case
 from diagnosis.fit import Fit, Free, away, size_scale
 from diagnosis.hypothesis import coefficients
 from diagnosis.screen import Look
-from diagnosis.search import Tried
+from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed, alike
 
 FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence

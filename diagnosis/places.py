@@ -3,7 +3,8 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-from diagnosis.search import Search, Tried
+from diagnosis.search import Search
+from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed
 from records.diagnosis import PlaceShare
 

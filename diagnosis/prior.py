@@ -1,7 +1,7 @@
 """What one believes of effects before any log: the common ones come before the rare, a size of the wrong sign is no such effect."""
 
 from diagnosis.inputs import LOST_FRAMES
-from diagnosis.search import Tried
+from diagnosis.trial import Tried
 
 # Effects that rigs of this kind are known for (docs/effects.md names the sources); what else the library holds is rarer.
 COMMON = (

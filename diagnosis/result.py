@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from diagnosis.case import Case
 from diagnosis.curve import Shape
 from diagnosis.detect import Detection
-from diagnosis.search import Search, Tried
+from diagnosis.search import Search
 from diagnosis.shrinkage import Predicted
+from diagnosis.trial import Tried
 from diagnosis.unknown import Suspect
 from diagnosis.weigh import Weighed
 from records.diagnosis import Diagnosis

@@ -8,7 +8,7 @@ import sympy
 from diagnosis.case import Case
 from diagnosis.fit import Fit, fit
 from diagnosis.notes import moved_effects, moved_parameters
-from diagnosis.search import Tried, evidence
+from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import with_unrest
 
 WIDER = 8.0

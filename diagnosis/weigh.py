@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.prior import prior_odds
-from diagnosis.search import Tried
+from diagnosis.trial import Tried
 
 Array = NDArray[np.float64]
 # Set on development cases of the sealed benchmark's generator (seed 21): nats below which two hypotheses are alike, and what a form a

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnosis.search import CLOSE, Tried, beam_of
+from diagnosis.search import CLOSE, beam_of
+from diagnosis.trial import Tried
 from diagnosis.weigh import CANDOUR, candid
 
 

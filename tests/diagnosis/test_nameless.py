@@ -2,7 +2,7 @@
 
 import pytest
 
-from diagnosis.search import Tried
+from diagnosis.trial import Tried
 from diagnosis.weigh import RETUNE_COST, weigh
 
 NOMINAL = Tried((), None, 100.0)  # type: ignore[arg-type]

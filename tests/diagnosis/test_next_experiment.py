@@ -12,8 +12,8 @@ from diagnosis.kit import make_kit
 from diagnosis.menu import gravity_parameters, plans
 from diagnosis.next_experiment import next_experiment
 from diagnosis.rehearsal import missed, recorded, rehearse, setting
-from diagnosis.search import Tried, evidence
 from diagnosis.stand_in import stand_in
+from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import with_unrest
 from diagnosis.weigh import Weighed
 from sim.bind import BoundPlant

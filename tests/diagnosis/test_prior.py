@@ -10,7 +10,8 @@ from diagnosis.ground import Scores
 from diagnosis.hypothesis import Supposed
 from diagnosis.prior import prior_odds
 from diagnosis.replicas import Tail
-from diagnosis.search import Search, Tried
+from diagnosis.search import Search
+from diagnosis.trial import Tried
 
 
 def tried(evidence: float = 0.0, **effects: dict[str, float]) -> Tried:

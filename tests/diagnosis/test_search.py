@@ -6,9 +6,10 @@ import pytest
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
+from diagnosis.exchange import exchange
 from diagnosis.fit import Fit, fit
 from diagnosis.kit import make_kit
-from diagnosis.search import Tried, evidence, exchange, refined
+from diagnosis.trial import Tried, evidence, refined
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
 from tests.diagnosis.conftest import Fly

@@ -1,0 +1,54 @@
+"""Effects of the best hypothesis exchanged for others: what was fitted beside a wrong effect is tried where the rest fits."""
+
+from collections.abc import Set
+
+import numpy as np
+
+from diagnosis.abreast import each
+from diagnosis.case import Case
+from diagnosis.fit import fit
+from diagnosis.ground import ground_of
+from diagnosis.screen import look
+from diagnosis.trial import Job, Tried, at_its_place, keep_better, refined
+
+FURTHER_GAIN = 10.0  # nats that a further effect must promise
+NEAR_BEST = 30.0  # nats that a first fit may be short of the best to be fitted to its end
+INSTEAD, NEARLY = 3, 0.03  # effects tried in the place of another, and the share of its gain that they must promise
+
+
+def exchange(case: Case, found: dict[frozenset[str], Tried], worth: Set[str]) -> None:
+    """Each effect of the best hypothesis in turn changed for others, while that makes it better.
+
+    A right effect that was fitted beside a wrong one, or beside none, may have ended with its numbers and the plant's bent; from where
+    the best hypothesis has them it ends well.
+    """
+    best = max(found.values(), key=lambda entry: entry.evidence)
+    fewer = max((entry.evidence for entry in found.values() if len(entry.effects) < len(best.effects)), default=-np.inf)
+    while len(best.effects) > 1 and best.evidence > fewer + FURTHER_GAIN:
+        better = _exchanged(case, best, found, worth)
+        if better is None:
+            return
+        best = found[frozenset(better.effects)] = better
+
+
+def _exchanged(case: Case, best: Tried, found: dict[frozenset[str], Tried], worth: Set[str]) -> Tried | None:
+    """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
+    jobs = [job for jobs in each(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
+    tried = [entry for entry in each(lambda job: at_its_place(case, job), jobs) if entry]
+    keep_better(found, tried)
+    first = max(tried, key=lambda entry: entry.evidence, default=None)
+    if first is None or first.evidence < best.evidence - NEAR_BEST:
+        return None
+    end = refined(case, first)
+    return end if end is not None and end.evidence > best.evidence else None
+
+
+def _instead(case: Case, tried: Tried, name: str, worth: Set[str]) -> list[Job]:
+    """Effects that promise most in the place of `name`, all else as it was fitted."""
+    supposed = tried.fit.supposed
+    start = fit(case, supposed.with_effects({n: v for n, v in supposed.effects.items() if n != name}), rounds=0)
+    if start is None:
+        return []
+    looks = look(case, ground_of(case, start), sorted(worth - {name}))
+    least = max(FURTHER_GAIN, NEARLY * (tried.fit.log_likelihood - start.log_likelihood))
+    return [Job(start, entry, True) for entry in looks if entry.gain > least][:INSTEAD]

@@ -1,0 +1,155 @@
+"""One hypothesis fitted: a first joint fit of an effect with the plant and what was found before, then to its end."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.calm import awake
+from diagnosis.case import Case
+from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
+from diagnosis.hypothesis import Supposed, passes
+from diagnosis.screen import Look
+from diagnosis.unrest import FIRST_UNREST, with_unrest
+
+STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
+SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
+ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
+FAR = 1.0  # the same for a fit that was refined
+LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
+LEAST_SLIP = 1.5  # counts
+POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
+FINELY = (1e-3, 2e-4, 4e-5)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A hypothesis with its fit: `effects` its names in order, `evidence` the log evidence by Laplace, unscaled."""
+
+    effects: tuple[str, ...]
+    fit: Fit
+    evidence: float
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A further effect to fit from a start, whose air may have been `calm`ed."""
+
+    start: Fit
+    look: Look
+    calm: bool
+
+
+def evidence(found: Fit) -> float:
+    """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
+    size = len(found.supposed.theta)
+    sign, volume = np.linalg.slogdet(found.information)
+    new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
+    prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
+    shapes = [row for row, is_size in new if not is_size]
+    prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.supposed.effects)
+    own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
+    return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
+
+
+def rough(case: Case, job: Job) -> Tried | None:
+    """A first joint fit, under the unrest that was there before, or what then shows where that had been lowered."""
+    supposed, entry = job.start.supposed, job.look
+    start = supposed.with_effects({**supposed.effects, entry.effect: entry.values})
+    if entry.effect.endswith("_input.quantization"):
+        start = _polished(case, start, entry.effect, POLISHING)
+    found = fit(case, start, rounds=4)
+    if found is not None and job.calm:
+        found = awake(case, found)
+    elif found is not None and found.log_posterior < job.start.log_posterior:
+        found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
+    astray = start if found is None else found.supposed
+    if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
+        found = _likelier(found, _from_stated(case, start))
+    return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
+
+
+def at_its_place(case: Case, job: Job) -> Tried | None:
+    """A first fit from where the rest fits already, under calm air."""
+    supposed, entry = job.start.supposed, job.look
+    found = fit(case, supposed.with_effects({**supposed.effects, entry.effect: entry.values}), rounds=4)
+    found = None if found is None else awake(case, found)
+    return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
+
+
+def refined(case: Case, tried: Tried) -> Tried | None:
+    """The fit with the unrest that then remains."""
+    start = with_unrest(case, tried.fit.supposed)
+    for name in tried.effects:
+        start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
+    found = fit(case, start, rounds=5)
+    return None if found is None else tried_as(case, found)
+
+
+def once_more(case: Case, tried: Tried) -> Tried:
+    """The same begun once more from the parameters as stated, where they have gone far and that ends better."""
+    theta = tried.fit.supposed.theta
+    if theta @ theta < FAR * len(theta):
+        return tried
+    start = _from_stated(case, tried.fit.supposed)
+    other = None if start is None else refined(case, tried_as(case, start))
+    return tried if other is None or other.evidence < tried.evidence else other
+
+
+def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]) -> Supposed:
+    """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
+    best, value = start, -np.inf
+    for reach in reaches:
+        middle = best.effects[effect]["q"]
+        for q in np.linspace(1.0 - reach, 1.0 + reach, 13) * middle:
+            tried = start.with_effects({**start.effects, effect: {"q": float(q)}})
+            runs = passes(case, tried)
+            if runs is not None and likelihood(runs) > value:
+                best, value = tried, likelihood(runs)
+    return best
+
+
+def _lessened(case: Case, start: Supposed, effect: str) -> Supposed:
+    """The start with an effect of a fifth of its size: what it is added to must not fit worse for it."""
+    values = dict(start.effects[effect])
+    for parameter in case.kit.effects[effect].parameters:
+        if from_zero(parameter):
+            zero = parameter.zero or 0.0
+            values[parameter.symbol] = zero + LESS * (values[parameter.symbol] - zero)
+    return start.with_effects({**start.effects, effect: values})
+
+
+def _from_stated(case: Case, start: Supposed) -> Fit | None:
+    """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
+    calm = np.minimum(start.unrest, FIRST_UNREST)
+    found = fit(case, replace(start, theta=np.zeros_like(start.theta), unrest=calm), rounds=4)
+    return None if found is None else awake(case, found)
+
+
+def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
+    if one is None or other is None:
+        return one or other
+    return one if one.log_posterior >= other.log_posterior else other
+
+
+def tried_as(case: Case, found: Fit) -> Tried:
+    return Tried(case.added(found.supposed.effects), found, evidence(found))
+
+
+def _whole_counts(case: Case, found: Fit) -> bool:
+    """Whether every slip of a sensor is at least a count: what is smaller is rounding."""
+    kit = case.kit
+    for name, values in found.supposed.effects.items():
+        if name.endswith(".count_slip"):
+            sensor = kit.bound.model.places.sensors[name.split(".")[0]].output
+            if abs(values["jump"]) < LEAST_SLIP * kit.bound.plant.sensors[sensor]:
+                return False
+    return True
+
+
+def keep_better(found: dict[frozenset[str], Tried], tried: Iterable[Tried]) -> None:
+    """Of each set of effects the better of what was found and what was tried."""
+    for entry in tried:
+        known = found.setdefault(frozenset(entry.effects), entry)
+        if entry.evidence > known.evidence:
+            found[frozenset(entry.effects)] = entry

@@ -1,0 +1,37 @@
+"""A re-tune that the hold-out refutes is not written: the plant's parameters then stay as stated, and the notes say so."""
+
+import pytest
+
+from diagnosis.engine import Material, diagnose
+from diagnosis.result import Result
+from sim.bind import BoundPlant
+from tests.diagnosis.conftest import Fly
+
+TWO_SD = 1.1  # times J_A, which its file states to 5 %
+
+
+def checked_on(plant: BoundPlant, fly: Fly, inertia: float) -> Result:
+    """The answer where the rig that was fitted has TWO_SD of J_A and that of the hold-out `inertia`, all else as stated."""
+    exactly = {str(symbol): 1.0 for symbol in plant.model.parameter_symbols}
+    logs = [fly(seed, factors={**exactly, "J_A": factor}) for seed, factor in ((51, TWO_SD), (52, inertia))]
+    return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
+
+
+def test_a_re_tune_that_predicts_worse_is_not_written(plant: BoundPlant, fly: Fly) -> None:
+    result = checked_on(plant, fly, 1.0)
+    stated = plant.plant.parameters
+    assert result.diagnosis.found == ()
+    assert result.plant.parameters["J_A"].value == stated["J_A"].value
+    assert result.plant.parameters["J_A"].sd == pytest.approx(stated["J_A"].sd)
+    assert any("parameters stay as stated" in note for note in result.diagnosis.notes)
+    shrunk = result.diagnosis.shrinkage
+    assert shrunk is not None
+    assert shrunk.rms_before == shrunk.rms_nominal == shrunk.rms_after
+
+
+def test_a_re_tune_that_predicts_better_is_written(plant: BoundPlant, fly: Fly) -> None:
+    result = checked_on(plant, fly, TWO_SD)
+    stated, tuned = plant.plant.parameters["J_A"].value, result.plant.parameters["J_A"].value
+    assert isinstance(stated, float)
+    assert tuned == pytest.approx(TWO_SD * stated, rel=0.03)
+    assert not any("parameters stay as stated" in note for note in result.diagnosis.notes)
