@@ -56,8 +56,8 @@ def holdout_of(
     if found is None:
         return trial
     further = 100.0 * (float(np.sqrt(before / stated)) - 1.0)
-    told = f"re-tuned within its spread the plant predicts the hold-out {further:.2g} % worse than as stated, so its parameters stay as stated"
-    return replace(trial, base=Tried((), found, evidence(found)), notes=(told,))
+    told = f"re-tuned within its spread the plant predicts the hold-out {further:.2g} % worse than as stated"
+    return replace(trial, base=Tried((), found, evidence(found)), notes=(f"{told}, so its parameters stay as stated",))
 
 
 def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) -> Weighed:
