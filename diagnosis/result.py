@@ -1,32 +1,78 @@
-"""All that a diagnosis found: the record for diagnosis.json, the improved plant, and the arrays that a report shows."""
+"""What goes through a diagnosis: the logs that it is given, what is seen of a gap, how that is judged, and the answer."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.curve import Shape
 from diagnosis.detect import Detection
+from diagnosis.fit import Fit
+from diagnosis.ground import Ground
+from diagnosis.holdout import Holdout
+from diagnosis.retune import Retune
+from diagnosis.screen import Look
 from diagnosis.search import Search
 from diagnosis.shrinkage import Predicted
 from diagnosis.trial import Tried
-from diagnosis.unknown import Suspect
 from diagnosis.weigh import Weighed
-from records.diagnosis import Diagnosis
+from records.diagnosis import Diagnosis, Firmware
+from records.log import RunLog
 from records.plant import Plant
+from records.table import ControllerTable
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Logs to fit and logs to check on, with the names of both and the rows that may be used of each; `tables` are the controllers that
+    flew the logs to check on, None where one is not at hand."""
+
+    logs: Sequence[RunLog]
+    holdout: Sequence[RunLog]
+    holdout_names: Sequence[str]
+    used: Sequence[NDArray[np.bool_] | None]
+    firmware: Firmware | None = None
+    notes: tuple[str, ...] = ()
+    tables: Sequence[ControllerTable | None] = ()
+    names: Sequence[str] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What is seen before any cause is looked for: the plant re-tuned within its spread, the looks at the library beside it, the fit with
+    lost frames, and what all that says of a gap; `checked` are the logs to check on."""
+
+    case: Case
+    checked: Case | None
+    retuned: Tried
+    ground: Ground
+    looks: tuple[Look, ...]
+    lossy: Fit | None
+    detection: Detection
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What is made of a gap: all that was tried, the re-tune beyond the spread, how probable each is, what the hold-out leaves of the
+    most probable (`chosen`, the plant without effects where it refutes all), and the notes so far."""
+
+    search: Search
+    beyond: Retune | None
+    weighed: Weighed
+    chosen: Tried
+    holdout: Holdout | None
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """`left` nats are what forms still gain beside the best hypothesis; `chosen` is the hypothesis whose effects were added (the nominal
-    plant re-tuned where none was), `predicted` by hold-out log, `shape` that of an effect without a name."""
+    """The record for diagnosis.json, the improved plant, and the arrays that a report shows: predictions by hold-out log, and the `shape`
+    of an effect without a name."""
 
     diagnosis: Diagnosis
     plant: Plant
     case: Case
-    detection: Detection
-    search: Search | None
-    weighed: Weighed | None
-    left: float
-    suspects: tuple[Suspect, ...]
-    chosen: Tried
     predicted: tuple[Predicted, ...]
     shape: Shape | None = None

@@ -1,0 +1,97 @@
+"""The answer put into its record: the verdict with places, times, effects, what the hold-out says, and the next experiment."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.curve import shape_of
+from diagnosis.detect import Detection
+from diagnosis.holdout import Holdout
+from diagnosis.hypothesis import passes
+from diagnosis.improved import estimates, improved_plant
+from diagnosis.maps import band_map, region_map, removed_energy, time_map
+from diagnosis.next_experiment import next_experiment
+from diagnosis.notes import cannot_tell, notes_of
+from diagnosis.places import place_shares
+from diagnosis.result import Judged, Material, Result, Seen
+from diagnosis.reveal import revealing_experiment
+from diagnosis.search import Search
+from diagnosis.sparse import suggestion
+from diagnosis.trial import Tried
+from diagnosis.unknown import Suspect, suspects
+from diagnosis.weigh import Weighed, alike
+from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
+
+
+def gap(seen: Seen, material: Material, judged: Judged) -> Result:
+    """The answer where something is missing."""
+    case, found, weighed = seen.case, judged.search, judged.weighed
+    blamed = suspects(seen.detection)
+    before, after = _innovations(case, found.nominal), _innovations(case, found.tried[0])
+    energy = removed_energy(before, after)
+    predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
+    diagnosis = Diagnosis(
+        verdict="gap",
+        false_alarm_probability=seen.detection.p,
+        places=place_shares(
+            found, weighed, blamed[0].place if blamed else None, judged.beyond.places if judged.beyond else ()
+        ),
+        when=time_map(case, energy),
+        regions=region_map(case, energy),
+        bands=band_map(case, before, after),
+        firmware=material.firmware,
+        effects=tuple(
+            _hypothesis(case, weighed, tried, probability)
+            for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True)
+        ),
+        unknown=_unknown(found, seen.detection, weighed, blamed[0] if blamed else None),
+        found=judged.chosen.effects,
+        shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
+        next_experiment=next_experiment(case, weighed),
+        notes=(*judged.notes, *notes_of(case, seen.looks, judged.chosen, weighed)),
+    )
+    shape = shape_of(found.ground, seen.detection, blamed[0]) if blamed and weighed.nameless else None
+    return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape)
+
+
+def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
+    """The answer where nothing shows, or nothing could."""
+    case = seen.case
+    chosen = seen.retuned if holdout is None else holdout.base
+    predicted = () if holdout is None else holdout.predicted(chosen)
+    told = () if holdout is None else holdout.notes
+    blamed, blind = suspects(seen.detection), cannot_tell(case, seen.looks)
+    diagnosis = Diagnosis(
+        verdict="cannot tell" if blind else "no gap",
+        false_alarm_probability=seen.detection.p,
+        places=(PlaceShare(blamed[0].place, 1.0),) if blamed else (),
+        firmware=material.firmware,
+        shrinkage=None if holdout is None else holdout.shrinkage(predicted),
+        next_experiment=revealing_experiment(case, seen.retuned.fit.supposed) if blind else None,
+        notes=(*material.notes, *told, *notes_of(case, seen.looks, chosen, None)),
+    )
+    return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted)
+
+
+def _unknown(found: Search, detection: Detection, weighed: Weighed, first: Suspect | None) -> Unknown:
+    """The effect that no candidate explains; its form is asked for where nothing else is likelier."""
+    if first is None:
+        return Unknown(weighed.unknown)
+    form = suggestion(found.ground, detection, first.place) if weighed.nameless else None
+    return Unknown(weighed.unknown, first.place, first.class_text, form)
+
+
+def _innovations(case: Case, tried: Tried) -> list[NDArray[np.float64]]:
+    runs = passes(case, tried.fit.supposed)
+    return [] if runs is None else [run.w for run in runs]
+
+
+def _hypothesis(case: Case, weighed: Weighed, tried: Tried, probability: float) -> Hypothesis:
+    classes = [case.kit.effects[name].class_text for name in tried.effects]
+    own = estimates(case, tried.fit)
+    single = len(tried.effects) == 1
+    parameters = {
+        symbol if single else f"{name}.{symbol}": entry for name in tried.effects for symbol, entry in own[name].items()
+    }
+    same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, tried))
+    return Hypothesis(" + ".join(tried.effects), " + ".join(classes), probability, parameters, same)
