@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.detect import Detection, gains
-from diagnosis.generic import Form, Signals, angle_names, rotor_name, signals
+from diagnosis.generic import Form
 from diagnosis.ground import Ground
+from diagnosis.signals import Signals, angle_names, rotor_name, signals
 from diagnosis.unknown import Suspect
 from records.units import unit_suffix
 from sim.places import InputPlace

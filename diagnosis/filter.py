@@ -1,7 +1,7 @@
 """The extended Kalman filter of diagnosis/c, compiled with a plant's equations: whitened innovations and their slopes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -87,49 +87,48 @@ class Filter:
         None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
         assert len(columns) <= MAX_COLUMNS
-        rows, width = tape.rows, max(slots) + 1
-        n, outputs, steps = self.states, self.outputs, len(tape.t_s)
-        arrays: dict[str, NDArray[Any] | None] = {
-            "t_s": _double(tape.t_s),
-            "u": _double(tape.u),
-            "y": _double(tape.y),
-            "r": _double(tape.r),
-            "row": np.ascontiguousarray(tape.row, dtype=np.int64),
-            "place": np.ascontiguousarray(tape.place, dtype=np.int64),
-            "p": _double(p),
-            "x0": _double(x0),
-            "p0": _double(noise.p0),
-            "q": _double(noise.q),
-            "stir": _double(np.outer(tape.untold_s**2, noise.drive)) if tape.untold_s.any() else None,
-            "rub": _double(noise.rub) if self.axes else np.zeros(1),
+        width, steps = max(slots) + 1, len(tape.t_s)
+        rubs = noise.rub if self.axes else np.zeros(1)
+        given = _given(tape, p, x0, replace(noise, rub=rubs)) | {
             "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
             "column": np.array(columns, dtype=np.int32),
             "slot": np.array(slots, dtype=np.int32),
-            "w": np.full((rows, width), np.nan),
-            "s": np.full((rows, width), np.nan),
-            "dw": np.zeros((rows, width, len(columns))) if len(columns) and keep_slopes else None,
-            "gram": np.zeros((len(columns), len(columns))),
-            "pull": np.zeros(len(columns)),
-            "x": np.full((rows, n), np.nan),
-            "filtered": np.full((rows, n), np.nan),
-            "F": np.zeros((steps, n, n)) if keep_gains else None,
-            "K": np.zeros((steps, outputs, n)) if keep_gains else None,
-            "H": np.zeros((steps, outputs, n)) if keep_gains else None,
         }
-        request = self.ffi.new("filter_request *")
-        for name, array in arrays.items():
-            address = self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
-            setattr(request, name, address)
+        found = self._found(tape, width, len(columns), keep_slopes, keep_gains)
+        request = self._request("filter_request *", given | found)
         request.steps, request.columns, request.slots = steps, len(columns), width
         request.rest_s = noise.rest_s
         if self.lib.filter_run(request) != steps:
             return None
-        gains = (arrays["F"], arrays["K"], arrays["H"]) if keep_gains else None
-        found = {name: arrays[name] for name in ("w", "s", "dw", "pull", "x", "filtered")}
-        gram = arrays["gram"]
+        F, K, H, gram = (found.pop(name) for name in ("F", "K", "H", "gram"))
         assert gram is not None
-        found["gram"] = gram + np.tril(gram, -1).T
-        return Pass(**found, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
+        gains = None if F is None or K is None or H is None else (F, K, H)
+        whole = gram + np.tril(gram, -1).T
+        return Pass(**found, gram=whole, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
+
+    def _found(self, tape: Tape, width: int, columns: int, slopes: bool, gains: bool) -> dict[str, Array | None]:
+        """Room for what a run leaves, as in filter.h; None for what is not kept."""
+        rows, steps, n, outputs = tape.rows, len(tape.t_s), self.states, self.outputs
+        return {
+            "w": np.full((rows, width), np.nan),
+            "s": np.full((rows, width), np.nan),
+            "dw": np.zeros((rows, width, columns)) if columns and slopes else None,
+            "gram": np.zeros((columns, columns)),
+            "pull": np.zeros(columns),
+            "x": np.full((rows, n), np.nan),
+            "filtered": np.full((rows, n), np.nan),
+            "F": np.zeros((steps, n, n)) if gains else None,
+            "K": np.zeros((steps, outputs, n)) if gains else None,
+            "H": np.zeros((steps, outputs, n)) if gains else None,
+        }
+
+    def _request(self, kind: str, arrays: Mapping[str, NDArray[Any] | None]) -> Any:
+        """A request of C whose pointers are those of the arrays, which must live as long."""
+        request = self.ffi.new(kind)
+        for name, array in arrays.items():
+            address = self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+            setattr(request, name, address)
+        return request
 
     def respond(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:
         """Change of the whitened innovations, shape (rows, slots, columns), by small disturbances `values` (steps, targets, columns).
@@ -141,7 +140,7 @@ class Filter:
         F, K, H = run.gains
         width, columns = max(slots) + 1, values.shape[2]
         dw = np.zeros((tape.rows, width, columns))
-        arrays: dict[str, NDArray[Any]] = {
+        arrays: dict[str, NDArray[Any] | None] = {
             "F": F,
             "K": K,
             "H": H,
@@ -152,12 +151,28 @@ class Filter:
             "place": np.ascontiguousarray(tape.place, dtype=np.int64),
             "dw": dw,
         }
-        request = self.ffi.new("response_request *")
-        for name, array in arrays.items():
-            setattr(request, name, self.ffi.cast("void *", array.ctypes.data))
+        request = self._request("response_request *", arrays)
         request.steps, request.columns, request.targets, request.slots = len(tape.t_s), columns, len(targets), width
         self.lib.filter_respond(request)
         return dw
+
+
+def _given(tape: Tape, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[Any] | None]:
+    """What a run reads of a log, the parameters and the noise, as in filter.h."""
+    return {
+        "t_s": _double(tape.t_s),
+        "u": _double(tape.u),
+        "y": _double(tape.y),
+        "r": _double(tape.r),
+        "row": np.ascontiguousarray(tape.row, dtype=np.int64),
+        "place": np.ascontiguousarray(tape.place, dtype=np.int64),
+        "p": _double(p),
+        "x0": _double(x0),
+        "p0": _double(noise.p0),
+        "q": _double(noise.q),
+        "stir": _double(np.outer(tape.untold_s**2, noise.drive)) if tape.untold_s.any() else None,
+        "rub": _double(noise.rub),
+    }
 
 
 def _double(array: ArrayLike) -> Array:

@@ -1,16 +1,16 @@
 """Forms that a missing term could have, whatever its cause: by place, by what it depends on. They are answered linearly, not fitted."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.ground import Ground
+from diagnosis.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
+from diagnosis.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals
 from diagnosis.waves import likely_waves
-from sim.model import TIME
 
 Array = NDArray[np.float64]
 REST = 0.02  # of a speed's typical size: below it the sign of the speed fades
@@ -28,62 +28,6 @@ class Form:
     values: tuple[Array, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Signals:
-    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time, waves."""
-
-    t: Array
-    h: Array
-    angle: Mapping[str, Array]
-    speed: Mapping[str, Array]
-    rotor: Mapping[str, Array]
-    thrust: Mapping[tuple[str, str], Array]
-    inertia: Mapping[str, Array]
-    u: Mapping[str, Array]
-    waves: Mapping[str, tuple[float, ...]]
-
-
-def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]]) -> Signals:
-    """The signals that the filter predicts for a flight."""
-    kit = ground.case.kit
-    model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
-    x = np.nan_to_num(_by_step(run.x[:, : len(model.states)], tape.row))
-    p = kit.bound.p
-    arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
-    given = (tape.t_s, *x.T, *tape.u.T, *p)
-
-    def value(expression: sympy.Expr) -> Array:
-        found = sympy.lambdify(arguments, expression, "numpy", cse=True)(*given)
-        return np.broadcast_to(np.asarray(found, float), tape.t_s.shape)
-
-    axes = {axis.name: axis for axis in model.axes if axis.position is not None}
-    return Signals(
-        t=tape.t_s,
-        h=np.append(np.diff(tape.t_s), 0.0),
-        angle={name: value(axis.position) for name, axis in axes.items()},
-        speed={name: value(axis.velocity) / model.places.axes[name].speed_size for name, axis in axes.items()},
-        rotor={name: value(rotor.speed) / rotor.speed_size for name, rotor in model.places.rotors.items()},
-        thrust={
-            (name, axis): value(torque / axes[axis].inertia)
-            for name, rotor in model.places.rotors.items()
-            for axis, torque in rotor.thrusts.items()
-        },
-        inertia={name: _relative(value(axis.inertia)) for name, axis in axes.items()},
-        u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
-        waves=waves,
-    )
-
-
-def _relative(inertia: Array) -> Array:
-    return inertia / np.mean(inertia)
-
-
-def _by_step(x: Array, row: NDArray[np.int64]) -> Array:
-    """Rows of a log held over a tape's instants."""
-    known = np.maximum.accumulate(np.where(row >= 0, row, 0))
-    return np.asarray(x[known])
-
-
 def forms(ground: Ground) -> list[Form]:
     """All forms for the case's plant, in a fixed order."""
     case = ground.case
@@ -95,15 +39,12 @@ def forms(ground: Ground) -> list[Form]:
     }
     each = [list(_forms(case, signals(ground, flight, waves))) for flight in range(len(case.flights))]
     return [
-        Form(place, text, _plain(shape), target, tuple(flight[index][-1] for flight in each))
+        Form(place, text, plain(shape), target, tuple(flight[index][-1] for flight in each))
         for index, (place, text, shape, target, _) in enumerate(each[0])
     ]
 
 
 Row = tuple[str, str, str, int, Array]
-Shapes = Mapping[str, Callable[[Array], Array]]
-SQUARE = "{x} |{x}|"
-COUNTS = {"sin({count} {x})": 0.0, "cos({count} {x})": np.pi / 2}
 
 
 def _forms(case: Case, s: Signals) -> Iterator[Row]:
@@ -132,17 +73,17 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arra
     q, w, sign = names[axis], f"{names[axis]}_dot", np.tanh(v / REST)
     unit = in_units(w, case.kit.bound.model.places.axes[axis].speed_size)
     angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
-    doubled = _waves((2,), ("sin({count} {x})",))
-    yield from _shapes(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **_waves(range(3, 17))})
-    yield from _shapes(w, unit, v, {SQUARE: lambda x: x * np.abs(x), "{x}^3": lambda x: x**3})
+    doubled = waves_a_turn((2,), ("sin({count} {x})",))
+    yield from shaped(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **waves_a_turn(range(3, 17))})
+    yield from shaped(w, unit, v, {SQUARE: lambda x: x * np.abs(x), "{x}^3": lambda x: x**3})
     rubs: Shapes = {"sgn({x})": lambda _: sign, "sgn({x}) exp(-|{x}| / 0.1)": lambda x: sign * np.exp(-np.abs(x) / 0.1)}
-    yield from _shapes(f"sgn {w}", unit, v, {**rubs, "|{x}|": np.abs})
+    yield from shaped(f"sgn {w}", unit, v, {**rubs, "|{x}|": np.abs})
     yield f"{q}, sgn {w}", f"{q} sgn({unit})", a * sign
-    yield f"{q}, sgn {w}", f"bristles of 0.2 under {q}", _follower(a, 0.2)
+    yield f"{q}, sgn {w}", f"bristles of 0.2 under {q}", follower(a, 0.2)
     for text, shape in ((q, a), (f"{q}^2", a**2), (f"sin({q})", np.sin(a)), (f"cos({q})", np.cos(a))):
         yield f"{q}, {w}", f"{text} {unit}", shape * v
     time = s.t / s.t[-1]
-    yield from _shapes("t", in_units("t", s.t[-1]), time, {"{x}": lambda x: x, "{x}^2": np.square})
+    yield from shaped("t", in_units("t", s.t[-1]), time, {"{x}": lambda x: x, "{x}^2": np.square})
     for rate in s.waves.get(axis, ()):
         for text, wave in (("sin", np.sin), ("cos", np.cos)):
             yield "t", f"{text}({rate:.3g} t)", wave(rate * s.t)
@@ -158,14 +99,14 @@ def _from_rotors(case: Case, s: Signals, w: str, unit: str, v: Array, sign: Arra
     for rotor, speed in s.rotor.items():
         o = rotor_name(case, rotor)
         x = rotor_unit(case, rotor)
-        yield from _shapes(o, x, speed, {SQUARE: lambda x: x * np.abs(x), "{x}": lambda x: x})
+        yield from shaped(o, x, speed, {SQUARE: lambda x: x * np.abs(x), "{x}": lambda x: x})
         yield f"{o}, {w}", f"|{x}| {unit}", np.abs(speed) * v
         yield f"{o}, sgn {w}", f"|{x}| sgn({unit})", np.abs(speed) * sign
         yield f"d{o}/dt", f"d{x}/dt", np.gradient(speed, s.t)
 
 
 def _between(q: str, angle: Array, speed: Array, own: str, v: Array) -> Iterator[tuple[str, str, Array]]:
-    yield from _shapes(q, q, angle, {"{x}": lambda x: x, "{x}^2": np.square})
+    yield from shaped(q, q, angle, {"{x}": lambda x: x, "{x}^2": np.square})
     yield f"{q}_dot", f"{q}_dot", speed
     yield f"{q}, {q}_dot, {own}", f"sin(2 {q}) {q}_dot {own}", np.sin(2.0 * angle) * speed * v
     yield f"{q}, {own}", f"{q} {own}", v * angle
@@ -197,14 +138,14 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
         through = list(_through(case, name, s))
         for target, gain in through:
             known: Shapes = {"sgn({x})": lambda x: np.tanh(x / 0.03), "|{x}|": np.abs, SQUARE: lambda x: x * np.abs(x)}
-            for _, shape, value in _shapes(text, x, u, known):
+            for _, shape, value in shaped(text, x, u, known):
                 yield place, text, shape, target, value * gain
             yield place, text, f"change of {x} from row to row", target, changes * gain
-            yield place, text, f"size of the change of {x} from row to row", target, _jitter(u) * gain
-            for shape, value in _beyond(x, u):
+            yield place, text, f"size of the change of {x} from row to row", target, jitter(u) * gain
+            for shape, value in beyond(x, u):
                 yield place, f"limit({text})", shape, target, value * gain
             if rotor.drive is not None:
-                for shape, value in _beyond(f"{x} - {over}", u - speed):
+                for shape, value in beyond(f"{x} - {over}", u - speed):
                     yield place, f"limit({text}, {o})", shape, target, value * gain
             for other, value in s.u.items():
                 if other != place:
@@ -218,7 +159,7 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
             "{x}^3": lambda x: x**3,
         }
         for target, gain in through[: 1 if rotor.drive is not None else 0]:
-            for _, shape, value in _shapes(o, over, speed, rubs):
+            for _, shape, value in shaped(o, over, speed, rubs):
                 yield name, f"torque({o}) on rotor", shape, target, value * gain
         for axis in rotor.thrusts:
             yield from _thrust_forms(case, name, axis, s)
@@ -236,7 +177,7 @@ def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row
         "sgn({x})": lambda x: np.tanh(x / 0.02),
         "{x}^4": lambda x: x**4,
     }
-    for _, shape, value in _shapes(o, x, speed, shapes):
+    for _, shape, value in shaped(o, x, speed, shapes):
         yield rotor, f"thrust({o})", f"{shape} {own}", target, value * thrust
     for name, angle in s.angle.items():
         q = names[name]
@@ -261,7 +202,7 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
         w = in_units(f"{q}_dot", model.places.axes[axis].speed_size)
         target = len(kit.states) + kit.outputs.index(sensor.output)
-        for _, shape, value in _shapes(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **_waves(range(3, 33))}):
+        for _, shape, value in shaped(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **waves_a_turn(range(3, 33))}):
             yield place, f"output({q}) of {q}", shape, target, value
         yield place, f"output({q}_dot) of {q}", w, target, v
         yield place, f"output(sgn {q}_dot) of {q}", f"sgn({w})", target, np.tanh(v / REST)
@@ -279,68 +220,3 @@ def _through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
     axis = next(iter(place.thrusts))
     velocity = next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis)
     yield kit.states.index(velocity), s.h / s.inertia[axis]
-
-
-def _shapes(depends: str, name: str, x: Array, shapes: Shapes) -> Iterator[tuple[str, str, Array]]:
-    return ((depends, text.format(x=name), np.asarray(shape(x), float)) for text, shape in shapes.items())
-
-
-def _waves(counts: Sequence[int], texts: Sequence[str] = tuple(COUNTS)) -> Shapes:
-    """Sines and cosines of so many waves a turn."""
-    return {text.format(count=count, x="{x}"): _wave(count, COUNTS[text]) for count in counts for text in texts}
-
-
-def _wave(count: int, shift: float) -> Callable[[Array], Array]:
-    return lambda x: np.asarray(np.sin(count * x + shift))
-
-
-def _beyond(name: str, x: Array) -> Iterator[tuple[str, Array]]:
-    """What of x lies beyond its rare values on either side."""
-    for share in (2.0, 5.0, 15.0, 85.0, 95.0, 98.0):
-        edge = float(np.percentile(x, share))
-        above = share > 50.0
-        text = f"what of {name} lies {'above' if above else 'below'} {edge:.3g}"
-        yield text, np.maximum(x - edge, 0.0) if above else np.minimum(x - edge, 0.0)
-
-
-def _follower(x: Array, width: float) -> Array:
-    """Where a brush of stiff bristles of `width` stands that x drags along."""
-    z, found = 0.0, []
-    for change in np.diff(x, prepend=x[0]).tolist():
-        z = min(max(z + change, -width), width)
-        found.append(z)
-    return np.array(found)
-
-
-def _jitter(u: Array) -> Array:
-    return np.append(0.0, np.abs(np.diff(u)))
-
-
-def _plain(shape: str) -> str:
-    """Without brackets that a sign or bars around them make idle."""
-    for twice, once in (("((", "("), ("))", ")"), ("|(", "|"), (")|", "|")):
-        shape = shape.replace(twice, once)
-    return shape
-
-
-def in_units(name: str, size: float) -> str:
-    """A signal in units of its size, as text."""
-    return name if size == 1.0 else f"({name} / {size:.4g})"
-
-
-def rotor_unit(case: Case, rotor: str) -> str:
-    """A rotor's speed in units of its size, as text."""
-    return in_units(rotor_name(case, rotor), case.kit.bound.model.places.rotors[rotor].speed_size)
-
-
-def angle_names(case: Case) -> dict[str, str]:
-    """Axis -> its angle's short name (psi)."""
-    return {name: entry.angle.rsplit("_", 1)[0] for name, entry in case.kit.bound.model.places.axes.items()}
-
-
-def rotor_name(case: Case, rotor: str) -> str:
-    """The short name of a rotor's speed (omega_M), or of its input where it has no speed of its own."""
-    place = case.kit.bound.model.places.rotors[rotor]
-    if place.drive is None:
-        return str(place.variable).rsplit("_", 1)[0]
-    return f"omega_{place.letter}" if place.letter else "omega"

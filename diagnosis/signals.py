@@ -1,0 +1,93 @@
+"""What a flight went through as the filter predicts it, and the names under which forms speak of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+
+from diagnosis.case import Case
+from diagnosis.ground import Ground
+from sim.model import TIME
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """What a flight went through, by instant: angles and speeds by axis, rotor speeds, inputs, relative inertia by axis, time, waves."""
+
+    t: Array
+    h: Array
+    angle: Mapping[str, Array]
+    speed: Mapping[str, Array]
+    rotor: Mapping[str, Array]
+    thrust: Mapping[tuple[str, str], Array]
+    inertia: Mapping[str, Array]
+    u: Mapping[str, Array]
+    waves: Mapping[str, tuple[float, ...]]
+
+
+def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]]) -> Signals:
+    """The signals that the filter predicts for a flight."""
+    kit = ground.case.kit
+    model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
+    x = np.nan_to_num(_by_step(run.x[:, : len(model.states)], tape.row))
+    p = kit.bound.p
+    arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
+    given = (tape.t_s, *x.T, *tape.u.T, *p)
+
+    def value(expression: sympy.Expr) -> Array:
+        found = sympy.lambdify(arguments, expression, "numpy", cse=True)(*given)
+        return np.broadcast_to(np.asarray(found, float), tape.t_s.shape)
+
+    axes = {axis.name: axis for axis in model.axes if axis.position is not None}
+    return Signals(
+        t=tape.t_s,
+        h=np.append(np.diff(tape.t_s), 0.0),
+        angle={name: value(axis.position) for name, axis in axes.items()},
+        speed={name: value(axis.velocity) / model.places.axes[name].speed_size for name, axis in axes.items()},
+        rotor={name: value(rotor.speed) / rotor.speed_size for name, rotor in model.places.rotors.items()},
+        thrust={
+            (name, axis): value(torque / axes[axis].inertia)
+            for name, rotor in model.places.rotors.items()
+            for axis, torque in rotor.thrusts.items()
+        },
+        inertia={name: _relative(value(axis.inertia)) for name, axis in axes.items()},
+        u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
+        waves=waves,
+    )
+
+
+def _relative(inertia: Array) -> Array:
+    return inertia / np.mean(inertia)
+
+
+def _by_step(x: Array, row: NDArray[np.int64]) -> Array:
+    """Rows of a log held over a tape's instants."""
+    known = np.maximum.accumulate(np.where(row >= 0, row, 0))
+    return np.asarray(x[known])
+
+
+def in_units(name: str, size: float) -> str:
+    """A signal in units of its size, as text."""
+    return name if size == 1.0 else f"({name} / {size:.4g})"
+
+
+def rotor_unit(case: Case, rotor: str) -> str:
+    """A rotor's speed in units of its size, as text."""
+    return in_units(rotor_name(case, rotor), case.kit.bound.model.places.rotors[rotor].speed_size)
+
+
+def angle_names(case: Case) -> dict[str, str]:
+    """Axis -> its angle's short name (psi)."""
+    return {name: entry.angle.rsplit("_", 1)[0] for name, entry in case.kit.bound.model.places.axes.items()}
+
+
+def rotor_name(case: Case, rotor: str) -> str:
+    """The short name of a rotor's speed (omega_M), or of its input where it has no speed of its own."""
+    place = case.kit.bound.model.places.rotors[rotor]
+    if place.drive is None:
+        return str(place.variable).rsplit("_", 1)[0]
+    return f"omega_{place.letter}" if place.letter else "omega"
