@@ -18,6 +18,7 @@ from diagnosis.trial import Job, Tried, evidence, keep_better, once_more, refine
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
+WORTH_A_PLACE = 0.1  # of the best look under calm air
 CLOSE, CLOSE_SHARE = 60.0, 0.05  # nats, and share of the gap, within which another pair is worth a third effect
 LEAST_GAIN = 4.0  # of the log likelihood at a first look
 LEAST_SHARE = 0.01  # of the best first look
@@ -57,7 +58,7 @@ def search(
     if calm is not None:
         calm_looks = look(case, ground_of(case, calm), names)
         worth |= _worth(calm_looks)
-        jobs = [*_promising(calm, calm_looks, True)[:CALM_SINGLES], *jobs[:CALM_SINGLES]]
+        jobs = [*_first_of_each(_promising(calm, calm_looks, True)), *jobs[:CALM_SINGLES]]
     _fit_all(case, jobs, found, first)
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
@@ -95,6 +96,22 @@ def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
     """Effects worth a fit from `start`, best first."""
     least = max(LEAST_GAIN, LEAST_SHARE * looks[0].gain) if looks else 0.0
     return [Job(start, entry, calm) for entry in looks if entry.gain > least]
+
+
+def _first_of_each(jobs: Sequence[Job]) -> list[Job]:
+    """The first CALM_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
+    better than the one effect of an axis that is there."""
+    kept = list(jobs[:CALM_SINGLES])
+    places = {_place(job) for job in kept}
+    for job in jobs[CALM_SINGLES:]:
+        if _place(job) not in places and job.look.gain > WORTH_A_PLACE * jobs[0].look.gain:
+            places.add(_place(job))
+            kept.append(job)
+    return kept
+
+
+def _place(job: Job) -> str:
+    return job.look.effect.split(".")[0]
 
 
 def _settle(case: Case, found: dict[frozenset[str], Tried]) -> None:
