@@ -18,7 +18,7 @@ FIRMWARE_DIR = Path(__file__).resolve().parent.parent / "firmware"
 LINKER_SCRIPT = FIRMWARE_DIR / "board" / "link.ld"
 # Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
 SOFT_ARITHMETIC = re.compile(
-    r"__aeabi_(?:[fd](?!iv0)\w+|c[fd]\w+|[iul]+2[fd]|[a-z]*div[a-z]*)|__u?(?:div|mod|divmod)[sdt]i[34]|soft_float_\w+"
+    r"__aeabi_(?:[fd](?!iv0)\w+|c[fd]\w+|[iul]+2[fd]|[a-z]*div[a-z]*)|__u?(?:div|mod|divmod)[sdt]i[34]"
     r"|__(?:add|sub|mul|div|neg|eq|ne|lt|le|gt|ge|un)[sd]f[23]|__(?:fix|float)\w+|__(?:extend|trunc)\w+"
 )
 INCLUDE_DIRS = (FIRMWARE_DIR / "control", FIRMWARE_DIR / "board")

@@ -1,6 +1,6 @@
-"""Sums and products of floats in integers: plain C on the host and the target's routines, each bit for bit as the host's FPU."""
+"""Sums, differences and products of floats in the target's routines, bit for bit as the host's FPU."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
 
@@ -8,31 +8,16 @@ import numpy as np
 import pytest
 from elftools.elf.elffile import ELFFile
 from numpy.typing import NDArray
-from unicorn import UC_ARCH_ARM, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
+from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
 from unicorn.arm_const import UC_ARM_REG_LR, UC_ARM_REG_R0, UC_ARM_REG_SP
 
-from toolchain.host import CText, build_shared, load_shared
+from toolchain.host import CText
 from toolchain.target import build_image
 
 BOARD = Path(__file__).resolve().parents[2] / "firmware" / "board"
 COUNT = 1024
 Bits = NDArray[np.uint32]
 
-HOST_DRIVER = CText(
-    "driver.c",
-    """
-    #include "soft_float.h"
-    void many(uint32_t count, const uint32_t *a, const uint32_t *b, uint32_t *results);
-    void many(uint32_t count, const uint32_t *a, const uint32_t *b, uint32_t *results)
-    {
-        for (uint32_t i = 0u; i < count; i++) {
-            *results++ = soft_float_sum(a[i], b[i]);
-            *results++ = soft_float_sum(a[i], b[i] ^ 0x80000000u);
-            *results++ = soft_float_product(a[i], b[i]);
-        }
-    }
-    """,
-)
 TARGET_DRIVER = CText(
     "driver.c",
     f"""
@@ -68,21 +53,18 @@ NASTY = np.array(
 )
 
 
-def test_plain_c_gives_the_bits_of_the_fpu_on_millions_of_operands() -> None:
-    library = build_shared("soft-float", [BOARD / "soft_float.c", HOST_DRIVER], include_dirs=[BOARD])
-    ffi, lib = load_shared("void many(uint32_t count, void *a, void *b, void *results);", library)
-    for a, b in _operands(200_000, seed=1):
-        results = np.empty((len(a), 3), dtype=np.uint32)
-        lib.many(len(a), *(ffi.cast("void *", array.ctypes.data) for array in (a, b, results)))
-        _assert_as_fpu(a, b, results)
-
-
-def test_the_target_routines_give_the_bits_of_the_fpu(tmp_path: Path) -> None:
+def test_the_target_routines_give_the_bits_of_the_fpu_on_millions_of_operands(tmp_path: Path) -> None:
     target = _Target(tmp_path)
-    for a, b in _operands(20 * COUNT, seed=2):
+    for a, b in _operands(200 * COUNT, seed=2):
         for start in range(0, len(a), COUNT):
             part = slice(start, start + COUNT)
             _assert_as_fpu(a[part], b[part], target.computed(a[part], b[part]))
+
+
+def test_the_operands_reach_every_instruction_of_the_routines(tmp_path: Path) -> None:
+    target = _Target(tmp_path)
+    reached = target.reached((a[:COUNT], b[:COUNT]) for a, b in _operands(COUNT, seed=2))
+    assert target.instructions("__aeabi_fadd", "__aeabi_fsub", "__aeabi_fmul") - reached == set()
 
 
 def test_a_wrong_bit_is_noticed() -> None:
@@ -99,15 +81,31 @@ class _Target:
     def __init__(self, folder: Path) -> None:
         script = folder / "test.ld"
         script.write_text(LINKER_SCRIPT, encoding="utf-8")
-        sources = [BOARD / "float_routines.c", BOARD / "soft_float.c", TARGET_DRIVER]
+        sources = [BOARD / "float_routines.c", TARGET_DRIVER]
         image = ELFFile(BytesIO(build_image("soft-float", sources, script, include_dirs=[BOARD]).read_bytes()))
-        self._addresses = {s.name: s["st_value"] for s in image.get_section_by_name(".symtab").iter_symbols()}
+        symbols = list(image.get_section_by_name(".symtab").iter_symbols())
+        self._addresses = {s.name: s["st_value"] for s in symbols}
+        self._sizes = {s.name: s["st_size"] for s in symbols}
         self._machine = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
         self._machine.mem_map(0x08000000, 0x10000)
         self._machine.mem_map(0x20000000, 0x10000)
         for segment in image.iter_segments():
             if segment["p_type"] == "PT_LOAD" and segment["p_filesz"]:
                 self._machine.mem_write(segment["p_vaddr"], segment.data())
+
+    def reached(self, operands: Iterable[tuple[Bits, Bits]]) -> set[int]:
+        """Addresses of all instructions that are executed for these operands."""
+        found: set[int] = set()
+        self._machine.hook_add(UC_HOOK_BLOCK, lambda _, start, size, *__: found.update(range(start, start + size, 2)))
+        for a, b in operands:
+            self.computed(a, b)
+        return found
+
+    def instructions(self, *functions: str) -> set[int]:
+        """Addresses of all instructions of these functions."""
+        starts = [self._addresses[name] & ~1 for name in functions]
+        ends = [start + self._sizes[name] for start, name in zip(starts, functions, strict=True)]
+        return {a for start, end in zip(starts, ends, strict=True) for a in range(start, end, 2)}
 
     def computed(self, a: Bits, b: Bits) -> Bits:
         self._machine.mem_write(self._addresses["a"], a.tobytes())
@@ -120,7 +118,7 @@ class _Target:
 
 
 def _operands(count: int, seed: int) -> Iterator[tuple[Bits, Bits]]:
-    """All pairs of nasty numbers; any bits; equal or near magnitudes; products near either end; few ones; near zero."""
+    """All pairs of nasty numbers; any bits; near magnitudes; products near either end; few ones; near zero; subnormals with any."""
     rng = np.random.default_rng(seed)
 
     def bits(low: int, high: int) -> NDArray[np.int64]:
@@ -143,6 +141,9 @@ def _operands(count: int, seed: int) -> Iterator[tuple[Bits, Bits]]:
     yield sparse[0], sparse[1]
     small = [fields(bits(0, 4), bits(0, 2**23) >> bits(0, 23)) for _ in range(2)]
     yield small[0], small[1]
+    subnormal = fields(np.zeros(count, dtype=np.int64), bits(1, 2**23) >> bits(0, 23))
+    yield subnormal, fields(exponents, bits(0, 2**23))
+    yield fields(np.clip(bits(0, 30), 0, 255), bits(0, 2**23)), subnormal
 
 
 def _assert_as_fpu(a: Bits, b: Bits, results: Bits) -> None:
