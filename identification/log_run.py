@@ -7,17 +7,14 @@ from identification.driven import driven_model
 from identification.motion import move
 from identification.run import Carried, Run
 from identification.subsystem import subsystem
+from identification.window_starts import window_starts
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Model
 
 Array = NDArray[np.float64]
-SLOPE_ROWS = 4  # on either side, for a velocity guess
-FORGOTTEN = 0.002  # of a driven state's reach
-AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
-# A window's start may be off by so many resolution steps, or so much of its range.
-POSITION_STEPS, POSITION_SHARE = 20.0, 0.05
+FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
 
 
 def log_run(
@@ -41,7 +38,7 @@ def log_run(
     channel = select % log.y.shape[1]
     step = np.array([bound.plant.sensors[output] for output in model.outputs])
     noise = np.array([bound.plant.sensor_noise.get(output, 0.0) for output in model.outputs])
-    x0, free, start_sd = _starts(model, log, begins, step, part)
+    x0, free, start_sd = window_starts(bound, log, begins, part)
     return Run(
         name=name,
         bound=bound,
@@ -122,48 +119,3 @@ def _windows(t_s: Array, window_s: float, every: int, from_s: float) -> tuple[ND
     begins = np.unique(np.searchsorted(t_s, edges - 1e-9)).astype(np.int64)
     stops = np.append(begins[1:], t_s.size).astype(np.int64)
     return begins[::every], stops[::every]
-
-
-def _starts(
-    model: Model, log: RunLog, begins: NDArray[np.int64], step: Array, part: Model | None
-) -> tuple[Array, tuple[str, ...], Array]:
-    """Guess of each window's state, the states that are free in it, and how far the guess may be off, (windows, free)."""
-    names = [str(state) for state in model.states]
-    carried = {str(state) for state in part.states} if part else set()
-    outputs = {expression: place for place, expression in enumerate(model.outputs.values())}
-    rates = {axis.position: axis.velocity for axis in model.axes if axis.position is not None}
-    x0, sd = np.zeros((begins.size, len(names))), np.zeros((begins.size, len(names)))
-    for state, output in outputs.items():
-        if state not in model.states:
-            continue
-        level, slope, still = lines(log.t_s, log.y[:, output], begins, step[output])
-        x0[:, names.index(str(state))] = level
-        sd[:, names.index(str(state))] = position_sd(log.y[:, output], float(step[output]))
-        velocity = rates.get(state)
-        if velocity is not None and velocity not in outputs:
-            place = names.index(str(velocity))
-            x0[:, place] = np.where(still, 0.0, slope)
-            loose = 3.0 * max(float(np.std(slope)), float(step[output] / np.median(np.diff(log.t_s))))
-            sd[:, place] = np.where(still, AT_REST, loose)
-    free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in carried)
-    return x0, free, sd[:, [names.index(name) for name in free]]
-
-
-def position_sd(y: Array, step: float) -> float:
-    """How far the guess of a position may be off: a loose hold, as the readings say it themselves."""
-    good = y[np.isfinite(y)]
-    return max(POSITION_STEPS * step, POSITION_SHARE * float(np.ptp(good)) if good.size else 0.0)
-
-
-def lines(t_s: Array, y: Array, begins: NDArray[np.int64], step: float) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Value and slope at the rows `begins` of a line through the rows around each, and whether these show no motion at all."""
-    level, slope = np.zeros(begins.size), np.zeros(begins.size)
-    still = np.zeros(begins.size, dtype=bool)
-    for number, row in enumerate(begins):
-        near = slice(max(0, row - SLOPE_ROWS), row + SLOPE_ROWS + 1)
-        good = np.isfinite(y[near])
-        if good.sum() < 2:
-            continue
-        slope[number], level[number] = np.polyfit(t_s[near][good] - t_s[row], y[near][good], 1)
-        still[number] = np.ptp(y[near][good]) < 0.5 * step
-    return level, slope, still

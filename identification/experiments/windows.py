@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.driven import driven_model
-from identification.log_run import lines, position_sd, rounding_sd
+from identification.log_run import rounding_sd
 from identification.run import Carried, Run
 from identification.subsystem import subsystem
+from identification.window_starts import lines, position_sd
 from records.errors import BadInput
 from sim.bind import BoundPlant
 
@@ -32,7 +33,7 @@ def windowed(
     assert axis.position is not None
     step = part.plant.sensors[output]
     select = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
-    level, slope, _ = lines(t_s, angle, begins, step)
+    level, slope, _, _ = lines(t_s, angle, begins, step)
     x0 = np.zeros((begins.size, len(model.states)))
     x0[:, model.states.index(axis.position)] = level
     x0[:, model.states.index(axis.velocity)] = slope

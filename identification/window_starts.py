@@ -1,0 +1,87 @@
+"""Where a log's windows start: a guess of each state at a window's first row, and how far it may be off."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.model import Axis, Model
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+SLOPE_ROWS = 4  # on either side, for a velocity guess
+AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
+# A window's start may be off by so many resolution steps, or so much of its range.
+POSITION_STEPS, POSITION_SHARE = 20.0, 0.05
+ANYWHERE = 1.0  # rad or m, a position that was never read, of an axis without stops
+
+
+def window_starts(
+    bound: BoundPlant, log: RunLog, begins: Index, part: Model | None
+) -> tuple[Array, tuple[str, ...], Array]:
+    """Guess of each window's state, the states that are free in it, and how far the guess may be off, (windows, free).
+
+    A position without readings about a window's first row is guessed between those that there are, and may be off by all their range;
+    one that was never read may be anywhere between its stops. States of the driven `part` are not free.
+    """
+    model = bound.model
+    names = [str(state) for state in model.states]
+    driven = {str(state) for state in part.states} if part else set()
+    axes = {axis.position: axis for axis in model.axes if axis.position is not None}
+    measured = tuple(model.outputs.values())
+    x0, sd = np.zeros((begins.size, len(names))), np.zeros((begins.size, len(names)))
+    for state, name, y in zip(measured, model.outputs, log.y.T, strict=True):
+        if state not in model.states:
+            continue
+        step, place, axis = bound.plant.sensors[name], names.index(str(state)), axes.get(state)
+        x0[:, place], slope, still, read = lines(log.t_s, y, begins, step)
+        sd[:, place] = np.where(read, position_sd(y, step), max(step, _reach(y)))
+        if axis is not None and not np.any(np.isfinite(y)):
+            x0[:, place], sd[:, place] = _anywhere(bound, axis)
+        if axis is not None and axis.velocity not in measured:
+            place = names.index(str(axis.velocity))
+            x0[:, place] = np.where(still, 0.0, slope)
+            loose = 3.0 * max(float(np.std(slope)), float(step / np.median(np.diff(log.t_s))))
+            sd[:, place] = np.where(still, AT_REST, loose)
+    free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in driven)
+    return x0, free, sd[:, [names.index(name) for name in free]]
+
+
+def _anywhere(bound: BoundPlant, axis: Axis) -> tuple[float, float]:
+    """Mean and standard deviation of a position that may be anywhere between its stops."""
+    if axis.lower is None or axis.upper is None:
+        return 0.0, ANYWHERE
+    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
+    lower, upper = float(axis.lower.xreplace(values)), float(axis.upper.xreplace(values))
+    return (lower + upper) / 2.0, (upper - lower) / np.sqrt(12.0)
+
+
+def position_sd(y: Array, step: float) -> float:
+    """How far the guess of a position may be off: a loose hold, as the readings say it themselves."""
+    return max(POSITION_STEPS * step, POSITION_SHARE * _reach(y))
+
+
+def _reach(y: Array) -> float:
+    good = y[np.isfinite(y)]
+    return float(np.ptp(good)) if good.size else 0.0
+
+
+def lines(
+    t_s: Array, y: Array, begins: Index, step: float
+) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Value and slope at the rows `begins` of a line through the rows around each; whether these show no motion, and whether any line.
+
+    Where fewer than two of them were read the value lies between the nearest that were, its slope is 0.
+    """
+    known = np.isfinite(y)
+    level = np.interp(t_s[begins], t_s[known], y[known]) if known.any() else np.zeros(begins.size)
+    slope = np.zeros(begins.size)
+    still, read = np.zeros(begins.size, dtype=bool), np.zeros(begins.size, dtype=bool)
+    for number, row in enumerate(begins):
+        near = np.arange(max(0, row - SLOPE_ROWS), min(t_s.size, row + SLOPE_ROWS + 1))
+        near = near[known[near]]
+        read[number] = near.size > 1
+        if read[number]:
+            slope[number], level[number] = np.polyfit(t_s[near] - t_s[row], y[near], 1)
+            still[number] = np.ptp(y[near]) < 0.5 * step
+    return level, slope, still, read
