@@ -21,6 +21,7 @@ MAX_STEPS = 60
 SETTLED = 1e-3  # a step below this many standard deviations, squared and summed, changes nothing
 ROUNDING = 1e-12
 DAMPING_TOO_HIGH = 1e12
+TOLD = 2.0  # information on a direction, relative to its size: 1 is that it has a size at all
 
 
 Tell = Callable[[Array], None]  # parameters (parameters,)
@@ -93,10 +94,13 @@ def by_name(names: Sequence[str], told: Told | None) -> Tell:
 
 
 def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED) -> Point:
-    """Minimise V from the problem's start until a step is `settled`; `watch` is told each better point."""
+    """Minimise V from the problem's start until a step is `settled`; `watch` is told each better point.
+
+    From a start whose motion leaves the range of numbers no slope leads away: it is given back.
+    """
     point = at(problem, problem.start, problem.runs)
     damping, done = 1e-3, 0
-    while done < MAX_STEPS and damping < DAMPING_TOO_HIGH:
+    while np.isfinite(point.cost) and done < MAX_STEPS and damping < DAMPING_TOO_HIGH:
         theta, runs, length = _step(problem, point, damping)
         if length < settled:
             break
@@ -193,7 +197,7 @@ def _step(problem: Problem, point: Point, damping: float) -> tuple[Array, tuple[
     A = H + prior.information
     b = g + prior.information @ (prior.mean - point.theta)
     damped = A + damping * np.diag(np.diag(point.JtJ)) + 1e-12 * np.diag(1.0 / problem.scale**2)
-    step = _within(problem, point.theta, damped, b)
+    step = _within(problem, point.theta, damped, A, b)
     length, runs = float(step @ A @ step), []
     for run, starts, (own, follow) in zip(point.runs, point.starts, back, strict=True):
         moved = own - follow @ step
@@ -204,15 +208,32 @@ def _step(problem: Problem, point: Point, damping: float) -> tuple[Array, tuple[
     return point.theta + step, tuple(runs), length
 
 
-def _within(problem: Problem, theta: Array, A: Array, b: Array) -> Array:
-    """A^-1 b within the bounds: what would leave them is held at its bound and the rest solved again."""
+def _within(problem: Problem, theta: Array, damped: Array, A: Array, b: Array) -> Array:
+    """The damped step within the bounds: what would leave them is held at its bound and the rest solved again."""
     held, step = np.zeros(b.size, dtype=bool), np.zeros(b.size)
     while not held.all():
         free = ~held
-        step[free] = np.linalg.solve(A[np.ix_(free, free)], b[free] - A[np.ix_(free, held)] @ step[held])
+        own = np.ix_(free, free)
+        pull = b[free] - damped[np.ix_(free, held)] @ step[held]
+        step[free] = _told_step(damped[own], A[own], pull, problem.scale[free])
         out = free & ((theta + step < problem.lower) | (theta + step > problem.upper))
         if not out.any():
             break
         step[out] = np.clip(theta + step, problem.lower, problem.upper)[out] - theta[out]
         held |= out
     return step
+
+
+def _told_step(damped: Array, A: Array, b: Array, scale: Array) -> Array:
+    """damped^-1 b in the span of the directions that the information A tells, or along which there is still a lot to gain.
+
+    Where the data know nothing of a direction the way down is a curved valley, along which a fit would crawl for nothing: it stays where
+    it is. A direction v of S A S is told with v^T S A S v > `TOLD`; what is left to gain by it is (v^T S b)^2 over that, in variances.
+    """
+    information, V = np.linalg.eigh(A * np.outer(scale, scale))
+    gain = (V.T @ (scale * b)) ** 2
+    told = (information > TOLD) | (gain > np.maximum(information, 1.0))
+    if told.all():
+        return np.asarray(np.linalg.solve(damped, b))
+    V = scale[:, None] * V[:, told]
+    return np.asarray(V @ np.linalg.solve(V.T @ damped @ V, V.T @ b))

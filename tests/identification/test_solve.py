@@ -11,7 +11,7 @@ from identification.estimate import Range, estimate, problem_of
 from identification.log_run import log_run
 from identification.ranges import ranges_of
 from identification.run import coefficient_names
-from identification.solve import solve
+from identification.solve import _told_step, solve
 from records.errors import BadInput
 
 
@@ -104,3 +104,20 @@ def test_a_start_outside_its_bounds_or_an_unknown_name_is_refused(bound):
         ranges_of(bound, ("J_E",), {"J_E": (0.005, 0.006)})
     with pytest.raises(BadInput, match="parameter 'J_X'"):
         ranges_of(bound, ("J_X",))
+
+
+@pytest.mark.parametrize(("slope", "expected"), [(1.2, 0.0), (30.0, 20.0)])
+def test_a_direction_of_which_the_data_know_nothing_is_left_unless_it_promises_a_lot(slope, expected):
+    """Information 1e6 on the sum of two parameters, 1.5 on their difference: the sum takes its step of 1e-3 in either case."""
+    V = np.array([[1.0, 1.0], [1.0, -1.0]]) / np.sqrt(2.0)
+    A = V @ np.diag([1e6, 1.5]) @ V
+    step = _told_step(A, A, V @ np.array([1e3, slope]), np.ones(2))
+    np.testing.assert_allclose(V @ step, [1e-3, expected], rtol=1e-9, atol=1e-12)
+
+
+def test_a_start_from_which_no_motion_comes_back_is_given_back(bound, work):
+    """A driving constant of 1e200 leaves the range of numbers within a sample."""
+    run = log_run(bound, work.log, "log", 2.0, at_first=work.x0)
+    point = solve(problem_of((run,), ("K_A",), {"K_A": Range(1e200, 0.0, 1e201, 1e200)}, NOTHING))
+    assert point.theta.tolist() == [1e200]
+    assert point.steps == 0
