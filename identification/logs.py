@@ -46,6 +46,7 @@ def fits_of_logs(
 ) -> Iterator[Estimate]:
     """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
 
+    What shows only in an output that no log has a reading of is to be left out (`identification.shown`): it would be read off a guess.
     By default one fit after the other over longer and longer windows, of which `best_fit` chooses. `wanted` asks for a search over the
     whole range first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated; `told` hears of better
     parameters as soon as there are any. Raises BadInput for an unknown coefficient or a start outside its limits.

@@ -18,7 +18,8 @@ SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
 LEAST_CHANCE = 1e-300
 INTERRUPTED = "the best so far of a fit that was interrupted"
-TOLD = 0.3  # a parameter known to less than so much of its size is not identified: what holds it is that it was given a size at all
+TOLD = 0.6  # a parameter whose interval reaches farther is not identified: what holds it is that it was given a size at all
+MOST_DIRECTIONS = 3
 
 
 @dataclass(frozen=True)
@@ -67,17 +68,19 @@ class Identification:
         return (f"{', '.join(self.unfinished)}: the best so far of a fit that was interrupted, without interval",)
 
     def _unidentified(self) -> tuple[str, ...]:
-        return tuple(
-            f"{entry.name}: these data are too poor for it (sd {entry.sd:.2g} {entry.unit} about {entry.value:.3g}); "
-            "the plant file's value is kept"
-            for entry in self.estimates
-            if not entry.identified
+        poor = [f"{entry.name} (sd {_share(entry)})" for entry in self.estimates if not entry.identified]
+        if not poor:
+            return ()
+        return (
+            f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: free fewer of them (--free), or add experiments that tell them apart",
         )
 
 
 def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
     """What one stage cannot tell, by direction; what contradicts earlier data, by parameter; residuals that are no sensor's errors."""
-    blind = [f"{title}: {_direction(entry)} is known to {entry.relative_sd:.1g} only" for entry in stage.unseen]
+    blind = [f"{title}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
+    if len(stage.unseen) > MOST_DIRECTIONS:
+        blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
     pulled = [
         f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {entry.after:.4g} now, "
         f"{entry.sds:.0f} sd apart"
@@ -112,7 +115,17 @@ AID_UNITS = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}
 
 def _direction(entry: Direction) -> str:
     parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
-    return f"not identifiable alone: the direction {parts} (each relative to its size)"
+    return f"not identifiable alone: {parts}, each relative to its size (sd {relative(entry.relative_sd)})"
+
+
+def _share(entry: Estimated) -> str:
+    return relative(entry.sd / abs(entry.value)) if entry.value else f"{entry.sd:.2g} {entry.unit}"
+
+
+def relative(sd: float) -> str:
+    """A relative sd in per cent without an exponent."""
+    percent = 100.0 * sd
+    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %" if percent < 1000.0 else "> 1000 %"
 
 
 def identification(
@@ -142,9 +155,9 @@ def _aid_unit(name: str) -> str:
     return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")
 
 
-def _estimated(name: str, unit: str, start: float, belief: Belief, factor: float, most_sd: float) -> Estimated:
+def _estimated(name: str, unit: str, start: float, belief: Belief, factor: float, reach: float) -> Estimated:
     value, sd = belief.value(name), float(belief.sd[belief.names.index(name)])
-    told = sd < most_sd or start == 0.0
+    told = factor * sd < reach or start == 0.0
     return Estimated(name, unit, start, value, sd, value - factor * sd, value + factor * sd, told)
 
 

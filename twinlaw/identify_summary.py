@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from identification.estimate import Estimate
 from identification.residuals import ResidualTest
-from identification.result import Estimated, chance
+from identification.result import Estimated, chance, relative
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
@@ -28,11 +28,7 @@ def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
 
 
 def _relative(entry: Estimated) -> str:
-    """The sd in per cent of the value, without an exponent."""
-    if not entry.value:
-        return f"{entry.sd:.2g}"
-    percent = 100.0 * entry.sd / abs(entry.value)
-    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %" if percent < 1000.0 else "> 1000 %"
+    return relative(entry.sd / abs(entry.value)) if entry.value else f"{entry.sd:.2g}"
 
 
 def aid_rows(aids: Sequence[Estimated]) -> list[tuple[str, ...]]:

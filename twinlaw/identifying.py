@@ -14,6 +14,7 @@ from identification.estimate import Estimate
 from identification.logs import best_fit, fits_of_logs, prediction_tests, without_readings
 from identification.result import Identification, facts
 from identification.search import Search
+from identification.shown import hidden, unread
 from identification.staged import identify_stage, in_order, title
 from records import checks
 from records.errors import BadInput
@@ -163,7 +164,7 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         done = _from_experiments(bound, inputs.experiments, wishes, so_far)
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
-    result = replace(so_far.finished(done), remarks=(*inputs.notes, *_untold(wishes, done)))
+    result = replace(so_far.finished(done), remarks=(*inputs.notes, *_untold(bound, inputs.logs, wishes, done)))
     save_result(folder, result)
     if not inputs.holdout:
         return result
@@ -189,10 +190,16 @@ def _from_experiments(bound: BoundPlant, experiments: Sequence[Experiment], wish
 
 def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done: Done, so_far: Progress) -> Done:
     """All logs at once, with what is known already; the best of the fits over windows of several lengths."""
-    names = tuple(name for name in wishes.names if name not in done.belief.names) or done.belief.names
+    lost = hidden(bound.model, wishes.names, unread(bound.model, logs))
+    names = tuple(name for name in wishes.names if name not in (*done.belief.names, *lost)) or done.belief.names
+    if not names:
+        raise BadInput(
+            "parameters", ", ".join(logs), f"{', '.join(lost)}, which show only in what was not recorded",
+            f"a reading of {', '.join(unread(bound.model, logs))}", "record it, or free parameters of the other axis",
+        )  # fmt: skip
     fits: list[Estimate] = []
-    found = done
-    with console.stage(f"{len(logs)} run logs, {len(names) + len(done.belief.names)} parameters"):
+    found, so_many = done, f"{len(names)} parameters" + (f", {len(lost)} others held" if lost else "")
+    with console.stage(f"{len(logs)} run logs, {so_many}"):
         for fit in fits_of_logs(
             bound,
             logs,
@@ -210,10 +217,16 @@ def _from_logs(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, do
     return found
 
 
-def _untold(wishes: Wishes, done: Done) -> tuple[str, ...]:
-    """What the user named and no data given bear on."""
-    names = [name for name in wishes.only or () if name not in done.belief.names]
-    return (f"{', '.join(names)}: no data given here bear on it; the plant file's value is kept",) if names else ()
+def _untold(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done: Done) -> tuple[str, ...]:
+    """What shows only in what no log has a reading of, and what the user named and no data given bear on."""
+    outputs = unread(bound.model, logs) if logs else ()
+    lost = [name for name in hidden(bound.model, wishes.names, outputs) if name not in done.belief.names]
+    named = [name for name in wishes.only or () if name not in (*done.belief.names, *lost)]
+    said = {
+        f"{', '.join(lost)}: shows only in {', '.join(outputs)}, which no log has a reading of": lost,
+        f"{', '.join(named)}: no data given here bear on it": named,
+    }
+    return tuple(f"{text}; the plant file's value is kept" for text, names in said.items() if names)
 
 
 def _with_logs(done: Done, data: str, fit: Estimate) -> Done:

@@ -113,6 +113,35 @@ def test_an_axis_that_was_never_read_is_said_and_the_other_is_identified(flown, 
     assert told["estimates"][0]["value"] == pytest.approx(bound.parameter("J_A"), rel=0.05)
 
 
+def test_what_shows_only_in_an_axis_that_was_never_read_is_held_and_named(flown, tmp_path, capsys):
+    log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
+    save_log(tmp_path / "half.csv", replace(log, y=np.column_stack([np.full(len(log.t_s), np.nan), log.y[:, 1]])))
+    out, record = tmp_path / "out", str(tmp_path / "half.csv")
+    assert main(["identify", "--free", "J_E,J_A,tau_gE", "--window", "2", "--json", "--out", str(out), record]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [entry["name"] for entry in told["estimates"]] == ["J_A"]
+    assert (
+        "J_E, tau_gE: shows only in psi_rad, which no log has a reading of; the plant file's value is kept"
+        in told["notes"]
+    )
+    assert main(["identify", "--free", "J_E", "--out", str(tmp_path / "none"), record]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "got J_E, which show only in what was not recorded, expected a reading of psi_rad" in line
+    assert not (tmp_path / "none").exists()
+
+
+def test_what_the_data_are_too_poor_for_is_one_sentence_by_parameter(flown, tmp_path, capsys):
+    """Inertia, damping, friction, thrust and reaction of one axis have a common factor that motion does not tell."""
+    free = "J_A,b_vA,b_cA,p_FT,K_A"
+    assert main(["identify", "--free", free, "--window", "5", "--json", "--out", str(tmp_path), flown[-1]]) == 0
+    told = json.loads(capsys.readouterr().out)
+    (poor,) = (note for note in told["notes"] if note.startswith("these data are too poor for"))
+    lost = [entry for entry in told["estimates"] if not entry["identified"]]
+    assert "J_A" in {entry["name"] for entry in lost}
+    assert all(f"{entry['name']} (sd " in poor for entry in lost)
+    assert sum("not identifiable alone" in note for note in told["notes"]) <= 3
+
+
 def test_rows_that_the_look_leaves_out_do_not_reach_the_fit(flown, tmp_path, capsys):
     """Truth: three readings off by 1.5 rad, which are named, change the estimates by nothing more than three that were never made."""
     log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
