@@ -71,9 +71,8 @@ class Identification:
         poor = [f"{entry.name} (sd {_share(entry)})" for entry in self.estimates if not entry.identified]
         if not poor:
             return ()
-        return (
-            f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: free fewer of them (--free), or add experiments that tell them apart",
-        )
+        remedy = "free fewer of them (--free), or add experiments that tell them apart"
+        return (f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: {remedy}",)
 
 
 def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
