@@ -137,10 +137,19 @@ def scaled(flight: Flight, factor: float, *names: str) -> Flight:
     return replace(flight, x=flight.x * np.where(np.isin(STATES, names), factor, 1.0))
 
 
+def quiet(flight: Flight) -> Flight:
+    """Attitudes and rates so small that they could be radians in degrees, too."""
+    return scaled(flight, 0.1, *STATES[3:])
+
+
 @pytest.mark.parametrize(
     ("spoilt", "words"),
     [
         (lambda flight: scaled(flight, np.degrees(1.0), "phi_rad", "theta_rad"), "times what the rates turn: degrees"),
+        (
+            lambda flight: scaled(quiet(flight), np.degrees(1.0), "phi_rad", "theta_rad"),
+            "times what the rates turn: degrees",
+        ),
         (lambda flight: scaled(flight, np.degrees(1.0), "p_rad_s", "q_rad_s", "r_rad_s"), "degrees a second"),
         (lambda flight: scaled(flight, np.degrees(1.0), *STATES[3:]), "convert attitudes and rates from degrees"),
         (lambda flight: scaled(flight, 1.944, *STATES[:3]), "expected about 25.7 m/s, as HF3000ft-50kts says"),
