@@ -25,8 +25,15 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
-    """A link to a file of the checkout that is no page of the site becomes its name."""
-    return re.sub(r"\[([^\]]+)\]\(\.\./([^)]+)\)", r"\1 (`\2`)", markdown)
+    """A link to a file of the checkout that is no page of the site becomes its name; one that shows a page's file name shows its title."""
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([^)]+)\)", r"\1 (`\2`)", markdown)
+    return re.sub(r"\[(?:docs/)?([\w-]+\.md)\]\(\1\)", lambda link: f"[{title(link[1])}]({link[1]})", named)
+
+
+def title(page: str) -> str:
+    """What a page's heading says before its colon."""
+    heading = (ROOT / "docs" / page).read_text(encoding="utf-8").partition("\n")[0]
+    return heading.removeprefix("# ").partition(":")[0]
 
 
 def first_page() -> str:

@@ -1,4 +1,6 @@
-"""The documentation site: every page has its place in it, and it is built without a warning and loads nothing from elsewhere."""
+"""The documentation site: every page has its place in it, and it is built without a warning and loads nothing from elsewhere;
+read from disk, without a server, it can be searched.
+"""
 
 import re
 import subprocess
@@ -8,10 +10,18 @@ from pathlib import Path
 
 import pytest
 
+from tests.browser import Browser
 from tests.test_project import ROOT
 
 CONFIGURATION = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
 PLACES = re.findall(r"^ +- .*: (\S+\.md)$", CONFIGURATION, flags=re.MULTILINE)
+TYPED = """(() => {
+    const box = document.querySelector('.md-search__input');
+    box.focus();
+    box.value = 'TEXT';
+    box.dispatchEvent(new Event('input', {bubbles: true}));
+    box.dispatchEvent(new KeyboardEvent('keyup', {bubbles: true}));
+})()"""
 
 
 def test_every_page_and_every_package_has_one_place() -> None:
@@ -21,17 +31,30 @@ def test_every_page_and_every_package_has_one_place() -> None:
     assert sorted(PLACES) == sorted(pages | made)
 
 
-def test_the_site_is_built_and_loads_nothing_from_elsewhere(tmp_path: Path) -> None:
-    for package in ("mkdocs", "material", "mkdocstrings"):
-        pytest.importorskip(package, reason=f"no {package}: pip install --editable '.[docs]'")
-    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(tmp_path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
+def test_the_site_is_built_loads_nothing_from_elsewhere_and_is_searched_from_disk(tmp_path: Path) -> None:
+    site = built(tmp_path)
     for place in PLACES:
-        text = (tmp_path / place).with_suffix(".html").read_text(encoding="utf-8")
+        text = (site / place).with_suffix(".html").read_text(encoding="utf-8")
         assert not re.findall(
             r'<(?:script|img|iframe)[^>]* src="?https?:|<link[^>]*stylesheet[^>]*href="?https?:', text
         )
-    reference = (tmp_path / "reference" / "rig.html").read_text(encoding="utf-8")
+    reference = (site / "reference" / "rig.html").read_text(encoding="utf-8")
     assert "The board computes, a simulated rig moves" in reference
-    assert "twinlaw turns a plant" in (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "twinlaw turns a plant" in (site / "index.html").read_text(encoding="utf-8")
+    with Browser() as browser:
+        page = browser.open((site / "reference" / "controllers.html").as_uri(), width=1366)
+        page.value(TYPED.replace("TEXT", "backlash"))
+        hit = ".md-search-result__item a[href*='#sim.effects.backlash']"
+        page.wait_for(f'document.querySelector("{hit}") !== null')
+        assert page.value("[...document.querySelectorAll('pre')].every(each => each.scrollWidth <= each.clientWidth)")
+        assert page.complaints() == []
+
+
+def built(folder: Path) -> Path:
+    """The site as `make docs` builds it; every warning, a link or an anchor that leads nowhere among them, is an error."""
+    for package in ("mkdocs", "material", "mkdocstrings"):
+        pytest.importorskip(package, reason=f"no {package}: pip install --editable '.[docs]'")
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
