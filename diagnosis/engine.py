@@ -95,10 +95,11 @@ def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Hol
 
 
 def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> Detection:
-    """A small gap also needs effects or parameters that explain it: without a gap, evidence of x nats has a chance of exp(-x) at most."""
+    """A small gap also needs effects of sure size, or parameters, that explain it: without a gap, evidence of x nats has a chance of
+    exp(-x) at most."""
     if detection.largest > PLAIN_TO_SEE:
         return detection
-    explained = [entry.evidence for entry in found.tried if entry.effects]
+    explained = [entry.evidence for entry in found.tried if entry.effects and found.sure]
     explained += [] if beyond is None else [beyond.score]
     best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
     return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))

@@ -32,10 +32,12 @@ WORTH_REFINING = 0.2  # of the best first fit's gain
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """All that was tried, best evidence first, the nominal plant among it; `ground` and `looks` are those of the nominal plant."""
+    """All that was tried, best evidence first, the nominal plant among it; `ground` and `looks` are those of the nominal plant, `sure` says
+    whether the sizes of what was tried are surely not zero: where none is, all is there."""
 
     tried: tuple[Tried, ...]
     nominal: Tried
+    sure: bool
     ground: Ground
     looks: tuple[Look, ...]
 
@@ -70,7 +72,7 @@ def search(
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
-    return Search(tuple(tried), first, ground, tuple(looks))
+    return Search(tuple(tried), first, bool(certain), ground, tuple(looks))
 
 
 def _worth(looks: Sequence[Look]) -> set[str]:

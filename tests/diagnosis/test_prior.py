@@ -47,12 +47,16 @@ def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
     )
 
 
-@pytest.mark.parametrize(("largest", "evidence", "gap"), [(20.0, 3.0, False), (20.0, 12.0, True), (200.0, 3.0, True)])
-def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, gap: bool) -> None:
-    # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6.
+@pytest.mark.parametrize(
+    ("largest", "evidence", "sure", "gap"),
+    [(20.0, 3.0, True, False), (20.0, 12.0, True, True), (20.0, 12.0, False, False), (200.0, 3.0, False, True)],
+)
+def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure: bool, gap: bool) -> None:
+    # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6, but for an effect whose
+    # size may be zero they say nothing.
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
     detection = Detection(1e-6, Tail(5.0, 1.0), largest, (), empty, np.zeros(0))
     nothing = tried()
     ground = object()
-    found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, ground, ())  # type: ignore[arg-type]
+    found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, ground, ())  # type: ignore[arg-type]
     assert (confirmed_by(detection, found, None).p <= 0.01) is gap
