@@ -41,10 +41,15 @@ def generate(table: FlownTable, arithmetic: str) -> Mapping[str, str]:
     if isinstance(table, ControllerTable):
         return generate_law(table, arithmetic)
     row = row_of(table)
+    demand_arithmetic(row.name, arithmetic)
+    return row.generate(table)
+
+
+def demand_arithmetic(controller: str, arithmetic: str) -> None:
+    """Raise BadInput for an arithmetic that a controller other than the scheduled law does not have."""
     if arithmetic != "float32":
         remedy = "leave --arithmetic out: the scheduled law alone has another"
-        raise BadInput("arithmetic", f"controller {row.name!r}", arithmetic, "float32", remedy)
-    return row.generate(table)
+        raise BadInput("arithmetic", f"controller {controller!r}", arithmetic, "float32", remedy)
 
 
 def load_scheduled(path: Path, use: str) -> ControllerTable:

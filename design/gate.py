@@ -28,7 +28,7 @@ def check(report: DesignReport, settings: DesignSettings) -> None:
     """Raises BadInput naming axis, angle, and pole or margin of the first rule that does not hold."""
     for name in AXES:
         axis = report.axis(name)
-        for rule in _stability(axis):
+        for rule in _stability(axis, report.arithmetic):
             _apply(rule, report, name)
     _apply(
         _Rule("slowest pole of both loops together", tuple(report.coupled_slowest_rad_s), 0.0, "rad/s"),
@@ -40,12 +40,12 @@ def check(report: DesignReport, settings: DesignSettings) -> None:
             _apply(rule, report, name)
 
 
-def _stability(axis: AxisReport) -> tuple[_Rule, ...]:
+def _stability(axis: AxisReport, arithmetic: str) -> tuple[_Rule, ...]:
     after_fit = tuple(float(row.real.max()) for row in axis.poles_fitted_rad_s)
-    after_float32 = tuple(float(row.real.max()) for row in axis.poles_float32_rad_s)
+    after_rounding = tuple(float(row.real.max()) for row in axis.poles_flown_rad_s)
     return (
         _Rule("slowest closed-loop pole after the fit", after_fit, 0.0, "rad/s"),
-        _Rule("slowest closed-loop pole of the float32 table", after_float32, 0.0, "rad/s"),
+        _Rule(f"slowest closed-loop pole of the {arithmetic} table", after_rounding, 0.0, "rad/s"),
         _Rule("largest pole |z| of the controller itself", axis.controller_radius, LARGEST_RADIUS, ""),
     )
 

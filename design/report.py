@@ -13,8 +13,9 @@ from design.discretise import sample
 from design.linearise import LinearPlant, linearise, subsystem
 from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
 from design.margins import Margins, margins
-from design.migration import STORAGES, Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of, stored
+from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
 from design.operating_points import DesignPoints, equilibria
+from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, evaluate, fit_error, schedule_of
 from design.settings import AXES, DesignSettings
 from records.table import AxisLaw, ControllerTable
@@ -29,8 +30,8 @@ ANGLES_BETWEEN = 200
 class AxisReport:
     """One axis over the angles psi_rad of the report.
 
-    `poles_fitted_rad_s` and `poles_float32_rad_s` have shape (angles, 6); `margins` and `controller_radius`, the largest |z| of the
-    controller's own poles, belong to the table rounded to float32, as it flies. `largest_q_V_rad` is that of eq (22).
+    `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, 6); `margins` and `controller_radius`, the largest |z| of the
+    controller's own poles, belong to the table as its arithmetic rounds it, as it flies. `largest_q_V_rad` is that of eq (22).
     """
 
     axis: str
@@ -41,10 +42,10 @@ class AxisReport:
     fit_error: FitError
     feedforward_error_V: float
     poles_fitted_rad_s: Poles
-    poles_float32_rad_s: Poles
+    poles_flown_rad_s: Poles
     designed_slowest_rad_s: float
     after_fit: SlowestPole
-    after_float32: SlowestPole
+    after_rounding: SlowestPole
     migrations: tuple[Migration, ...]
     margins: tuple[Margins, ...]
     controller_radius: tuple[float, ...]
@@ -66,9 +67,11 @@ class AxisReport:
 class DesignReport:
     """Both axes over the elevations psi_rad (angles,): the operating points and at least 200 angles between them.
 
-    `coupled_slowest_rad_s` (angles,) is the slowest pole of both loops closed on the whole plant, and `coupled` its worst.
+    `arithmetic` is that of the law that flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of both its loops closed on the
+    whole plant, and `coupled` its worst.
     """
 
+    arithmetic: str
     psi_rad: Array
     elevation: AxisReport
     azimuth: AxisReport
@@ -80,29 +83,38 @@ class DesignReport:
         return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
 
     def pole_entries(self) -> list[dict[str, Any]]:
-        """The entries `poles` of verification.json: designed poles against the float32 table, per axis."""
+        """The entries `poles` of verification.json: designed poles against those that fly, per axis."""
         return [
             {
                 "axis": axis.axis,
                 "designed_slowest_rad_s": axis.designed_slowest_rad_s,
-                "worst_slowest_rad_s": axis.after_float32.worst_rad_s,
-                "at_psi_rad": axis.after_float32.at_psi_rad,
-                "stable": axis.after_float32.stable,
+                "worst_slowest_rad_s": axis.after_rounding.worst_rad_s,
+                "at_psi_rad": axis.after_rounding.at_psi_rad,
+                "stable": axis.after_rounding.stable,
             }
             for axis in (self.elevation, self.azimuth)
         ]
 
 
 def make_report(
-    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, points: DesignPoints
+    bound: BoundPlant,
+    settings: DesignSettings,
+    table: ControllerTable,
+    points: DesignPoints,
+    rounding: Rounding = FLOAT32,
 ) -> DesignReport:
-    """Examine `table` at the operating points and between them; raises BadInput where an angle cannot be held at rest."""
+    """Examine `table`, flown as `rounding` makes it, at the operating points and between them.
+
+    Raises BadInput where an angle cannot be held at rest.
+    """
     psi_rad = angles(points.psi_rad)
     linear = tuple(linearise(bound, point) for point in equilibria(bound, psi_rad))
-    survey = _Survey(bound, settings, table, points, psi_rad, linear)
+    survey = _Survey(bound, settings, table, points, rounding, psi_rad, linear)
     elevation, azimuth = (_axis_report(survey, axis) for axis in AXES)
     poles = _coupled(survey)
-    return DesignReport(psi_rad, elevation, azimuth, np.max(poles.real, axis=1), slowest_of(psi_rad, poles))
+    return DesignReport(
+        rounding.name, psi_rad, elevation, azimuth, np.max(poles.real, axis=1), slowest_of(psi_rad, poles)
+    )
 
 
 def angles(grid_rad: Array) -> Array:
@@ -120,6 +132,7 @@ class _Survey:
     settings: DesignSettings
     table: ControllerTable
     points: DesignPoints
+    rounding: Rounding
     psi_rad: Array
     linear: tuple[LinearPlant, ...]
 
@@ -141,9 +154,8 @@ class _Survey:
         return tuple(plant_polynomials(sample(part, self.settings.sample_period_s)) for part in parts)
 
     def flown(self, axis: str) -> tuple[DeltaForm, ...]:
-        """The controllers (angles,) of the table rounded to float32."""
-        rounded = stored(schedule_of(self.law(axis)), STORAGES["float32"])
-        return tuple(evaluate(rounded, float(psi)) for psi in self.psi_rad)
+        """The controllers (angles,) as they fly."""
+        return self.rounding.controllers(self.table, axis, self.psi_rad)
 
 
 def _axis_report(survey: _Survey, axis: str) -> AxisReport:
@@ -160,10 +172,10 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
         fit_error=fit_error(scheduled.grid_rad, scheduled.designs, scheduled.schedule),
         feedforward_error_V=_feedforward_error_V(survey, axis),
         poles_fitted_rad_s=fitted,
-        poles_float32_rad_s=rounded,
+        poles_flown_rad_s=rounded,
         designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.poles_rad_s),
         after_fit=slowest_of(psi_rad, fitted),
-        after_float32=slowest_of(psi_rad, rounded),
+        after_rounding=slowest_of(psi_rad, rounded),
         migrations=migrations(scheduled, psi_rad, plants),
         margins=tuple(margins(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)),
         controller_radius=tuple(float(np.max(np.abs(1.0 + controller_poles(c)))) for c in controllers),
@@ -176,7 +188,7 @@ def _feedforward_error_V(survey: _Survey, axis: str) -> float:
 
 
 def _coupled(survey: _Survey) -> Poles:
-    """Poles of both loops closed on the whole plant, shape (angles, states), for the table rounded to float32."""
+    """Poles of both loops closed on the whole plant, shape (angles, states), for the controllers as they fly."""
     plants = [sample(plant, survey.settings.sample_period_s) for plant in survey.linear]
     pairs = zip(*(survey.flown(axis) for axis in AXES), strict=True)
     return np.array([coupled_poles(plant, pair) for plant, pair in zip(plants, pairs, strict=True)])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from design.gate import check
 from design.operating_points import DesignPoints, design_points
 from design.report import DesignReport, make_report
+from design.rounding import FLOAT32, Rounding
 from design.schedule import fit, fit_error, fit_schedule
 from design.settings import AXES, DesignSettings
 from records.errors import BadInput
@@ -26,38 +27,44 @@ LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
 SENSORS = {"elevation": "psi_rad", "azimuth": "phi_rad"}
 
 
-def design(bound: BoundPlant, settings: DesignSettings) -> tuple[ControllerTable, DesignReport]:
-    """The table for `settings` and what is known of it.
+def design(
+    bound: BoundPlant, settings: DesignSettings, rounding: Rounding = FLOAT32
+) -> tuple[ControllerTable, DesignReport]:
+    """The table for `settings` and what is known of it as `rounding` makes it fly.
 
     Raises BadInput where an operating point cannot be reached or designed for, and when the table is unstable or below a
     margin of `settings.margins` anywhere in the range, naming axis, angle, and pole or margin. Of a plant's effects, it sees those on
     the equations that add no states; where these leave nothing to design on, it sees the nominal plant.
     """
     if not bound.effects:
-        return _designed_on(bound, bound, settings)
+        return _designed_on(bound, bound, settings, rounding)
     try:
-        return _designed_on(linear_part(bound), bound, settings)
+        return _designed_on(linear_part(bound), bound, settings, rounding)
     except BadInput:
-        return _designed_on(without_effects(bound), bound, settings)
+        return _designed_on(without_effects(bound), bound, settings, rounding)
 
 
-def report_on(bound: BoundPlant, settings: DesignSettings, table: ControllerTable) -> DesignReport:
+def report_on(
+    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, rounding: Rounding = FLOAT32
+) -> DesignReport:
     """What is known of a table that exists already, on this plant; raises BadInput where the plant cannot be designed for."""
     try:
         seen = linear_part(bound)
-        return make_report(seen, settings, table, design_points(seen, settings))
+        return make_report(seen, settings, table, design_points(seen, settings), rounding)
     except BadInput:
         if not bound.effects:
             raise
         seen = without_effects(bound)
-        return make_report(seen, settings, table, design_points(seen, settings))
+        return make_report(seen, settings, table, design_points(seen, settings), rounding)
 
 
-def _designed_on(seen: BoundPlant, bound: BoundPlant, settings: DesignSettings) -> tuple[ControllerTable, DesignReport]:
+def _designed_on(
+    seen: BoundPlant, bound: BoundPlant, settings: DesignSettings, rounding: Rounding
+) -> tuple[ControllerTable, DesignReport]:
     """Table and report of `bound` from the linearisation of `seen`, the plant with fewer effects."""
     points = design_points(seen, settings)
     table = make_table(bound, settings, points)
-    report = make_report(seen, settings, table, points)
+    report = make_report(seen, settings, table, points, rounding)
     check(report, settings)
     return table, report
 

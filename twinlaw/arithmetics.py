@@ -4,9 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from codegen.fixed_controllers import fixed_controllers
 from codegen.fixed_twin import FixedTwin
 from codegen.law import ARITHMETIC_CODES
 from codegen.twin import Float32Twin
+from design.rounding import FLOAT32, Rounding
 from records.table import ControllerTable
 from records.verification import RoundingBound
 from verification.equality import BatchStepper
@@ -27,15 +29,18 @@ class Bound(Protocol):
 
 @dataclass(frozen=True)
 class Arithmetic:
-    """The exact model of one arithmetic, stimuli for it with and without set states, and its proof."""
+    """The exact model of one arithmetic, stimuli for it with and without set states, its proof, and what it makes of controllers."""
 
     twin: Callable[[ControllerTable], BatchStepper]
     stimuli: Callable[[ControllerTable, int], Sequence[Stimulus]]
     sequences: Callable[[Any, int], Sequence[Stimulus]]  # float32 takes any table
     bound: Bound
+    rounding: Rounding
 
 
 BY_NAME: Mapping[str, Arithmetic] = {
-    "float32": Arithmetic(Float32Twin, standard_stimuli, sequences, rounding_bound),
-    "fixed": Arithmetic(FixedTwin, fixed_stimuli, fixed_sequences, fixed_rounding_bound),
+    "float32": Arithmetic(Float32Twin, standard_stimuli, sequences, rounding_bound, FLOAT32),
+    "fixed": Arithmetic(
+        FixedTwin, fixed_stimuli, fixed_sequences, fixed_rounding_bound, Rounding("fixed", fixed_controllers)
+    ),
 }

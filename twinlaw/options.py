@@ -74,6 +74,13 @@ def arithmetic(parser: argparse.ArgumentParser, *, design_too: bool = False) -> 
     parser.add_argument("--arithmetic", choices=choices, default=choices[0], help="of the law; default: %(default)s")
 
 
+def demanded_arithmetic(parser: argparse.ArgumentParser) -> None:
+    """--arithmetic NAME, of what exists already: without it any will do."""
+    from twinlaw.arithmetics import ARITHMETICS
+
+    parser.add_argument("--arithmetic", choices=ARITHMETICS, help="refuse an image of another; default: take either")
+
+
 def count(text: str) -> int:
     """A whole number from 1 on, as the type of an option."""
     try:

@@ -112,7 +112,7 @@ def _pole_panel(axis: AxisReport) -> Panel:
         f"{axis.axis}: imaginary part [rad/s]",
         (
             curve(axis.poles_fitted_rad_s, "after the fit", ORANGE, "o"),
-            curve(axis.poles_float32_rad_s, "after float32", BLUE, "."),
+            curve(axis.poles_flown_rad_s, "after rounding, as they fly", BLUE, "."),
             curve(np.array(axis.poles_rad_s), "designed", RED, "x"),
         ),
     )
@@ -137,9 +137,9 @@ def _margins(report: DesignReport) -> Section:
     return Section(
         "Margins over the elevation",
         (
-            "Of the float32 table, as it flies. The last panel closes both loops on the whole plant, cross-coupling included.",
+            f"Of the {report.arithmetic} table, as it flies. The last panel closes both loops on the whole plant, cross-coupling included.",
         ),
-        (Table(summary.design_rows(report), summary.DESIGN_HEADING),),
+        (Table(summary.design_rows(report), summary.design_heading(report)),),
         (stack(panels, "elevation Psi [deg]", panel_height_in=1.7),),
     )
 

@@ -67,17 +67,18 @@ def load_bound(path: Path) -> BoundPlant:
     return bind(load_plant(path))
 
 
-def design_controller(plant: Path) -> Designed:
-    """Design at all operating points, fit, and judge; raises BadInput for a plant or a table that cannot be used."""
+def design_controller(plant: Path, arithmetic: str = "float32") -> Designed:
+    """Design at all operating points, fit, and judge as flown in `arithmetic`; raises BadInput for an unusable plant or table."""
     with stage("designing at the operating points, fitting, judging"), _computable(plant):
         bound = load_bound(plant)
-        table, report = design(bound, read_settings(bound))
+        table, report = design(bound, read_settings(bound), BY_NAME[arithmetic].rounding)
     return Designed(bound, table, report)
 
 
-def design_other(plant: Path, name: str) -> LawTable[Any]:
+def design_other(plant: Path, name: str, arithmetic: str = "float32") -> LawTable[Any]:
     """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
     row = CONTROLLERS[name]
+    loading.demand_arithmetic(name, arithmetic)
     with stage(f"designing {row.title}"), _computable(plant):
         bound = load_bound(plant)
         table: LawTable[Any] = row.design(bound, read_settings(bound))
@@ -293,8 +294,8 @@ def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
     return tuple(PoleMigration(**entry) for entry in report.pole_entries())
 
 
-def table_poles(bound: BoundPlant, table: ControllerTable) -> tuple[PoleMigration, ...]:
-    """Poles of a table that exists already, on this plant; raises BadInput when the table is for another plant."""
+def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "float32") -> tuple[PoleMigration, ...]:
+    """Poles of a table that exists already, flown in `arithmetic` on this plant; raises BadInput when the table is for another plant."""
     if table.plant != bound.plant.name:
         what = f"a table for {table.plant!r}"
         raise BadInput(
@@ -302,7 +303,7 @@ def table_poles(bound: BoundPlant, table: ControllerTable) -> tuple[PoleMigratio
         )
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)
-        return poles_of(report_on(bound, settings, table))
+        return poles_of(report_on(bound, settings, table, BY_NAME[arithmetic].rounding))
 
 
 def recorded_replay(path: Path, table: ControllerTable, arithmetic: str = "float32") -> Replay:

@@ -14,11 +14,11 @@ from toolchain.elf import ImageSizes
 
 Row = tuple[str, ...]
 
-DESIGN_HEADING: Row = (
+_DESIGN_HEADING: Row = (
     "axis",
     "designed",
     "after fit",
-    "as float32",
+    "as {arithmetic}",
     "at Psi",
     "Ms",
     "phase",
@@ -28,12 +28,17 @@ DESIGN_HEADING: Row = (
 )
 
 
+def design_heading(report: DesignReport) -> Row:
+    """The heading of `design_rows`."""
+    return tuple(word.format(arithmetic=report.arithmetic) for word in _DESIGN_HEADING)
+
+
 def design_rows(report: DesignReport) -> list[Row]:
     """One row per axis: slowest pole designed, worst after fit and rounding, worst of each margin over Psi; then both loops coupled."""
     coupled = ("both, coupled", "", "", f"{report.coupled.worst_rad_s:.2f} rad/s", degrees(report.coupled.at_psi_rad))
     return [
         *(_design_row(axis) for axis in (report.elevation, report.azimuth)),
-        (*coupled, *[""] * (len(DESIGN_HEADING) - len(coupled))),
+        (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled))),
     ]
 
 
@@ -43,8 +48,8 @@ def _design_row(axis: AxisReport) -> Row:
         axis.axis,
         f"{axis.designed_slowest_rad_s:.2f} rad/s",
         f"{axis.after_fit.worst_rad_s:.2f} rad/s",
-        f"{axis.after_float32.worst_rad_s:.2f} rad/s",
-        degrees(axis.after_float32.at_psi_rad),
+        f"{axis.after_rounding.worst_rad_s:.2f} rad/s",
+        degrees(axis.after_rounding.at_psi_rad),
         f"{worst.sensitivity:.2f}",
         degrees(worst.phase_rad),
         f"{worst.gain_up:.2f} / {worst.gain_down:.2f}",
@@ -57,6 +62,7 @@ def design_facts(report: DesignReport) -> dict[str, Any]:
     """The same for a program."""
     axes = (report.elevation, report.azimuth)
     return {
+        "arithmetic": report.arithmetic,
         "poles": report.pole_entries(),
         "after_fit": {axis.axis: _slowest(axis.after_fit) for axis in axes},
         "fit_error": {axis.axis: asdict(axis.fit_error) for axis in axes},

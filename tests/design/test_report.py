@@ -41,8 +41,8 @@ def test_distinct_poles_stay_where_they_were_designed_through_fit_and_float32():
     _, report = designed()
     assert report.elevation.designed_slowest_rad_s == -3.0
     assert -3.0 < report.elevation.after_fit.worst_rad_s < -2.97
-    assert -3.0 < report.elevation.after_float32.worst_rad_s < -2.97
-    assert abs(report.elevation.after_float32.worst_rad_s - report.elevation.after_fit.worst_rad_s) < 1e-3
+    assert -3.0 < report.elevation.after_rounding.worst_rad_s < -2.97
+    assert abs(report.elevation.after_rounding.worst_rad_s - report.elevation.after_fit.worst_rad_s) < 1e-3
 
 
 @pytest.mark.parametrize("axis", ["elevation", "azimuth"])
@@ -140,8 +140,8 @@ USABLE_AZIMUTH = [
 def test_every_published_set_passes_the_gate(elevation, azimuth):
     _, report = designed(elevation, azimuth)
     assert (report.elevation.free_degree, report.azimuth.free_degree) == (elevation[1], azimuth[1])
-    assert report.elevation.after_float32.stable
-    assert report.azimuth.after_float32.stable
+    assert report.elevation.after_rounding.stable
+    assert report.azimuth.after_rounding.stable
     assert report.coupled.stable
 
 

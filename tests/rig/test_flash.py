@@ -179,3 +179,28 @@ def test_the_verb_tries_all_of_it_on_an_emulated_chip(built, capsys):
     folder, arithmetic = built
     assert main(["flash", "--port", "emulated", "--out", str(folder)]) == 0
     assert f"table {ce150_table().digest[:16]}, {arithmetic}" in capsys.readouterr().out
+
+
+def test_an_image_of_the_other_arithmetic_is_refused_before_anything_is_written(
+    built, fake_tool, tmp_path, capsys
+) -> None:
+    folder, arithmetic = built
+    written = tmp_path / "written"
+    fake_tool("openocd", f"touch {written}; exit 0")
+    other = {"float32": "fixed", "fixed": "float32"}[arithmetic]
+    assert main(["flash", "--out", str(folder), "--arithmetic", other]) == 2
+    told = capsys.readouterr().err
+    assert f"arithmetic: got {arithmetic}, expected {other}; nothing was written" in told
+    assert not written.exists()
+    assert main(["flash", "--out", str(folder), "--arithmetic", arithmetic]) == 0
+    assert written.exists()
+
+
+def test_a_binary_of_another_build_than_its_elf_is_refused_where_an_arithmetic_is_demanded(
+    built, tmp_path, capsys
+) -> None:
+    folder, arithmetic = built
+    (tmp_path / "firmware.elf").write_bytes((folder / "firmware.elf").read_bytes())
+    (tmp_path / "firmware.bin").write_bytes((folder / "firmware.bin").read_bytes() + b"more")
+    assert main(["flash", "--port", "/dev/nope", "--out", str(tmp_path), "--arithmetic", arithmetic]) == 2
+    assert "another one than firmware.elf" in capsys.readouterr().err

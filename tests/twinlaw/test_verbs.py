@@ -39,7 +39,7 @@ def test_the_list_of_verbs_loads_none_of_their_tools() -> None:
 
 
 def test_every_verb_that_makes_or_runs_the_generated_law_takes_its_arithmetic_and_in_the_same_words() -> None:
-    # `flash` writes an image, whatever it holds; `diagnose` finds out what flew; `compare` has controllers that exist in float32 only.
+    # `diagnose` finds out what flew; `compare` has controllers that exist in float32 only.
     offers = {}
     for verb in command_tree(build_parser(tuple(VERBS))).commands:
         flags = {flag: option for option in verb.options for flag in option.flags}
@@ -47,7 +47,18 @@ def test_every_verb_that_makes_or_runs_the_generated_law_takes_its_arithmetic_an
             offers[verb.last] = flags["--arithmetic"].words
         assert "--table" not in flags or "--arithmetic" in flags, verb.last
     assert offers.pop("simulate") == ("float64", *ARITHMETICS)
-    assert set(offers) == {"run", "generate", "build", "verify", "trace", "validate", "watch", "bench"}
+    assert set(offers) == {
+        "run",
+        "design",
+        "generate",
+        "build",
+        "verify",
+        "trace",
+        "flash",
+        "validate",
+        "watch",
+        "bench",
+    }
     assert set(offers.values()) == {ARITHMETICS}
 
 

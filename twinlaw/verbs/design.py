@@ -1,6 +1,7 @@
 """Design the controller of a plant at its operating points, fit it, judge it, and write the table.
 
-Writes DIR/controller.json. Refuses (exit 2) a table that is unstable or below its margins anywhere in the range.
+Writes DIR/controller.json. Refuses (exit 2) a table that is unstable or below its margins anywhere in the range. The
+table serves both arithmetics: --arithmetic says in which its poles and margins are computed, and a table without a law in it is refused.
 --controller chooses another controller of docs/controllers.md; `build`, `flash`, `validate`, `watch` and `simulate` take its table as well.
 """
 
@@ -17,12 +18,13 @@ SCHEDULED = "scheduled"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --controller, --out, --json."""
+    """--plant, --controller, --arithmetic, --out, --json."""
     options.plant(parser)
     parser.add_argument(
         "--controller", choices=tuple(CONTROLLERS), default=SCHEDULED, metavar="NAME",
         help=f"one of {', '.join(CONTROLLERS)}; default: %(default)s",
     )  # fmt: skip
+    options.arithmetic(parser)
     options.out(parser)
     options.as_json(parser)
 
@@ -31,7 +33,7 @@ def run(chosen: argparse.Namespace) -> int:
     """Design, write and tell."""
     if chosen.controller != SCHEDULED:
         return _other(chosen)
-    designed = design_controller(chosen.plant)
+    designed = design_controller(chosen.plant, chosen.arithmetic)
     path = chosen.out / "controller.json"
     write_atomic(path, table_text(designed.table))
     if chosen.json:
@@ -41,14 +43,14 @@ def run(chosen: argparse.Namespace) -> int:
             )
         )
     else:
-        print(console.table(summary.design_rows(designed.report), summary.DESIGN_HEADING))
+        print(console.table(summary.design_rows(designed.report), summary.design_heading(designed.report)))
         print(f"\n{path}  digest {designed.table.digest[:16]}")
     return 0
 
 
 def _other(chosen: argparse.Namespace) -> int:
     """The same for a controller that is not scheduled pole placement."""
-    row, table = CONTROLLERS[chosen.controller], design_other(chosen.plant, chosen.controller)
+    row, table = CONTROLLERS[chosen.controller], design_other(chosen.plant, chosen.controller, chosen.arithmetic)
     path = chosen.out / "controller.json"
     write_atomic(path, row.text(table))
     if chosen.json:

@@ -2,21 +2,27 @@
 
 Without --port the ST-LINK is used and DIR/firmware.elf written; with --port the boot loader (stm32flash) and DIR/firmware.bin,
 which the chip must have started (docs/hardware.md). Both verify what they wrote and start it. --port emulated tries the second way
-on an emulated chip, from its boot loader to the started firmware's answer. Exit status 1 when writing had begun and failed.
+on an emulated chip, from its boot loader to the started firmware's answer. --arithmetic refuses an image of the other one before
+anything is written. Exit status 1 when writing had begun and failed.
 """
 
 import argparse
 import json
+from pathlib import Path
 
 from records.errors import BadInput
+from rig.client import asked_identity
 from rig.emulated_flash import flash_emulated
 from rig.flash import flash_through_boot_loader, flash_through_st_link
+from toolchain.elf import flash_content
 from twinlaw import console, options
+from twinlaw.stages import board_url
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --out, --json."""
+    """--port, --arithmetic, --out, --json."""
     parser.add_argument("--port", help="serial port of the boot loader, or `emulated`; without it the ST-LINK is used")
+    options.demanded_arithmetic(parser)
     options.out(parser)
     options.as_json(parser)
 
@@ -28,6 +34,8 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput(
             "firmware image", str(image), "no such file", "an image", "build it with `twinlaw build` or `twinlaw run`"
         )
+    if chosen.arithmetic is not None:
+        _demand_arithmetic(image, chosen.arithmetic)
     if chosen.port == "emulated":
         with console.stage(f"writing {image} into an emulated chip"):
             identity = flash_emulated(image)
@@ -44,3 +52,17 @@ def run(chosen: argparse.Namespace) -> int:
         answer = {}
     print(json.dumps({"image": str(image), "port": chosen.port, "written": True, **answer}) if chosen.json else told)
     return 0
+
+
+def _demand_arithmetic(image: Path, arithmetic: str) -> None:
+    """Raise BadInput unless the image says, on the emulated board, that it computes in this arithmetic; a .bin must be that of its .elf."""
+    elf = image.with_suffix(".elf")
+    identity = asked_identity(board_url("emulated", elf))
+    if identity.arithmetic != arithmetic:
+        remedy = f"nothing was written; build it with `twinlaw build --arithmetic {arithmetic}`"
+        raise BadInput("arithmetic", str(image), identity.arithmetic, arithmetic, remedy)
+    if image != elf and flash_content(elf.read_bytes(), str(elf)) != image.read_bytes():
+        remedy = "nothing was written; build both again with `twinlaw build`"
+        raise BadInput(
+            "firmware image", str(image), "another one than firmware.elf", "the two files of one build", remedy
+        )

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Every stage in turn; each leaves its files as soon as it is done."""
     out = chosen.out
-    designed = design_controller(chosen.plant)
+    designed = design_controller(chosen.plant, chosen.arithmetic)
     # Whatever stops this run, no verdict or flight of an earlier one is to lie beside the new table.
     remove_all(out / name for name in ("verification.json", "run.csv", "run.toml", "report.html"))
     write_atomic(out / "controller.json", table_text(designed.table))
@@ -56,7 +56,7 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         print(json.dumps({"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}))
         return 0
-    print(console.table(summary.design_rows(designed.report), summary.DESIGN_HEADING))
+    print(console.table(summary.design_rows(designed.report), summary.design_heading(designed.report)))
     print()
     print(console.table(summary.verification_rows(verification), ("verification", "figures", "")))
     print()

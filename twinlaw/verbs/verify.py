@@ -49,7 +49,7 @@ def run(chosen: argparse.Namespace) -> int:
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
     recorded = [recorded_replay(path, table, chosen.arithmetic) for path in chosen.log]
     bound = load_bound(chosen.plant)
-    poles = table_poles(bound, table)
+    poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
     image = build_image(law, chosen.out)
     verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps, chosen.arithmetic)
