@@ -20,6 +20,8 @@ class Literal:
 # From a constant's name and value to its literal; None for a constant that the C of this arithmetic does not have.
 Write = Callable[[str, float], Literal | None]
 
+_WHOLE = ("_US", "_TICKS", "_PLACES")
+
 LEFT_OUT = Literal("left out, as it would not reach the last place", "0")
 
 
@@ -48,7 +50,7 @@ def _float32(value: float) -> Literal:
 
 
 def _whole(name: str, value: float) -> Literal | None:
-    return Literal(f"{value:.0f}", f"{value:.0f}") if name.endswith("_US") else None
+    return Literal(f"{value:.0f}", f"{value:.0f}") if name.endswith(_WHOLE) else None
 
 
 def _word(value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> Literal:
@@ -76,6 +78,7 @@ def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
         yield f"LAW_{angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
     yield "LAW_PSI_MIN_RAD", law.psi_min_rad
     yield "LAW_PSI_MAX_RAD", law.psi_max_rad
+    yield "LAW_ANGLE_LIMIT_RAD", law.angle_max_rad
 
 
 def _coefficients(name: str, polynomial: FixedPolynomial[Literal]) -> Iterator[tuple[str, Literal]]:

@@ -1,15 +1,30 @@
 """The constants of the generated C by name: what each is, and which part of the controller table it holds."""
 
+import difflib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from codegen.fixed_formats import law_formats
 from codegen.law_frame import without_vanishing_powers
 from codegen.trace_literals import LEFT_OUT, LITERALS, Literal
+from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.errors import BadInput
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 _FIT = "least squares over the operating points, coefficient of Psi^{power} [rad^-{power}]"
+# Members of the C's structures that hold a constant of the header.
+_MEMBERS = {
+    f"{axis}_limits.{member}": f"LAW_{own}_{suffix}"
+    for axis, angle, voltage in (("elevation", "PSI", "U_M"), ("azimuth", "PHI", "U_T"))
+    for member, own, suffix in (
+        ("reference_min_rad", angle, "REF_MIN_RAD"),
+        ("reference_max_rad", angle, "REF_MAX_RAD"),
+        ("u_min_V", voltage, "MIN_V"),
+        ("u_max_V", voltage, "MAX_V"),
+        ("u_safe_V", voltage, "SAFE_V"),
+    )
+}
 _OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^3 in powers of delta"
 
 
@@ -36,7 +51,8 @@ class Constant:
 def constants(table: ControllerTable, arithmetic: str = "float32") -> Iterator[Constant]:
     """Every constant that the law has in this arithmetic, in the order of law.c and law.h; raises BadInput where it has no law."""
     write = LITERALS[arithmetic](table)
-    for constant in _constants(table):
+    own = _formats(table) if arithmetic == "fixed" else ()
+    for constant in (*_constants(table), *own):
         literal = write(constant.name, constant.value)
         if literal is not None:
             yield replace(constant, literal=literal)
@@ -48,16 +64,23 @@ def find_constant(table: ControllerTable, name: str, arithmetic: str = "float32"
     for constant in known:
         if constant.name == name:
             return constant
+    wanted = _plain(_MEMBERS.get(name, name))
     for constant in known:
-        if _plain(constant.name) == _plain(name):
+        if _plain(constant.name) == wanted:
             return constant
-    raise BadInput(
-        "constant",
-        "twinlaw trace",
-        repr(name),
-        f"one of {len(known)}, {known[0].name} the first",
-        "list them: twinlaw trace",
-    )
+    expected = _expected(wanted, [constant.name for constant in known])
+    raise BadInput("constant", "twinlaw trace", repr(name), expected, "list them: twinlaw trace")
+
+
+def _expected(wanted: str, names: Sequence[str]) -> str:
+    """The elements of an array that was named without an index, or the names most like the one given."""
+    array = wanted.partition("[")[0]
+    elements = [name for name in names if "[" in name and _plain(name).partition("[")[0] == array]
+    if elements:
+        return elements[0] if len(elements) == 1 else f"{elements[0]} to {elements[-1]}"
+    plain = {_plain(name): name for name in names}
+    near = [plain[word] for word in difflib.get_close_matches(wanted, plain, n=3)]
+    return f"one of {len(names)}, {' or '.join(near) if near else names[0] + ' the first'}"
 
 
 def _constants(table: ControllerTable) -> Iterator[Constant]:
@@ -71,9 +94,23 @@ def _constants(table: ControllerTable) -> Iterator[Constant]:
     design = "wish of the plant file, [design]"
     yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
     yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
+    yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {FULL_SCALE_V:g} V")
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
     yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
+
+
+def _formats(table: ControllerTable) -> Iterator[Constant]:
+    """What the law in fixed point has besides; raises BadInput for a table that no words can hold."""
+    formats = law_formats(table)
+    limit_rad = formats.angle_limit_rad - 2.0**-formats.angle_places
+    angles = "room for the third difference of an error between a reference and an angle within the limit"
+    voltages = "room for the second differences of s and w, of a feedback that an angle within the limit can ask for"
+    yield Constant(
+        "LAW_ANGLE_LIMIT_RAD", limit_rad, "rad", "the power of two above the widest reference and a quarter turn"
+    )
+    yield Constant("LAW_ANGLE_PLACES", formats.angle_places, "1", angles)
+    yield Constant("LAW_VOLTAGE_PLACES", formats.voltage_places, "1", voltages)
 
 
 def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:

@@ -65,9 +65,12 @@ def test_in_fixed_point_every_word_of_the_c_can_be_traced_with_its_places() -> N
 def test_limits_and_steps_of_the_header_can_be_traced(arithmetic: str) -> None:
     _, table = designed()
     texts = generate_law(table, arithmetic)
+    known = {constant.name for constant in names(table, arithmetic)}
+    defined = set(re.findall(r"#define (\w+) \S", texts["law.h"] + texts["law.c"]))
+    assert defined - known <= {"LAW_ARITHMETIC_CODE", "LAW_TABLE_DIGEST_HEX", "LAW_MISSING"}
     for constant in names(table, arithmetic):
         number = constant.literal.text.partition(" ")[0]
-        if constant.name == "LAW_SAMPLE_PERIOD_US":
+        if constant.name.endswith(("_US", "_TICKS", "_PLACES")):
             assert f"#define {constant.name} {number} " in texts["law.h"]
         elif constant.name.endswith("RESOLUTION_RAD") and arithmetic == "fixed":
             assert f", {number}, " in texts["law.c"]
@@ -106,6 +109,7 @@ def test_the_gain_of_the_loop_is_shared_by_rotor_and_inertia() -> None:
 def test_a_limit_is_the_plant_s_own_parameter() -> None:
     (parameter,) = traced("LAW_U_T_MAX_V").parameters
     assert (parameter.name, parameter.value, parameter.sensitivity) == ("uT_max", 10.0, None)
+    assert traced("azimuth_limits.u_max_V") == traced("LAW_U_T_MAX_V")
 
 
 def test_unknown_names_other_plants_and_tables_without_origin_are_refused() -> None:
@@ -113,6 +117,10 @@ def test_unknown_names_other_plants_and_tables_without_origin_are_refused() -> N
     settings = read_settings(bound)
     with pytest.raises(BadInput, match="list them"):
         traced("elevation_q_9[0]")
+    with pytest.raises(BadInput, match=r"elevation_q_1_V_rad\[0\] to elevation_q_1_V_rad\[3\]"):
+        traced("elevation_q_1_V_rad")
+    with pytest.raises(BadInput, match="PLAUSIBLE_V"):
+        traced("PLAUSABLE_V")
     with pytest.raises(BadInput, match="operating points"):
         trace(bound, settings, replace(table, origin={}), "elevation_q_1_V_rad[0]")
     heavier = replace(bound.plant.parameters["J_E"], value=5e-3)
