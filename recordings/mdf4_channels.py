@@ -10,8 +10,8 @@ from recordings.channels import Channel
 from records.errors import BadInput
 
 
-def read_mdf4(path: Path) -> dict[str, Channel]:
-    """All channels of numbers by name; of several with one name the first counts.
+def read_mdf4(path: Path) -> tuple[dict[str, Channel], str]:
+    """All channels of numbers by name, of several with one name the first; and the comment of the first group.
 
     Raises BadInput when asammdf is not installed, and for a file that is missing or no MDF.
     """
@@ -21,15 +21,17 @@ def read_mdf4(path: Path) -> dict[str, Channel]:
     try:
         groups = {name: places[0] for name, places in recording.channels_db.items()}
         signals = {name: recording.get(name, *place) for name, place in groups.items()}
+        comment = str(recording.groups[0].channel_group.comment) if recording.groups else ""
     finally:
         recording.close()
-    return {
+    channels = {
         name: Channel(
             np.asarray(signal.timestamps, float), np.asarray(signal.samples, dtype=float), str(signal.unit or "")
         )
         for name, signal in signals.items()
         if np.asarray(signal.samples).dtype.kind in "biuf" and np.asarray(signal.samples).ndim == 1
     }
+    return channels, comment
 
 
 def _open(path: Path) -> Any:

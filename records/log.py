@@ -1,5 +1,6 @@
 """The run log: one row per sample of what was measured and commanded, as CSV, with a TOML sidecar that says what flew."""
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -94,6 +95,21 @@ def sidecar_text(log: RunLog) -> str:
     if log.source is not None:
         document["source"] = source_table(log.source)
     return tomlkit.dumps(document)
+
+
+def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, Any]:
+    """`loop`, `locked` and `table_digest` of a sidecar's text, by these names; none of a text that is no sidecar.
+
+    Raises BadInput for a sidecar of another plant, or one that is wrong.
+    """
+    try:
+        sidecar = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return {}
+    if sidecar.get("schema") != SCHEMA:
+        return {}
+    digest = _check_sidecar(sidecar, where, columns)
+    return {"loop": sidecar["loop"], "locked": tuple(sidecar["locked"]), "table_digest": digest}
 
 
 def load_log(path: Path, columns: LogColumns) -> RunLog:

@@ -1,15 +1,17 @@
 """A run log as MDF4: every number, time and unit comes back through the importer's own reader."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from recordings.exported import import_file
 from recordings.mdf4_channels import read_mdf4
 from recordings.mdf4_export import mdf4_bytes, unit_of
 from records.errors import BadInput
-from records.log import RunLog, save_log
+from records.log import RunLog, facts_of_sidecar, save_log
 from sim.columns import log_columns
 from sim.plants import MODELS
 from twinlaw.command import main
@@ -34,12 +36,29 @@ def test_units_are_those_of_the_names() -> None:
 def test_what_was_exported_reads_back_exactly(tmp_path: Path) -> None:
     pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
     (tmp_path / "run.mf4").write_bytes(mdf4_bytes(log()))
-    channels = read_mdf4(tmp_path / "run.mf4")
+    channels, _ = read_mdf4(tmp_path / "run.mf4")
     for name in ("u_M_V", "u_T_V", "psi_rad", "phi_rad", "omega_M_rad_s"):
         np.testing.assert_array_equal(channels[name].values, log().column(name))
         np.testing.assert_array_equal(channels[name].t_s, T_S)
         assert channels[name].unit == unit_of(name)
     np.testing.assert_array_equal(channels["seq"].values, [7, 8, 9, 11])
+
+
+def test_the_way_back_keeps_digest_loop_and_locked_axes(tmp_path: Path) -> None:
+    """Truth: the sidecar of the log that was exported; a comment of another tool says nothing."""
+    pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
+    held = replace(log(), locked=("azimuth",), loop="open")
+    (tmp_path / "run.mf4").write_bytes(mdf4_bytes(held))
+    back = import_file(tmp_path / "run.mf4", "ce150", {}, None)
+    assert (back.table_digest, back.loop, back.locked) == (held.table_digest, "open", ("azimuth",))
+    with pytest.raises(BadInput, match="give the log and the plant of one rig"):
+        import_file(tmp_path / "run.mf4", "quanser_aero", {}, None)
+
+
+def test_a_comment_that_is_no_sidecar_says_nothing() -> None:
+    columns = log_columns(MODELS["ce150"]())
+    for comment in ("", "<CNcomment><TX>test bench 3</TX></CNcomment>", 'schema = "another/1"', "a = ["):
+        assert facts_of_sidecar(comment, "a comment", columns) == {}
 
 
 def test_the_verb_writes_beside_the_log_and_refuses_another_ending(
