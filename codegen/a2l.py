@@ -91,7 +91,7 @@ def _layouts(limits: Sequence[Member]) -> Iterator[str]:
 
 def _measurement(member: Member, conversion: Conversion) -> Iterator[str]:
     kind, low, high = _data_type(member)
-    limits = f"{low * conversion.factor:.9g} {high * conversion.factor:.9g}"
+    limits = f"{low * conversion.factor:.17g} {high * conversion.factor:.17g}"
     yield f'/begin MEASUREMENT {member.path} "" {kind} {conversion.name} 0 0 {limits}'
     yield f"ECU_ADDRESS 0x{member.address:08X}"
     if member.count > 1:
@@ -108,7 +108,7 @@ def _digest(address: int) -> Iterator[str]:
 
 def _characteristic(member: Member, conversion: Conversion) -> Iterator[str]:
     kind, low, high = _data_type(member)
-    limits = f"{low * conversion.factor:.9g} {high * conversion.factor:.9g}"
+    limits = f"{low * conversion.factor:.17g} {high * conversion.factor:.17g}"
     place = f"VALUE 0x{member.address:08X} one_{kind} 0 {conversion.name} {limits}"
     yield f'/begin CHARACTERISTIC {member.path} "" {place}'
     yield "READ_ONLY"

@@ -128,3 +128,9 @@ def test_the_same_image_gives_the_same_bytes_and_the_verb_writes_them(tmp_path: 
     (tmp_path / "controller.json").write_text(table_text(table))
     assert main(["build", "--table", str(tmp_path / "controller.json"), "--out", str(tmp_path)]) == 0
     assert (tmp_path / "firmware.a2l").read_text() == text
+
+
+def test_limits_are_those_of_the_type_in_memory_to_the_last_digit() -> None:
+    """Truth: 2^32 - 1 of an unsigned word; nine digits would be 5 above it."""
+    _, _, text = image()
+    assert named(text, "MEASUREMENT")["link.counters.frames_accepted"][-3] == "4294967295"
