@@ -1,5 +1,6 @@
 """Opening a serial port by its URL: a device, a pty, or an emulated board, which are all the same to the client."""
 
+import os
 from typing import Any
 
 import serial
@@ -23,7 +24,14 @@ def open_port(url: str, *, timeout_s: float) -> Any:
         raise BadInput(
             what="serial port",
             where=url,
-            got=" ".join(str(error).split()) or type(error).__name__,
+            got=_reason(error),
             expected="a port that can be opened",
             remedy="check the cable, the name given as --port, and that you may read and write it",
         ) from error
+
+
+def _reason(error: OSError | ValueError) -> str:
+    """What the system says of it, once; pyserial says it twice, with the port's name in between."""
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno)
+    return " ".join(str(error).split()) or type(error).__name__

@@ -92,8 +92,18 @@ def count(text: str) -> int:
     return value
 
 
+def port_name(text: str) -> str:
+    """The name of a port, as the type of an option; an empty one is a shell's variable that was not set."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected a serial port such as /dev/ttyACM0, or `emulated`")
+    return text
+
+
 def port(parser: argparse.ArgumentParser) -> None:
     """--port PORT."""
     parser.add_argument(
-        "--port", default="emulated", help="serial port of the board, or `emulated`; default: %(default)s"
+        "--port",
+        type=port_name,
+        default="emulated",
+        help="serial port of the board, or `emulated`; default: %(default)s",
     )

@@ -98,6 +98,7 @@ def test_a_port_that_is_not_there_is_one_clear_line():
     error = refusal(lambda: BoardClient.connect("/dev/tty-that-is-not-there"))
     assert error.where == "/dev/tty-that-is-not-there"
     assert error.what == "serial port"
+    assert error.got == "No such file or directory"
 
 
 def test_an_unknown_kind_of_port_is_one_clear_line():

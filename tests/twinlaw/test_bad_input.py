@@ -234,6 +234,14 @@ def test_an_image_that_is_not_there_is_named(
     _refused(["flash", "--out", str(tmp_path)], ["firmware.elf", "twinlaw build"], capsys)
 
 
+@pytest.mark.parametrize("verb", ["flash", "validate", "watch"])
+def test_an_empty_port_is_a_forgotten_one_and_means_no_other_way(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main([verb, "--port", ""])
+    assert left.value.code == 2
+    assert "--port: got '', expected a serial port" in capsys.readouterr().err
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_a_full_disk_behind_standard_output_is_one_clear_line() -> None:
     with open("/dev/full", "w") as full:

@@ -21,7 +21,11 @@ from twinlaw.stages import board_url
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--port, --arithmetic, --out, --json."""
-    parser.add_argument("--port", help="serial port of the boot loader, or `emulated`; without it the ST-LINK is used")
+    parser.add_argument(
+        "--port",
+        type=options.port_name,
+        help="serial port of the boot loader, or `emulated`; without it the ST-LINK is used",
+    )
     options.demanded_arithmetic(parser)
     options.out(parser)
     options.as_json(parser)

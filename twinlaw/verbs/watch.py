@@ -33,7 +33,11 @@ TEMPLATES = Path(__file__).resolve().parent.parent / "templates"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--port, --plant, --table, --arithmetic, --rig, --fly, --record, --http-port, --out, --json."""
     parser.add_argument(
-        "--port", default="emulated", metavar="PORT|emulated|LOG.csv", help="what to watch; default: %(default)s"
+        "--port",
+        type=options.port_name,
+        default="emulated",
+        metavar="PORT|emulated|LOG.csv",
+        help="what to watch; default: %(default)s",
     )
     options.plant(parser)
     options.table(parser)
