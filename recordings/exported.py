@@ -37,4 +37,4 @@ def import_file(path: Path, plant: str, choices: Mapping[str, Choice], loop: str
         raise BadInput("text 'loop'", str(path), repr(stated), " or ".join(LOOPS), "say it with --loop")
     digest = texts.get("table_digest")
     log = log_of_channels(channels, columns, str(path), choices=chosen, loop=stated, table_digest=digest)
-    return replace(log, locked=texts.get("locked", ()))
+    return replace(log, locked=tuple(texts.get("locked", ())))
