@@ -45,15 +45,6 @@ def evolution(
         best.append(float(intermediate_result.fun))
         watch(unscaled(intermediate_result.x)[places])
 
-    found = differential_evolution(
-        cost,
-        bounds,
-        maxiter=GENERATIONS,
-        popsize=POPULATION,
-        seed=seed,
-        x0=started,
-        tol=1e-3,
-        polish=False,
-        callback=told,
-    )
+    wishes = {"maxiter": GENERATIONS, "popsize": POPULATION, "tol": 1e-3, "polish": False}
+    found = differential_evolution(cost, bounds, seed=seed, x0=started, callback=told, **wishes)
     return unscaled(found.x)[places], tuple(best)

@@ -27,8 +27,7 @@ def log_run(
     BadInput for a log with less than two rows or without readings, or a plant with effects on the way of its inputs or outputs.
     """
     _check(bound, log, name)
-    model = bound.model
-    part = driven_model(model)
+    model, part = bound.model, driven_model(bound.model)
     carried = None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first))
     forgotten_s = 0.0 if carried is None or at_first is not None else _forgotten_s(model, carried, log)
     begins, stops = _windows(log.t_s, window_s, every, forgotten_s)

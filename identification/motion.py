@@ -52,12 +52,8 @@ def move(
     lower, upper = _slopes(model, p)
     y = np.empty((t_s.size, len(model.outputs)))
     dy, x = np.empty((*y.shape, len(columns))), np.empty((t_s.size, len(model.states)))
-    kept: dict[str, NDArray[Any]] = {
-        "p": p,
-        "lower_slope": lower,
-        "upper_slope": upper,
-        "column": np.array([places[name] for name in columns], dtype=np.int32),
-    }
+    column = np.array([places[name] for name in columns], dtype=np.int32)
+    kept: dict[str, NDArray[Any]] = {"p": p, "lower_slope": lower, "upper_slope": upper, "column": column}
     request = compiled.ffi.new("sensitivity_request *")
     for name, array in kept.items():
         setattr(request, name, compiled.pointer(array))
@@ -67,10 +63,9 @@ def move(
     bases = {
         name: compiled.ffi.cast("double *", array.ctypes.data) for name, array in (*moving.items(), ("x0", starts))
     }
-    strides = {name: array[0].size for name, array in moving.items()}
     for number, rows in enumerate(windows):
-        for name, stride in strides.items():
-            setattr(request, name, bases[name] + rows.start * stride)
+        for name, array in moving.items():
+            setattr(request, name, bases[name] + rows.start * array[0].size)
         request.x0 = bases["x0"] + number * starts.shape[1]
         request.samples = rows.stop - rows.start
         compiled.lib.sensitivity_run(request)

@@ -8,18 +8,16 @@ import numpy as np
 
 from identification.belief import Belief
 from identification.estimate import Estimate, interval_factor
+from identification.notes import relative, stage_notes
 from identification.residuals import ResidualTest
 from identification.search import Searched
-from identification.uncertainty import Direction
 from records.correlation import Correlation
 from records.plant import Parameter, Plant, coefficient_names
 
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
-LEAST_CHANCE = 1e-300
 INTERRUPTED = "the best so far of a fit that was interrupted"
 TOLD = 0.6  # a parameter whose interval reaches farther is not identified: what holds it is that it was given a size at all
-MOST_DIRECTIONS = 3
 
 
 @dataclass(frozen=True)
@@ -75,56 +73,11 @@ class Identification:
         return (f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: {remedy}",)
 
 
-def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
-    """What one stage cannot tell, by direction; what contradicts earlier data, by parameter; residuals that are no sensor's errors."""
-    blind = [f"{title}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
-    if len(stage.unseen) > MOST_DIRECTIONS:
-        blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
-    pulled = [
-        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {entry.after:.4g} now, "
-        f"{entry.sds:.0f} sd apart"
-        for entry in stage.contradictions[:3]
-    ]
-    against = [
-        f"{title}: {entry.run} contradicts the others in {entry.name}: {entry.own:.4g} by itself, {entry.others:.4g} by the others, "
-        f"{entry.sds:.0f} sd apart"
-        for entry in stage.discords[:3]
-    ]
-    coloured = [
-        f"{test.run if test.run in title.split(', ') else title}: residuals of {test.channel} are correlated "
-        f"({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
-        "its samples count for fewer"
-        for test in stage.residuals
-        if not test.white
-    ]
-    bound = [
-        f"{title}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
-        for name in stage.at_bound
-    ]
-    return (*blind, *bound, *pulled, *against, *coloured)
-
-
-def chance(p: float) -> str:
-    """A small probability as text; what a float64 cannot hold is not 0."""
-    return f"p = {p:.1g}" if p > LEAST_CHANCE else f"p < {LEAST_CHANCE:.0e}"
-
-
 AID_UNITS = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}
-
-
-def _direction(entry: Direction) -> str:
-    parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
-    return f"not identifiable alone: {parts}, each relative to its size (sd {relative(entry.relative_sd)})"
 
 
 def _share(entry: Estimated) -> str:
     return relative(entry.sd / abs(entry.value)) if entry.value else f"{entry.sd:.2g} {entry.unit}"
-
-
-def relative(sd: float) -> str:
-    """A relative sd in per cent without an exponent."""
-    percent = 100.0 * sd
-    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %" if percent < 1000.0 else "> 1000 %"
 
 
 def identification(

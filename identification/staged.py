@@ -9,7 +9,7 @@ import numpy as np
 from identification.belief import NOTHING, Belief
 from identification.estimate import Estimate, Range, estimate
 from identification.experiments.kind import Kind
-from identification.experiments.table import kinds_of
+from identification.experiments.table import informed, kinds_of
 from identification.ranges import ranges_of
 from identification.run import Run, coefficient_names, known_names
 from identification.search import Search
@@ -140,7 +140,7 @@ def _on_other_mount(run: Run) -> Run | None:
 
 def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
     """The experiment's own parameters, and those of the paper that its model has but no stage before has informed."""
-    every = tuple(dict.fromkeys(name for entry in kinds_of(run.bound.plant.model).values() for name in entry.own))
+    every = informed(run.bound.plant.model)
     has = {every[place] for place, _ in known_names(run, every)}
     excited = {name for name in every if name in has and _excited(run, name)}
     return tuple(name for name in every if name in kind.own or (name in excited and name not in belief.names))

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 from identification.estimate import Estimate
+from identification.notes import chance, relative
 from identification.residuals import ResidualTest
-from identification.result import Estimated, chance, relative
+from identification.result import Estimated
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")

@@ -15,7 +15,7 @@ from identification.logs import best_fit, fits_of_logs, prediction_tests, withou
 from identification.result import Identification, facts
 from identification.search import Search
 from identification.shown import hidden, unread
-from identification.staged import identify_stage, in_order, title
+from identification.staged import check_setup, identify_stage, in_order, title
 from records import checks
 from records.errors import BadInput
 from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
@@ -67,6 +67,7 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
         sidecar = path.with_suffix(".toml")
         if read_toml(sidecar, "experiment or sidecar of a run log").get("schema") == EXPERIMENT_SCHEMA:
             experiments.append(load_experiment(sidecar))
+            check_setup(experiments[-1], bound)
         else:
             logs.append(path)
     options.differing((*logs, *holdout))

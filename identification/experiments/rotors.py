@@ -80,8 +80,7 @@ def _pulses(t_s: Array, turn: Array, omega: Array, rng: Generator) -> Array:
 def run(experiment: Experiment, bound: BoundPlant) -> Run:
     """Pulses to the mean speed of each whole turn, all on the board's clock, the first half second trimmed."""
     rotor = "M" if experiment.kind == "main_rotor" else "T"
-    drive, cell = experiment.streams["input"], experiment.streams["load_cell"]
-    facts = experiment.facts
+    drive, cell, facts = experiment.streams["input"], experiment.streams["load_cell"], experiment.facts
     pulses = experiment.streams["photogate"]["pulse_s"] - facts["sync_scope_s"] + facts["sync_board_s"]
     gate = pulses[:: round(facts["blades"])]  # always the same blade: its neighbour's misplacement does not count
     t_s = np.unique(np.concatenate([drive["t_s"], cell["t_s"], gate]))

@@ -41,7 +41,6 @@ KINDS: Mapping[str, Kind] = {
     "turned_by_hand": Kind(9, "azimuth turned by hand", "upright", (), ("K_E",), _by_hand, elevation.run, {}),
 }
 # fmt: on
-ALL_PARAMETERS = tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.own))
 BY_PLANT: Mapping[str, Mapping[str, Kind]] = {"ce150": KINDS, "ce150_velagic": velagic.KINDS}
 
 
@@ -52,6 +51,11 @@ def kinds_of(plant: str) -> Mapping[str, Kind]:
             "plant", "experiments", repr(plant), f"one of {', '.join(BY_PLANT)}", "identify other plants from run logs"
         )
     return BY_PLANT[plant]
+
+
+def informed(plant: str) -> tuple[str, ...]:
+    """The parameters that the experiments of a plant's model are made for, in their order."""
+    return tuple(dict.fromkeys(name for kind in kinds_of(plant).values() for name in kind.own))
 
 
 def perform(kind: str, truth: BoundPlant, seed: int) -> Experiment:

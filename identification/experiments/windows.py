@@ -35,8 +35,7 @@ def windowed(
     select = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     level, slope, _, _ = lines(t_s, angle, begins, step)
     x0 = np.zeros((begins.size, len(model.states)))
-    x0[:, model.states.index(axis.position)] = level
-    x0[:, model.states.index(axis.velocity)] = slope
+    x0[:, [model.states.index(axis.position), model.states.index(axis.velocity)]] = np.column_stack([level, slope])
     loose = max(3.0 * float(np.std(slope)), 1.0)
     return Run(
         name=name,

@@ -8,8 +8,8 @@ from identification.belief import NOTHING
 from identification.bench import task
 from identification.estimate import estimate
 from identification.log_run import log_run
+from identification.notes import stage_notes
 from identification.ranges import ranges_of
-from identification.result import stage_notes
 from sim.bind import bind
 
 NAMES = ("J_A", "b_vA", "J_E")

@@ -249,6 +249,9 @@ def test_the_same_experiment_twice_or_on_the_wrong_mount_is_refused(folder, tmp_
     copy.write_text(copy.read_text().replace('"turned"', '"upright"'))
     assert main(["identify", "--out", str(tmp_path / "out"), str(copy)]) == 2
     assert "mount: got 'upright', expected 'turned'" in capsys.readouterr().err
+    together = [str(folder / "03-gravity.toml"), str(copy)]  # the first of which could be done
+    assert main(["identify", "--out", str(tmp_path / "out"), *together]) == 2
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_log_with_a_trim_of_its_inputs_is_fitted_and_another_predicted(tmp_path, capsys):
