@@ -43,7 +43,9 @@ def chance(p: float) -> str:
 
 def _direction(entry: Direction) -> str:
     parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
-    return f"not identifiable alone: the direction {parts}, each relative to its size (sd {relative(entry.relative_sd)})"
+    return (
+        f"not identifiable alone: the direction {parts}, each relative to its size (sd {relative(entry.relative_sd)})"
+    )
 
 
 def relative(sd: float) -> str:

@@ -50,6 +50,13 @@ def unit_suffix(name: str) -> str:
     return next((unit for unit in _SUFFIXES if name.endswith(f"_{unit}")), "")
 
 
+def label(name: str) -> str:
+    """A column's name as an axis shows it: "a_y [m/s^2]" of a_y_m_s2; one without a unit stays as it is."""
+    unit = unit_suffix(name)
+    shown = {"rad_s2": "rad/s^2", "rad_s": "rad/s", "m_s2": "m/s^2", "m_s": "m/s"}.get(unit, unit)
+    return f"{name.removesuffix(f'_{unit}')} [{shown}]" if unit else name
+
+
 def _parts(unit: str) -> list[tuple[int, str]]:
     """Factors with +1 before the first "/" and -1 after it: "kg m^2/s" is kg m^2 s^-1."""
     upper, *lower = unit.replace("*", " ").split("/")

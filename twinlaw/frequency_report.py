@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from identification.frequency.elements import StateSpaces, state_space_with_sd
 from identification.frequency.result import FrequencyIdentification, Pair, TimeCheck
+from records.units import label
 from twinlaw.identify_summary import HEADING, estimate_rows
 from twinlaw.page import Page, Section, Table
-from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Curve, Panel, grid
+from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, SKY, Curve, Panel, grid
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -140,7 +141,7 @@ def _curves(found: FrequencyIdentification, o: int, i: int, shown: Callable[[Com
         Curve(omega, shown(fit.T_raw[:, o, i]), "measured", GREY),
         Curve(omega[k], corrected[k], "matched, error of finite windows taken off", BLUE, "", "o"),
         Curve(omega, shown(fit.T[:, o, i]), "identified model", ORANGE, "--"),
-        Curve(omega, shown(found.T_stated[:, o, i]), "plant file", RED, ":"),
+        Curve(omega, shown(found.T_stated[:, o, i]), "plant file", GREEN, ":"),
     )
 
 
@@ -164,8 +165,12 @@ def _check(found: FrequencyIdentification, check: TimeCheck) -> Section:
 def _history(found: FrequencyIdentification, check: TimeCheck) -> str:
     """Inputs above, outputs below, measured and predicted."""
     model = found.fit.model
-    lines = [[Panel(name, (Curve(check.t_s, check.u[:, i], "input", SKY),))] for i, name in enumerate(model.inputs)]
+    lines = [
+        [Panel(label(name), (Curve(check.t_s, check.u[:, i], "input", SKY),))] for i, name in enumerate(model.inputs)
+    ]
     for o, name in enumerate(model.outputs):
         measured = Curve(check.t_s, check.y[:, o], "measured", GREY)
-        lines.append([Panel(name, (measured, Curve(check.t_s, check.y_model[:, o], "identified model", ORANGE, "--")))])
+        lines.append(
+            [Panel(label(name), (measured, Curve(check.t_s, check.y_model[:, o], "identified model", ORANGE, "--")))]
+        )
     return grid(lines, [""], "time [s]", height_in=1.3)

@@ -8,7 +8,7 @@ import pytest
 
 from records.errors import BadInput
 from records.plant import load_plant, parse_plant, plant_text
-from records.units import dimension, dimensions
+from records.units import dimension, dimensions, label
 from sim.bind import bind
 
 PLANTS = Path(__file__).parents[2] / "plants"
@@ -137,3 +137,11 @@ def test_units_that_mean_the_same_have_the_same_dimensions(one, other):
 def test_lists_of_units_are_read_one_by_one():
     assert dimensions("[s^-1, rad^-1, rad^-2 s]") == ((0, 0, -1, 0), (0, 0, 0, 0), (0, 0, 1, 0))
     assert not np.array_equal(dimension("kg m"), dimension("kg m^2"))
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [("a_y_m_s2", "a_y [m/s^2]"), ("p_rad_s", "p [rad/s]"), ("u_M_V", "u_M [V]"), ("psi_rad", "psi [rad]"), ("M", "M")],
+)
+def test_an_axis_shows_a_column_s_name_and_unit(name, shown):
+    assert label(name) == shown
