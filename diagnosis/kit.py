@@ -27,7 +27,7 @@ from sim.bind import BoundPlant
 from sim.effects.api import combined, library, redundant
 from sim.effects.effect import Effect, coefficient
 from sim.model import Model
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
 BUILDING = Lock()
@@ -190,7 +190,7 @@ def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
     note = CACHE_DIR / "kits" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
     try:
         known: dict[str, Any] = json.loads(read_text(note, "note of a kit"))
-        if "library" not in known or Path(known["library"]).exists():
+        if "library" not in known or is_whole(Path(known["library"])):
             return known
     except (BadInput, ValueError):
         pass

@@ -18,7 +18,7 @@ from typing import Any
 from cffi import FFI
 
 from records.errors import BadInput
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, is_whole
 
 # No contraction and no relaxed arithmetic: float32 results must be the same bits on host and target.
 STRICT_FLOAT_FLAGS = (
@@ -91,7 +91,7 @@ def build_shared(
     """
     digest = content_digest(sources, include_dirs, flags)
     target = CACHE_DIR / "host" / f"{name}-{digest}.so"
-    if target.exists():
+    if is_whole(target):
         return target
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as work:

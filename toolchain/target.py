@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, is_whole
 from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_version
 
 _MACHINE = ("-target", "thumb-freestanding-eabi", "-mcpu=cortex_m0plus")
@@ -54,7 +54,7 @@ def build_image(
     """
     key = content_digest([*sources, linker_script], include_dirs, [*flags, *LINK_FLAGS])
     image = CACHE_DIR / "target" / f"{name}-{key}.elf"
-    if image.exists():
+    if is_whole(image):
         return image
     objects = [*compile_objects(sources, include_dirs=include_dirs, flags=flags), runtime_library()]
     with tempfile.TemporaryDirectory(dir=image.parent) as work:
@@ -74,7 +74,7 @@ def runtime_library() -> Path:
     for size is no slower than that built for speed (1.4 % faster over the law's self-test).
     """
     library = CACHE_DIR / "target" / f"compiler_rt-{zig_version()}.a"
-    if library.exists():
+    if is_whole(library):
         return library
     library.parent.mkdir(parents=True, exist_ok=True)
     source = _zig_folder() / "lib" / "compiler_rt.zig"
@@ -111,7 +111,7 @@ def _compile(
 ) -> Path:
     key = content_digest([unit, *headers], include_dirs, flags)
     kept = CACHE_DIR / "target" / "objects" / f"{Path(unit.name).stem}-{key}.o"
-    if kept.exists():
+    if is_whole(kept):
         return kept
     path = as_file(unit, work)
     built = work / f"{path.stem}-{key}.o"

@@ -6,13 +6,14 @@ from pathlib import Path
 import pytest
 
 from toolchain import host
-from toolchain.cache import CACHE_DIR
+from toolchain.cache import CACHE_DIR, is_whole
 from toolchain.host import CText, build_shared, c_text, content_digest, load_shared
 
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache, but for the compiler's own."""
+    (CACHE_DIR / "zig").mkdir(parents=True, exist_ok=True)
     (tmp_path / "cache").mkdir()
     (tmp_path / "cache" / "zig").symlink_to(CACHE_DIR / "zig")
     monkeypatch.setattr(host, "CACHE_DIR", tmp_path / "cache")
@@ -47,3 +48,14 @@ def test_a_text_and_the_file_that_it_was_read_from_are_one_content(tmp_path: Pat
     kept = c_text(source)
     assert kept == CText("answer.c", source.read_text())
     assert content_digest([kept], (), ()) == content_digest([source], (), ())
+
+
+@pytest.mark.parametrize("left", [0, 1, 63, 64, 1000, -1])
+def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path, left: int) -> None:
+    source = CText("answer.c", "int answer(void) { return 4; }\n")
+    path = build_shared("answer", [source], flags=())
+    whole = path.read_bytes()
+    path.write_bytes(whole[:left])
+    assert not is_whole(path)
+    assert build_shared("answer", [source], flags=()) == path
+    assert load_shared("int answer(void);", path)[1].answer() == 4
