@@ -16,6 +16,7 @@ from twinlaw.parser import build_parser
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
+    _stand_in_for_closed_streams()
     words = list(sys.argv[1:] if arguments is None else arguments)
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
@@ -44,6 +45,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt as stop:
         console.fail(f"interrupted; {str(stop) or 'files already written are whole, the others were not begun'}")
         return 128 + signal.SIGINT
+
+
+def _stand_in_for_closed_streams() -> None:
+    """A stream that the caller closed (`2>&-`) leads nowhere: the exit status tells, and no file of ours takes its number."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
 
 
 def _silence_stdout() -> None:

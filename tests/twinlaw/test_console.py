@@ -56,6 +56,16 @@ def test_who_has_no_home_hears_nothing_of_it() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&- >&- 2>&-"])
+def test_a_stream_that_the_caller_closed_changes_no_exit_status(closed: str) -> None:
+    done = subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", *FAILS], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    works = [*FAILS[:3], "completion", "bash"]
+    done = subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", *works], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_only_one_place_knows_colours() -> None:
     # So that no verb can forget NO_COLOR: the escape is written in twinlaw/console.py alone.
     escape = re.compile(r"\\x1b|\\033|\\e\[|\\u001b")

@@ -273,7 +273,8 @@ def test_a_log_is_replayed_paused_sped_up_and_begun_again(watch: Open, carried: 
     ("words", "told"),
     [
         (["--port", "/dev/ttyNONE"], "serial port"),
-        (["--port", "missing.csv"], "missing"),
+        (["--port", "missing.csv"], "missing.csv: run log"),
+        (["--port", "missing.csv", "--plant", "nowhere.toml"], "missing.csv: run log"),
         (["--port", "{carried}/hop.csv", "--plant", "plants/aeroshield.toml"], "plant"),
         (["--port", "{carried}/hop.csv", "--fly"], "--fly"),
         (["--port", "{carried}/hop.csv", "--record", "x.csv"], "--record"),

@@ -7,7 +7,7 @@ from typing import Any
 from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.log import load_log
+from records.log import load_log, plant_of_log
 from rig.client import DEFAULT_TIMEOUT_S, BoardClient
 from rig.emulator.serial_port import EmulatedSerial
 from rig.live import LiveFlight, LoopFlight, time_of
@@ -44,9 +44,11 @@ def is_log(port: str) -> bool:
 
 def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
     """The twin's plant, what is watched, and the axes that are held. Raises BadInput, and then nothing stays open."""
-    bound = load_bound(asked.plant)
     if is_log(asked.port):
         _demand_no_board(asked)
+        plant_of_log(Path(asked.port))  # a log that is not there is told before a plant file that is only the default
+    bound = load_bound(asked.plant)
+    if is_log(asked.port):
         log = load_log(Path(asked.port), log_columns(bound.model))
         told = {"title": Path(asked.port).name, "who": f"log {asked.port}, twin {asked.plant}", **signals(bound)}
         return bound, LogSource(log, told), log.locked
