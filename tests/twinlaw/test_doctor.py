@@ -2,10 +2,13 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from tests.test_project import ROOT
 from toolchain import host
 from twinlaw.command import main
 from twinlaw.verbs.doctor import NEEDED, packages
@@ -19,7 +22,7 @@ def test_what_every_verb_needs_is_here(capsys: pytest.CaptureFixture[str]) -> No
     assert main(["doctor", "--json"]) == 0
     found = findings(capsys)
     assert all(finding["found"] for finding in found.values() if finding["needed_for"] == NEEDED)
-    assert {"Python", "numpy", "ziglang", "C compiler", "openocd"} <= found.keys()
+    assert {"Python", "numpy", "ziglang", "C compiler", "openocd", "distributed"} <= found.keys()
 
 
 def test_a_program_that_is_not_there_is_missing_with_its_remedy(
@@ -33,12 +36,25 @@ def test_a_program_that_is_not_there_is_missing_with_its_remedy(
 
 
 def test_packages_come_by_the_extra_that_asks_for_them() -> None:
-    asked = ["numpy>=2.0", 'no-such-package>=1; extra == "peers"', "no_such_either"]
-    named = {finding.name: finding for finding in packages(asked)}
+    extras = {"peers": ["no-such-package>=1"], "new": ["no.such[more]>=2,<3"]}
+    named = {
+        f.name: f for f in packages({"dependencies": ["numpy>=2.0", "no_either"], "optional-dependencies": extras})
+    }
     assert named["numpy"].found
     assert named["no-such-package"].needed_for.startswith("bench")
-    assert named["no_such_either"].needed_for == NEEDED
-    assert named["no_such_either"].found is None
+    assert (named["no.such"].needed_for, named["no.such"].remedy) == ("new", "pip install --editable '.[new]'")
+    assert (named["no_either"].needed_for, named["no_either"].found) == (NEEDED, None)
+
+
+@pytest.mark.parametrize("package", ["cffi", "serial", "numpy"])
+def test_a_package_that_cannot_be_imported_does_not_stop_the_verb_that_tells_of_it(package: str) -> None:
+    program = (
+        f"import sys; sys.modules[{package!r}] = None\nfrom twinlaw.command import main\nsys.exit(main(['doctor']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr
+    assert "stm32flash" in done.stdout
+    assert done.returncode == (1 if package == "cffi" else 0)
 
 
 def test_a_compiler_that_cannot_compile_is_said_and_fails(

@@ -8,16 +8,19 @@ import json
 import platform
 import re
 import shutil
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, requires, version
-
-from serial.tools import list_ports
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
 
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
-from toolchain.host import CText, build_shared, load_shared
 from twinlaw import console, options
+
+# Asked itself, as what pip noted of it is as old as the last `make`.
+PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 
 # What an extra of pyproject.toml and a program of the system are for.
 EXTRAS: Mapping[str, str] = {
@@ -70,34 +73,50 @@ def run(chosen: argparse.Namespace) -> int:
 def examine() -> Iterator[Finding]:
     """Every finding, what all verbs need first."""
     yield Finding("Python", NEEDED, platform.python_version(), "")
-    yield from packages(requires("twinlaw") or ())
+    yield from packages(tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"])
     yield Finding("C compiler", NEEDED, _compiler(), "make run: installs the ziglang package")
     for program, (purpose, remedy) in PROGRAMS.items():
         yield Finding(program, purpose, shutil.which(program), remedy)
-    ports = ", ".join(port.device for port in list_ports.comports())
-    yield Finding("a serial port", "validate, watch: a board of your own", ports or None, "plug the board in")
+    yield Finding("a serial port", "validate, watch: a board of your own", _ports(), "plug the board in")
 
 
-def packages(requirements: Sequence[str]) -> Iterator[Finding]:
-    """A finding for each package that the project's metadata names, by the extra that asks for it."""
+def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
+    """A finding for each package that pyproject.toml's section names, by the extra that asks for it."""
+    yield from _packages(project["dependencies"], NEEDED, "make run")
+    for extra, requirements in project["optional-dependencies"].items():
+        yield from _packages(requirements, EXTRAS.get(extra, extra), f"pip install --editable '.[{extra}]'")
+
+
+def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterator[Finding]:
     for requirement in requirements:
         name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
-        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)", requirement)
-        purpose = EXTRAS.get(extra[1], extra[1]) if extra else NEEDED
-        remedy = f"pip install --editable '.[{extra[1]}]'" if extra else "make run"
         try:
             yield Finding(name, purpose, version(name), remedy)
         except PackageNotFoundError:
             yield Finding(name, purpose, None, remedy)
 
 
+# What follows imports what may itself be missing.
+
+
+def _ports() -> str | None:
+    """The serial ports of this computer."""
+    try:
+        from serial.tools import list_ports
+    except ImportError:
+        return None
+    return ", ".join(port.device for port in list_ports.comports()) or None
+
+
 def _compiler() -> str | None:
     """Where a compiled function of one line lies, if it can be compiled, loaded and called."""
     try:
+        from toolchain.host import CText, build_shared, load_shared
+
         _, lib = load_shared(
             "int doctor_sum(int a, int b);",
             build_shared("doctor", [CText("doctor.c", "int doctor_sum(int a, int b) { return a + b; }\n")], flags=()),
         )
-    except (BadInput, OSError):
+    except (BadInput, ImportError, OSError):
         return None
     return f"works, keeps its output in {CACHE_DIR}" if lib.doctor_sum(2, 3) == 5 else None
