@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controllers.designing import points_of
-from controllers.lqg import WEIGHTS, _at_point, sampled
+from controllers.lqg_gains import WEIGHTS, gains_at, sampled
 from design.settings import AXES, read_settings
 from sim.loop import fly
 from sim.manoeuvres import Leg, Manoeuvre, hop, manoeuvre
@@ -38,7 +38,7 @@ def test_the_model_is_the_plant_sampled_by_python_control() -> None:
 def test_regulator_and_filter_are_stable_at_every_operating_point(axis: str) -> None:
     points = points_of(ce150(), read_settings(ce150()))
     for plant in points.axis(axis):
-        c = _at_point(plant, WEIGHTS[axis], 0.01, 1.534e-3)
+        c = gains_at(plant, WEIGHTS[axis], 0.01, 1.534e-3)
         lag, a = -plant.A[0, 0], plant.A[2, 1]
         k = plant.A[2, 0] * plant.B[0, 0] / lag
         angle = [1.0 + c["beta_p"] * a / k, c["beta_v"], c["beta_p"]]
