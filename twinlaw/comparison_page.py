@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from twinlaw import comparison_tables as tables
 from twinlaw.comparing import Compared, Wanted, spread_of
@@ -20,15 +21,8 @@ def page_text(
     rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError], command: str, out: str
 ) -> str:
     """The page; the same comparison gives the same bytes."""
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
     effects = tables.effect_rows(rows)
-    return environment.get_template("controllers.md.j2").render(
+    return _template().render(
         command=command,
         out=out,
         rows=[
@@ -37,17 +31,7 @@ def page_text(
         ],
         notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
         cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
-        figures=[
-            {
-                "name": name,
-                "title": figure.title,
-                "tables": [
-                    (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
-                    for axis in AXES
-                ],
-            }
-            for name, figure in FIGURES.items()
-        ],
+        figures=_figures(rows),
         eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
         angles=ANGLES,
         runs=wanted.trial.runs,
@@ -59,6 +43,32 @@ def page_text(
         effects=_markdown(*effects),
         verdict=verdict(rows),
     )
+
+
+def _template() -> Template:
+    environment = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template("controllers.md.j2")
+
+
+def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
+    """Each manoeuvre with its figures of merit, axis by axis."""
+    return [
+        {
+            "name": name,
+            "title": figure.title,
+            "tables": [
+                (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
+                for axis in AXES
+            ],
+        }
+        for name, figure in FIGURES.items()
+    ]
 
 
 def verdict(rows: Sequence[Compared]) -> str:

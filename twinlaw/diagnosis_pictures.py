@@ -1,6 +1,6 @@
 """The pictures of a diagnosis: predicted against measured curves, and maps of time, region and frequency."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,40 +88,8 @@ def worst_span(log: Predicted) -> NDArray[np.bool_]:
 
 
 def maps(diagnosis: Diagnosis) -> Section | None:
-    panels = []
-    if diagnosis.when:
-        panels.append(
-            Bars(
-                [100 * s.share for s in diagnosis.when],
-                [(s.start_s, s.end_s) for s in diagnosis.when],
-                "share [%]",
-                "time [s]",
-                (BLUE,),
-            )
-        )
-    for signal in dict.fromkeys(region.signal for region in diagnosis.regions):
-        name, unit, scale = shown(signal)
-        chosen = [region for region in diagnosis.regions if region.signal == signal]
-        panels.append(
-            Bars(
-                [100 * r.share for r in chosen],
-                [(scale * r.from_, scale * r.to) for r in chosen],
-                "share [%]",
-                f"{name} {unit}",
-                (ORANGE,),
-            )
-        )
-    if diagnosis.bands:
-        panels.append(
-            Bars(
-                [100 * b.share for b in diagnosis.bands],
-                [(max(b.from_Hz, 1e-2), b.to_Hz) for b in diagnosis.bands],
-                "share [%]",
-                "frequency [Hz]",
-                (SKY,),
-                True,
-            )
-        )
+    """Shares of the gap over time, over each signal and over frequency; None where the gap is nowhere in particular."""
+    panels = [*_times(diagnosis), *_regions(diagnosis), *_bands(diagnosis)]
     if not panels:
         return None
     rows = [panels[i : i + 3] for i in range(0, len(panels), 3)]
@@ -133,3 +101,23 @@ def maps(diagnosis: Diagnosis) -> Section | None:
         ),
         plots=[bars(r) for r in rows],
     )
+
+
+def _times(diagnosis: Diagnosis) -> Iterator[Bars]:
+    if diagnosis.when:
+        spans = [(part.start_s, part.end_s) for part in diagnosis.when]
+        yield Bars([100 * part.share for part in diagnosis.when], spans, "share [%]", "time [s]", (BLUE,))
+
+
+def _regions(diagnosis: Diagnosis) -> Iterator[Bars]:
+    for signal in dict.fromkeys(region.signal for region in diagnosis.regions):
+        name, unit, scale = shown(signal)
+        chosen = [region for region in diagnosis.regions if region.signal == signal]
+        spans = [(scale * region.from_, scale * region.to) for region in chosen]
+        yield Bars([100 * region.share for region in chosen], spans, "share [%]", f"{name} {unit}", (ORANGE,))
+
+
+def _bands(diagnosis: Diagnosis) -> Iterator[Bars]:
+    if diagnosis.bands:
+        spans = [(max(band.from_Hz, 1e-2), band.to_Hz) for band in diagnosis.bands]
+        yield Bars([100 * band.share for band in diagnosis.bands], spans, "share [%]", "frequency [Hz]", (SKY,), True)

@@ -63,6 +63,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--search", choices=tuple(METHODS), help="search the whole range first, for a start that may be far off"
     )
     parser.add_argument("--seed", type=options.count, default=1, help="of the search; default: %(default)s")
+    _add_log_arguments(parser)
+    options.as_json(parser)
+    options.logs(parser, "files", "FILES", "experiments, folders of them, run logs")
+
+
+def _add_log_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--window",
         type=float,
@@ -81,8 +87,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--prior", action="store_true", help="what the plant file knows (values, sd, correlation) counts as data"
     )
-    options.as_json(parser)
-    options.logs(parser, "files", "FILES", "experiments, folders of them, run logs")
 
 
 def run(chosen: argparse.Namespace) -> int:
