@@ -162,7 +162,7 @@ def check_identity(identity: Identity, where: str, table_digest: str | None, ari
             where=where,
             got=f"schema {identity.schema_hash}",
             expected=f"schema {PROTOCOL.schema_hash.hex()}",
-            remedy="flash the firmware of this version with `twinlaw flash`",
+            remedy="make its image anew with `twinlaw build`, then `twinlaw flash` if it is a real board",
         )
     if identity.arithmetic != arithmetic:
         raise BadInput(

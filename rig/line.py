@@ -143,7 +143,7 @@ def no_reply(where: str, request: str, before: Received, after: Received) -> Bad
             "check the board's supply and cable, press its reset button, flash it with `twinlaw flash`",
         )
     elif after.foreign > before.foreign:
-        got, remedy = "frames of another protocol", "flash the firmware of this version with `twinlaw flash`"
+        got, remedy = "frames of another protocol", "make its image anew with `twinlaw build`, then `twinlaw flash`"
     elif after.frames == before.frames:
         got = f"noise ({received} bytes without one sound frame)"
         remedy = "check that this is the board's port, its ground wire and its baud rate"
