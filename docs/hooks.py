@@ -26,8 +26,12 @@ def on_files(files: Files, config: Any) -> Files:
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
     """A link to a file of the checkout that is no page of the site becomes its name; one that shows a page's file name shows its title."""
-    named = re.sub(r"\[([^\]]+)\]\(\.\./([^)]+)\)", r"\1 (`\2`)", markdown)
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([^)]+)\)", _file, markdown)
     return re.sub(r"\[(?:docs/)?([\w-]+\.md)\]\(\1\)", lambda link: f"[{title(link[1])}]({link[1]})", named)
+
+
+def _file(link: re.Match[str]) -> str:
+    return f"`{link[2]}`" if link[1].strip("`") == link[2] else f"{link[1]} (`{link[2]}`)"
 
 
 def title(page: str) -> str:
