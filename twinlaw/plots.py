@@ -152,6 +152,7 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
         left = np.array([float(edge[0]) for edge in panel.edges])
         right = np.array([float(edge[1]) for edge in panel.edges])
         axes.bar(left, panel.heights, right - left, align="edge", color=colours, edgecolor="white", linewidth=0.5)
+        axes.locator_params("x", nbins=5)  # three panels a row leave no more room for numbers such as -17.5
     axes.set_ylabel(panel.ylabel)
     axes.set_xlabel(panel.xlabel)
     axes.set_axisbelow(True)
