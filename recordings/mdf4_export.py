@@ -10,7 +10,7 @@ import numpy as np
 
 from records.errors import BadInput
 from records.log import RunLog, sidecar_text
-from records.units import unit_suffix
+from records.units import unit_of
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
@@ -37,11 +37,6 @@ def mdf4_bytes(log: RunLog) -> bytes:
             return path.read_bytes()
     finally:
         recording.close()
-
-
-def unit_of(column: str) -> str:
-    """The unit that a column's name ends in; empty where it states none."""
-    return unit_suffix(column).replace("_s2", "/s^2").replace("_s", "/s")
 
 
 def _package() -> Any:

@@ -50,11 +50,15 @@ def unit_suffix(name: str) -> str:
     return next((unit for unit in _SUFFIXES if name.endswith(f"_{unit}")), "")
 
 
+def unit_of(name: str) -> str:
+    """The unit that a column's name ends in, as a person writes it; empty where it states none."""
+    return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s")
+
+
 def label(name: str) -> str:
     """A column's name as an axis shows it: "a_y [m/s^2]" of a_y_m_s2; one without a unit stays as it is."""
-    unit = unit_suffix(name)
-    shown = {"rad_s2": "rad/s^2", "rad_s": "rad/s", "m_s2": "m/s^2", "m_s": "m/s"}.get(unit, unit)
-    return f"{name.removesuffix(f'_{unit}')} [{shown}]" if unit else name
+    suffix = unit_suffix(name)
+    return f"{name.removesuffix(f'_{suffix}')} [{unit_of(name)}]" if suffix else name
 
 
 def _parts(unit: str) -> list[tuple[int, str]]:
