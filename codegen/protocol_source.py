@@ -2,22 +2,15 @@
 
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
+from toolchain.templates import text_templates
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
 def protocol_source(protocol: Protocol) -> dict[str, str]:
     """Return {"protocol.h": ..., "protocol.c": ...}: a pure function, the same text for the same declaration."""
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    environment = text_templates(_TEMPLATES)
     environment.filters["c_name"] = _c_name
     facts = {
         "protocol": protocol,

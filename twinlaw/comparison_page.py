@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
-
+from toolchain.templates import text_templates
 from twinlaw import comparison_tables as tables
 from twinlaw.comparing import Compared, Wanted, spread_of
 from verification.comparison.eq26 import ANGLES, FormError
@@ -22,38 +21,33 @@ def page_text(
 ) -> str:
     """The page; the same comparison gives the same bytes."""
     effects = tables.effect_rows(rows)
-    return _template().render(
-        command=command,
-        out=out,
-        rows=[
-            {"name": row.row.name, "title": row.row.title, "source": row.row.source, "digest": row.digest}
-            for row in rows
-        ],
-        notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
-        cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
-        figures=_figures(rows),
-        eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
-        angles=ANGLES,
-        runs=wanted.trial.runs,
-        seed=wanted.trial.seed,
-        spread=[(axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES],
-        filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
-        filtered_verdict=filtered_verdict(rows),
-        filtered=min(FILTERED, wanted.trial.runs),
-        effects=_markdown(*effects),
-        verdict=verdict(rows),
+    return (
+        text_templates(_TEMPLATES)
+        .get_template("controllers.md.j2")
+        .render(
+            command=command,
+            out=out,
+            rows=[
+                {"name": row.row.name, "title": row.row.title, "source": row.row.source, "digest": row.digest}
+                for row in rows
+            ],
+            notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
+            cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
+            figures=_figures(rows),
+            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
+            angles=ANGLES,
+            runs=wanted.trial.runs,
+            seed=wanted.trial.seed,
+            spread=[
+                (axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES
+            ],
+            filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
+            filtered_verdict=filtered_verdict(rows),
+            filtered=min(FILTERED, wanted.trial.runs),
+            effects=_markdown(*effects),
+            verdict=verdict(rows),
+        )
     )
-
-
-def _template() -> Template:
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    return environment.get_template("controllers.md.j2")
 
 
 def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:

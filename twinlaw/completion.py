@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from toolchain.templates import text_templates
 
 SHELLS = ("bash", "zsh", "fish")
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
@@ -78,13 +78,7 @@ def command_tree(parser: argparse.ArgumentParser, path: tuple[str, ...] = ("twin
 
 def completion_text(root: Command, shell: str) -> str:
     """The script for one of SHELLS; the same tree gives the same text."""
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    environment = text_templates(_TEMPLATES)
     environment.filters["quoted"] = _QUOTED[shell]
     environment.filters["spec"] = lambda text: re.sub(
         r"([\[\]:])", r"\\\1", text
