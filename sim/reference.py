@@ -1,8 +1,7 @@
 """The equations as plain NumPy functions: the readable reference that the compiled kernels are held against."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import sympy
@@ -12,38 +11,57 @@ from sim.model import TIME, Model
 from sim.slopes import jacobian
 
 Array = NDArray[np.float64]
+Function = Callable[..., Array]
 
 
-@dataclass(frozen=True)
 class Reference:
     """Rates and Jacobians of a model, each a function of (t_s, x, u, p, signs) with shapes (), (n,), (m,), (k,), (axes,).
 
-    `rates` returns dx/dt (n,); `A` its Jacobian in x (n, n), `B` in u (n, m) and `D_p` in p (n, k), `C` that of the outputs (r, n).
     `signs` holds the direction of dry friction of each axis; 0 leaves it out, as a linearisation must (sgn has no slope at rest).
+    Each is derived when it is first asked for: a rest point needs no slopes by parameters.
     """
 
-    rates: Callable[..., Array]
-    A: Callable[..., Array]
-    B: Callable[..., Array]
-    D_p: Callable[..., Array]
-    C: Callable[..., Array]
+    def __init__(self, model: Model) -> None:
+        self._model = model
+
+    @cached_property
+    def rates(self) -> Function:
+        """dx/dt (n,)."""
+        return _function(self._model, self._rates, flat=True)
+
+    @cached_property
+    def A(self) -> Function:
+        """Jacobian (n, n) of the rates in x."""
+        return _function(self._model, jacobian(self._rates, self._model.states))
+
+    @cached_property
+    def B(self) -> Function:
+        """Jacobian (n, m) of the rates in u."""
+        return _function(self._model, jacobian(self._rates, self._model.inputs))
+
+    @cached_property
+    def D_p(self) -> Function:
+        """Jacobian (n, k) of the rates in p."""
+        return _function(self._model, jacobian(self._rates, self._model.parameter_symbols))
+
+    @cached_property
+    def C(self) -> Function:
+        """Jacobian (r, n) of the outputs in x."""
+        outputs = sympy.Matrix(list(self._model.outputs.values()))
+        return _function(self._model, jacobian(outputs, self._model.states))
+
+    @cached_property
+    def _rates(self) -> sympy.Matrix:
+        return self._model.state_rates()
 
 
 @lru_cache(maxsize=64)
 def reference(model: Model) -> Reference:
-    """Derive rates and Jacobians from the symbolic equations of `model`, once for each model object."""
-    rates = model.state_rates()
-    outputs = sympy.Matrix(list(model.outputs.values()))
-    return Reference(
-        rates=_function(model, rates, flat=True),
-        A=_function(model, jacobian(rates, model.states)),
-        B=_function(model, jacobian(rates, model.inputs)),
-        D_p=_function(model, jacobian(rates, model.parameter_symbols)),
-        C=_function(model, jacobian(outputs, model.states)),
-    )
+    """The functions of `model`, once for each model object."""
+    return Reference(model)
 
 
-def _function(model: Model, expression: sympy.Matrix, *, flat: bool = False) -> Callable[..., Array]:
+def _function(model: Model, expression: sympy.Matrix, *, flat: bool = False) -> Function:
     arguments = [TIME, model.states, model.inputs, model.parameter_symbols, model.friction_signs]
     raw = sympy.lambdify(arguments, expression, modules="numpy", cse=True)
 
