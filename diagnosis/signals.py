@@ -1,7 +1,8 @@
 """What a flight went through as the filter predicts it, and the names under which forms speak of it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import sympy
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.ground import Ground
-from sim.model import TIME
+from sim.model import TIME, Model
 
 Array = NDArray[np.float64]
 
@@ -34,13 +35,10 @@ def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]])
     kit = ground.case.kit
     model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
     x = np.nan_to_num(_by_step(run.x[:, : len(model.states)], tape.row))
-    p = kit.bound.p
-    arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
-    given = (tape.t_s, *x.T, *tape.u.T, *p)
+    given = (tape.t_s, *x.T, *tape.u.T, *kit.bound.p)
 
     def value(expression: sympy.Expr) -> Array:
-        found = sympy.lambdify(arguments, expression, "numpy", cse=True)(*given)
-        return np.broadcast_to(np.asarray(found, float), tape.t_s.shape)
+        return np.broadcast_to(np.asarray(_function(model, expression)(*given), float), tape.t_s.shape)
 
     axes = {axis.name: axis for axis in model.axes if axis.position is not None}
     return Signals(
@@ -58,6 +56,13 @@ def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]])
         u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
         waves=waves,
     )
+
+
+@lru_cache(maxsize=256)
+def _function(model: Model, expression: sympy.Expr) -> Callable[..., Array]:
+    """An expression as a function of time, states, inputs and parameters: every look at a flight asks for the same ones."""
+    arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
+    return sympy.lambdify(arguments, expression, "numpy", cse=True)  # type: ignore[no-any-return]
 
 
 def _relative(inertia: Array) -> Array:
