@@ -130,16 +130,25 @@ class Filter:
             setattr(request, name, address)
         return request
 
-    def respond(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:
+    def respond(
+        self,
+        tape: Tape,
+        run: Pass,
+        values: Array,
+        targets: Sequence[int],
+        slots: Sequence[int],
+        into: Array | None = None,
+    ) -> Array:
         """Change of the whitened innovations, shape (rows, slots, columns), by small disturbances `values` (steps, targets, columns).
 
         A target below the number of states is a state, disturbed over the step from an instant; beyond, an output at that instant.
+        The answer is written `into` zeros of that shape where they are given.
         """
         assert run.gains is not None
         assert values.shape[2] <= MAX_COLUMNS
         F, K, H = run.gains
         width, columns = max(slots) + 1, values.shape[2]
-        dw = np.zeros((tape.rows, width, columns))
+        dw = np.zeros((tape.rows, width, columns)) if into is None else into
         arrays: dict[str, NDArray[Any] | None] = {
             "F": F,
             "K": K,

@@ -76,11 +76,16 @@ class Ground:
         if target >= own:
             target += self.filter.states - own
 
-        def over(tape: Tape, run: Pass, value: Array) -> Array:
-            dw = self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots)
-            return dw.reshape(-1, value.shape[1])
+        width = max(self.case.slots) + 1
+        found = np.zeros((sum(tape.rows for tape in self.tapes) * width, values[0].shape[1]))
+        ends = np.cumsum([tape.rows * width for tape in self.tapes])[:-1]
 
-        return np.concatenate(each(over, self.tapes, self.runs, values))
+        def over(tape: Tape, run: Pass, value: Array, room: Array) -> None:
+            into = room.reshape(tape.rows, width, -1)
+            self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots, into)
+
+        each(over, self.tapes, self.runs, values, np.split(found, ends))
+        return found
 
     def steps(self, target: int) -> tuple[Array, Scores]:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""
