@@ -122,11 +122,10 @@ def _drive(kit: Kit, tape: Tape) -> Array:
     """What an unknown command, as far from the last as commands are from row to row, does to the state that it drives."""
     model = kit.bound.model
     found = np.zeros(len(kit.states))
-    known = dict(zip(model.parameter_symbols, kit.bound.p.tolist(), strict=True))
     for rotor in model.places.rotors.values():
         if rotor.drive is None or str(rotor.speed) not in kit.states:
             continue
-        gain = float(sympy.sympify(sympy.diff(rotor.drive, rotor.variable)).subs(known))
+        gain = kit.bound.number(sympy.diff(rotor.drive, rotor.variable))
         moves = np.diff(tape.u[:, model.inputs.index(rotor.variable)])
         found[kit.states.index(str(rotor.speed))] = gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
     return found

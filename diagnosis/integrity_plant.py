@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 
 from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from diagnosis.integrity_locked import locked_findings
@@ -37,18 +36,13 @@ class PlantFacts:
 def plant_facts(bound: BoundPlant) -> PlantFacts:
     """Steps, limits and stops of a bound plant; those that it has not are left out."""
     model = bound.model
-    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
     stops = {
-        str(axis.position): (_value(axis.lower, values), _value(axis.upper, values))
+        str(axis.position): (bound.number(axis.lower), bound.number(axis.upper))
         for axis in model.axes
         if axis.position is not None and axis.lower is not None and axis.upper is not None
     }
-    limits = {str(u): (_value(low, values), _value(high, values)) for u, (low, high) in model.input_limits.items()}
+    limits = {str(variable): bound.limits(variable) for variable in model.inputs}
     return PlantFacts(dict(bound.plant.sensors), limits, stops)
-
-
-def _value(expression: sympy.Expr, values: Mapping[sympy.Symbol, float]) -> float:
-    return float(sympy.sympify(expression).subs(values))
 
 
 def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:

@@ -23,7 +23,7 @@ from diagnosis.lagged import lagged
 from records.errors import BadInput
 from records.files import write_atomic
 from records.reading import read_text
-from sim.bind import BoundPlant
+from sim.bind import BoundPlant, named_values
 from sim.effects.api import combined, library, redundant
 from sim.effects.effect import Effect, coefficient
 from sim.model import Model
@@ -75,9 +75,8 @@ class Kit:
     @cached_property
     def frictionless(self) -> frozenset[str]:
         """Axes without dry friction as stated."""
-        known = dict(zip(self.bound.model.parameter_symbols, self.bound.p.tolist(), strict=True))
-        axes = self.bound.model.axes
-        return frozenset(axis.name for axis in axes if sympy.sympify(axis.coulomb).subs(known) == 0)
+        model, known = self.bound.model, named_values(self.bound.model, self.bound.p)
+        return frozenset(axis.name for axis in model.axes if sympy.sympify(axis.coulomb).xreplace(known) == 0)
 
     @property
     def own(self) -> int:

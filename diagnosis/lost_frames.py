@@ -27,6 +27,7 @@ from diagnosis.hypothesis import Supposed, coefficients
 from diagnosis.inputs import LOST_FRAMES, lost_with
 from diagnosis.tape import Tape
 from diagnosis.unrest import with_unrest
+from sim.bind import evaluated
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
@@ -120,13 +121,13 @@ def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
     """Answers (rows, APART, slots, drives) of the innovations from a frame's own row on to a unit of each drive's input over that frame."""
     tape, run, supposed = ground.tapes[index], ground.runs[index], ground.fit.supposed
     p = coefficients(case, case.kit.variant(supposed.effects), supposed)
-    known = {symbol: p[place] for place, symbol in enumerate(case.kit.bound.model.parameter_symbols)}
+    model = case.kit.bound.model
     rows, drives = np.arange(len(tape.t_s)), _drives(case)
     h = np.append(np.diff(tape.t_s), 0.0)
     found = []
     for state, gain in drives.values():
         values = np.zeros((len(rows), 1, APART))
-        values[rows, 0, rows % APART] = h * float(sympy.sympify(gain).subs(known))
+        values[rows, 0, rows % APART] = h * evaluated(model, p[: case.kit.own], gain)
         found.append(ground.filter.respond(tape, run, values, [state], case.slots))
     return _unfolded(np.stack(found, axis=2))
 

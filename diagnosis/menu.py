@@ -53,7 +53,6 @@ class Room:
 def rooms(case: Case) -> tuple[Room, ...]:
     """The room of every axis with a position, from what the logs show and where its stops are."""
     model = case.kit.bound.model
-    values = dict(zip(model.parameter_symbols, case.kit.bound.p, strict=True))
     found = []
     for axis in model.axes:
         if axis.position is None or axis.name not in model.places.axes:
@@ -63,7 +62,7 @@ def rooms(case: Case) -> tuple[Room, ...]:
         y = np.concatenate([flight.log.y[:, column] for flight in case.flights])
         seen = np.percentile(y[np.isfinite(y)], [5.0, 95.0]) if np.isfinite(y).any() else np.zeros(2)
         low, high = (
-            edge * WIDEST_RAD if stop is None else STOPS * float(stop.subs(values))
+            edge * WIDEST_RAD if stop is None else STOPS * case.kit.bound.number(stop)
             for edge, stop in ((-1.0, axis.lower), (1.0, axis.upper))
         )
         middle = float(np.clip(seen.mean(), low, high))
@@ -130,10 +129,7 @@ class _Maker:
         self._middle = np.array([entry.middle for entry in room])
         self._reach = np.array([entry.reach for entry in room])
         model = case.kit.bound.model
-        values = dict(zip(model.parameter_symbols, case.kit.bound.p, strict=True))
-        self._span = np.array(
-            [float((high - low).subs(values)) for low, high in (model.input_limits[u] for u in model.inputs)]
-        )
+        self._span = np.array([np.ptp(case.kit.bound.limits(variable)) for variable in model.inputs])
 
     def lively(self, name: str, text: str, effort: float, locked: tuple[str, ...] = (), speeds: bool = False) -> Plan:
         """Steps of every axis that is free, at times that do not coincide."""

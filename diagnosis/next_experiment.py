@@ -164,10 +164,9 @@ def _part(case: Case, column: str) -> str:
 def _floors(case: Case) -> dict[str, float]:
     """What a reader can see of each column: some encoder steps, a share of an input's range."""
     model, bound = case.kit.bound.model, case.kit.bound
-    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
     found = {name: OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
     for variable in model.inputs:
-        low, high = (float(limit.subs(values)) for limit in model.input_limits[variable])
+        low, high = bound.limits(variable)
         found[str(variable)] = INPUT_FLOOR * (high - low)
     return found
 

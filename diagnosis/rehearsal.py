@@ -101,13 +101,12 @@ def _without_weights(plan: Plan, supposed: Supposed) -> Supposed:
 def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
     """Whether no free axis touched a stop while its law was on."""
     bound = case.kit.bound
-    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
     flying = ~plan.off
     for axis in bound.model.axes:
         if axis.position is None or axis.name in plan.locked or not flying.any() or plan.off.any():
             continue
         way = x[flying, case.kit.states.index(str(axis.position))]
-        low, high = (None if s is None else float(s.subs(values)) for s in (axis.lower, axis.upper))
+        low, high = (None if s is None else bound.number(s) for s in (axis.lower, axis.upper))
         if (low is not None and way.min() <= low + 1e-6) or (high is not None and way.max() >= high - 1e-6):
             return False
     return True

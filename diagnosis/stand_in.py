@@ -67,8 +67,7 @@ def stand_in(
     tracked = [model.states.index(axis.position) for axis, _ in free]
     if not free or len(tracked) > len(model.inputs):
         return None
-    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
-    limits = np.array([[float(x.subs(values)) for x in model.input_limits[variable]] for variable in model.inputs])
+    limits = np.array([bound.limits(variable) for variable in model.inputs])
     own = np.array([s for _, s in free])
     gains = _gains(bound, rest, kept, tracked, own, INPUT_SHARE * np.ptp(limits, axis=1), period_s)
     if gains is None:

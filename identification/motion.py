@@ -9,6 +9,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from sim.bind import evaluated
 from sim.kernel import kernel
 from sim.model import Model
 from sim.sensitivities import column_names
@@ -77,8 +78,7 @@ def _slopes(model: Model, p: Array) -> tuple[Array, Array]:
     entries = _stop_slopes(model)
     result = np.zeros((2, max(1, len(model.axes)), p.size))
     for side, axis, column, slope in entries:
-        known = slope if slope.is_Number else slope.subs(dict(zip(model.parameter_symbols, p, strict=True)))
-        result[side, axis, column] = float(known)
+        result[side, axis, column] = evaluated(model, p, slope)
     return result[0], result[1]
 
 

@@ -51,8 +51,7 @@ def _anywhere(bound: BoundPlant, axis: Axis) -> tuple[float, float]:
     """Mean and standard deviation of a position that may be anywhere between its stops."""
     if axis.lower is None or axis.upper is None:
         return 0.0, ANYWHERE
-    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
-    lower, upper = float(axis.lower.xreplace(values)), float(axis.upper.xreplace(values))
+    lower, upper = bound.number(axis.lower), bound.number(axis.upper)
     return (lower + upper) / 2.0, (upper - lower) / np.sqrt(12.0)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+import sympy
 from numpy.typing import NDArray
 
 from records.errors import BadInput
@@ -36,6 +37,15 @@ class BoundPlant:
     def parameter(self, name: str) -> float:
         """The value of a parameter that is one number."""
         return self.plant.parameters[name].values[0]
+
+    def number(self, expression: sympy.Expr | float) -> float:
+        """The value of an expression in the parameters alone, a stop or a limit say."""
+        return evaluated(self.model, self.p, expression)
+
+    def limits(self, variable: sympy.Symbol) -> tuple[float, float]:
+        """The least and the largest value of an input."""
+        low, high = self.model.input_limits[variable]
+        return self.number(low), self.number(high)
 
 
 def bind(plant: Plant) -> BoundPlant:
@@ -106,10 +116,19 @@ def _check_parameter(spec: ParameterSpec, entry: Parameter, where: str) -> None:
             )
 
 
+def evaluated(model: Model, p: NDArray[np.float64], expression: sympy.Expr | float) -> float:
+    """The value of an expression in the parameters p (parameters,) of a model alone."""
+    return float(sympy.sympify(expression).xreplace(named_values(model, p)))
+
+
+def named_values(model: Model, p: NDArray[np.float64]) -> dict[sympy.Symbol, float]:
+    """The parameters p (parameters,) of a model by their symbols."""
+    return dict(zip(model.parameter_symbols, p.tolist(), strict=True))
+
+
 def _check_limits(model: Model, p: NDArray[np.float64], where: str) -> None:
-    values = dict(zip(model.parameter_symbols, p, strict=True))
     for variable, (lower, upper) in model.input_limits.items():
-        low, high = float(lower.subs(values)), float(upper.subs(values))
+        low, high = evaluated(model, p, lower), evaluated(model, p, upper)
         if low >= high:
             got = f"{lower} = {low:g} and {upper} = {high:g}"
             raise BadInput(f"limits of {variable}", where, got, f"{lower} < {upper}", "widen the range")

@@ -1,10 +1,8 @@
 """The rest points of a plant: constant inputs and states that hold its axes at given positions."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 from numpy.typing import NDArray
 
 from records.errors import BadInput
@@ -18,7 +16,6 @@ MAX_ITERATIONS = 60
 STEP_TOLERANCE = 1e-14
 RATE_TOLERANCE = 1e-6  # of a rate at a rest point; where there is none, the least rate is far larger
 Array = NDArray[np.float64]
-Values = Mapping[sympy.Symbol, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +37,10 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     model = bound.model
     arms = [axis for axis in model.axes if axis.position is not None]
     positions = dict(zip((axis.position for axis in arms), positions_rad, strict=False))
-    values = dict(zip(model.parameter_symbols, bound.p, strict=True))
     for axis in arms:
-        _check_stops(bound, axis, positions.get(axis.position, 0.0), values)
+        _check_stops(bound, axis, positions.get(axis.position, 0.0))
     x = np.array([positions.get(state, 0.0) for state in model.states])
-    u = np.array([_middle(model.input_limits[variable], values) for variable in model.inputs])
+    u = np.array([sum(bound.limits(variable)) / 2.0 for variable in model.inputs])
     found = _solve(bound, *_begin(bound, x, u, positions_rad))
     if found is None:
         raise BadInput(
@@ -55,7 +51,7 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
             "check the parameters of rotors and gravity",
         )
     x0, u0 = found
-    _check_inputs(bound, u0, values, positions_rad)
+    _check_inputs(bound, u0, positions_rad)
     return OperatingPoint(positions_rad[0] if positions_rad else 0.0, x0, u0)
 
 
@@ -98,13 +94,9 @@ def _newton_step(jacobian: Array, rates: Array) -> Array:
         return np.asarray(np.linalg.lstsq(jacobian, rates, rcond=None)[0])
 
 
-def _middle(limits: tuple[sympy.Expr, sympy.Expr], values: Values) -> float:
-    return float(sum(limit.xreplace(values) for limit in limits)) / 2.0
-
-
-def _check_stops(bound: BoundPlant, axis: Axis, position: float, values: Values) -> None:
-    lower = -np.inf if axis.lower is None else float(axis.lower.xreplace(values))
-    upper = np.inf if axis.upper is None else float(axis.upper.xreplace(values))
+def _check_stops(bound: BoundPlant, axis: Axis, position: float) -> None:
+    lower = -np.inf if axis.lower is None else bound.number(axis.lower)
+    upper = np.inf if axis.upper is None else bound.number(axis.upper)
     if not lower <= position <= upper:
         raise BadInput(
             f"{axis.name} angle",
@@ -115,9 +107,9 @@ def _check_stops(bound: BoundPlant, axis: Axis, position: float, values: Values)
         )
 
 
-def _check_inputs(bound: BoundPlant, u0: Array, values: Values, positions_rad: tuple[float, ...]) -> None:
+def _check_inputs(bound: BoundPlant, u0: Array, positions_rad: tuple[float, ...]) -> None:
     for variable, value in zip(bound.model.inputs, u0, strict=True):
-        lower, upper = (float(limit.xreplace(values)) for limit in bound.model.input_limits[variable])
+        lower, upper = bound.limits(variable)
         if not lower <= value <= upper:
             raise BadInput(
                 f"input {variable}",

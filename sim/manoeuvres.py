@@ -106,6 +106,5 @@ def at_rest(bound: BoundPlant) -> Array:
     x0 = np.zeros(len(model.states))
     first = model.axes[0]
     if first.lower is not None and first.position is not None:
-        values = dict(zip(model.parameter_symbols, bound.p, strict=True))
-        x0[model.states.index(first.position)] = float(first.lower.subs(values))
+        x0[model.states.index(first.position)] = bound.number(first.lower)
     return x0

@@ -149,8 +149,7 @@ def _stop_slopes(bound: BoundPlant, side: int) -> Array:
     model = bound.model
     slopes = np.zeros((max(1, len(model.axes)), len(model.parameter_symbols)))
     for row, column, slope in _stop_derivatives(model, side):
-        known = slope if slope.is_Number else slope.subs(dict(zip(model.parameter_symbols, bound.p, strict=True)))
-        slopes[row, column] = float(known)
+        slopes[row, column] = bound.number(slope)
     return slopes
 
 

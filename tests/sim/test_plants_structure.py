@@ -109,9 +109,8 @@ def test_the_compiled_kernel_follows_the_equations(name: str) -> None:
 @recorded_plant
 def test_an_input_beyond_its_limit_acts_as_the_limit(name: str) -> None:
     plant = bound(name)
-    values = dict(zip(plant.model.parameter_symbols, plant.p, strict=True))
-    upper = np.array([float(high.subs(values)) for _, high in plant.model.input_limits.values()])
-    lower = np.array([float(low.subs(values)) for low, _ in plant.model.input_limits.values()])
+    upper = np.array([plant.limits(u)[1] for u in plant.model.inputs])
+    lower = np.array([plant.limits(u)[0] for u in plant.model.inputs])
     t_s, x0 = np.arange(50) * 0.002, np.zeros(len(plant.model.states))
     for limit, beyond in ((upper, upper + 6.0), (lower, lower - 6.0)):
         at, over = (simulate(plant, t_s, x0, np.tile(drive, (50, 1))).y for drive in (limit, beyond))
