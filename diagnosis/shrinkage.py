@@ -56,19 +56,17 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     squares = {bar: _squares(predicted, bar) for bar in BARS}
     floor = np.sqrt([case.flights[0].tape.single[case.kit.outputs.index(name)] for name in outputs])
     bars = {bar: _named(outputs, np.sqrt(_means(squares[bar]))) for bar in BARS}
-    whole = np.arange(len(squares["after"]))
-    fraction = _fraction(squares, floor, whole)
-    rng = np.random.default_rng(SEED)
-    drawn = [_fraction(squares, floor, rng.integers(0, len(whole), len(whole))) for _ in range(DRAWS)]
-    spread = [value for value in drawn if value is not None]
-    interval = (float(np.percentile(spread, 2.5)), float(np.percentile(spread, 97.5))) if spread else None
+    count = len(squares["after"])
+    fraction = _fractions(squares, floor, np.ones((1, count)))
+    spread = _fractions(squares, floor, _drawn(count))
+    interval = (float(np.percentile(spread, 2.5)), float(np.percentile(spread, 97.5))) if spread.size else None
     return Shrinkage(
         rms_nominal=bars["nominal"],
         rms_before=bars["before"],
         rms_after=bars["after"],
         rms_floor=_named(outputs, floor),
-        fraction=fraction,
-        fraction_ci95=None if fraction is None else interval,
+        fraction=float(fraction[0]) if fraction.size else None,
+        fraction_ci95=interval if fraction.size else None,
         agreement=agreements(outputs, [(entry.t_s, entry.y, entry.by) for entry in predicted]),
         closed_loop=closed_loop(case, [e.name for e in predicted], tables, predicted[0].bars) if any(tables) else None,
     )
@@ -88,25 +86,38 @@ def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
         square = (entry.by[bar] - entry.y) ** 2
         held: NDArray[np.bool_] = np.asarray(np.isfinite(entry.y).any(axis=0))
         for first, last in windows(entry.t_s):
-            if held.any() and np.isfinite(square[first:last, held]).any(axis=0).all():
-                found.append(np.full(len(held), np.nan))
-                found[-1][held] = _means(square[first:last, held])
+            means = _means(square[first:last])
+            if held.any() and np.isfinite(means[held]).all():
+                found.append(np.where(held, means, np.nan))
     return np.array(found) if found else np.full((1, predicted[0].y.shape[1]), np.nan)
 
 
-def _fraction(squares: Mapping[str, Array], floor: Array, rows: NDArray[np.int64]) -> float | None:
-    before, after = (_means(squares[bar][rows[rows < len(squares[bar])]]) for bar in ("before", "after"))
-    removable = float(np.nansum(before / floor**2 - 1.0))
-    if not np.isfinite(removable) or removable <= 0.0:
-        return None
-    return float(np.nansum((before - after) / floor**2) / removable)
+def _drawn(count: int) -> Array:
+    """How often each of `count` windows is drawn, (DRAWS, count), with replacement."""
+    rng = np.random.default_rng(SEED)
+    return np.stack([np.bincount(rng.integers(0, count, count), minlength=count) for _ in range(DRAWS)]).astype(float)
+
+
+def _fractions(squares: Mapping[str, Array], floor: Array, weights: Array) -> Array:
+    """Shares of the removable error that are gone, one for each row of `weights` (draws, windows) under which anything is removable."""
+    before, after = (_weighted_means(squares[bar], weights) / floor**2 for bar in ("before", "after"))
+    removable = np.nansum(before - 1.0, axis=1)
+    gone = np.nansum(before - after, axis=1)
+    return np.asarray(gone[removable > 0.0] / removable[removable > 0.0])
 
 
 def _means(columns: Array) -> Array:
     """Means of the columns (rows, k) without their NaN; NaN for a column of nothing else."""
-    count = np.isfinite(columns).sum(axis=0)
-    total = np.where(np.isfinite(columns), columns, 0.0).sum(axis=0)
-    return np.asarray(np.divide(total, count, out=np.full(len(total), np.nan), where=count > 0))
+    return np.asarray(_weighted_means(columns, np.ones((1, len(columns))))[0])
+
+
+def _weighted_means(columns: Array, weights: Array) -> Array:
+    """Means (draws, k) of the columns (rows, k) without their NaN, under each row of `weights` (draws, rows or more)."""
+    rows = min(len(columns), weights.shape[1])
+    known = np.isfinite(columns[:rows])
+    count = weights[:, :rows] @ known
+    total = weights[:, :rows] @ np.where(known, columns[:rows], 0.0)
+    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0.0))
 
 
 def _named(outputs: Sequence[str], values: Array) -> dict[str, float]:
