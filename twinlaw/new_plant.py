@@ -1,8 +1,10 @@
 """The two files that a new plant begins with: its equations and its parameters, which work as they are and say what to change."""
 
+import builtins
 import keyword
 import re
 from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -14,14 +16,7 @@ TEMPLATES: Mapping[str, str] = {"sim/plants/{}.py": "plant.py.j2", "plants/{}.to
 
 def plant_files(name: str) -> dict[Path, str]:
     """Path inside the project -> text of a new plant's files; raises BadInput where `name` cannot be a plant's."""
-    if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or keyword.iskeyword(name):
-        raise BadInput(
-            what="name of a plant",
-            where="new-plant",
-            got=repr(name[:40]),
-            expected="a Python module's name: small letters, digits and _, a letter first",
-            remedy="write my_arm, say",
-        )
+    _check(name)
     templates = Environment(
         loader=FileSystemLoader(Path(__file__).with_name("templates")),
         undefined=StrictUndefined,
@@ -32,6 +27,17 @@ def plant_files(name: str) -> dict[Path, str]:
         Path(path.format(name)): templates.get_template(file).render(name=name, title=title)
         for path, file in TEMPLATES.items()
     }
+
+
+def _check(name: str) -> None:
+    """Raise BadInput unless a module of this name is possible and hides nothing else, in its folder as little as in the register."""
+    if not re.fullmatch(r"[a-z][a-z0-9_]{,63}", name) or keyword.iskeyword(name):
+        got = repr(name) if len(name) <= 40 else f"{name[:40]!r} and so on, {len(name)} characters"
+        expected = "a Python module's name: small letters, digits and _, a letter first, 64 at most"
+        raise BadInput("name of a plant", "new-plant", got, expected, "write my_arm, say")
+    if keyword.issoftkeyword(name) or hasattr(builtins, name) or find_spec(name) is not None:
+        got, remedy = f"{name!r}, which means something else in Python here", f"write my_{name}, say"
+        raise BadInput("name of a plant", "new-plant", got, "a name of its own", remedy)
 
 
 def rows_to_add(name: str) -> tuple[str, str]:

@@ -64,13 +64,31 @@ def test_a_program_is_told_files_and_rows(project: Path, capsys: pytest.CaptureF
     assert told["rows"] == ["    crane,", '    "crane": crane.model,']
 
 
-@pytest.mark.parametrize("name", ["My arm", "2arm", "class", "", "../x", "a" * 300 + "!"])
+@pytest.mark.parametrize("name", ["My arm", "2arm", "class", "", "..", "../x", "arm\n", "a" * 65, "a" * 300 + "!"])
 def test_a_name_that_no_module_can_have_is_refused(
     name: str, project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["new-plant", name, "--project", str(project)]) == 2
     assert "name of a plant" in capsys.readouterr().err
     assert list((project / "plants").iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["numpy", "sympy", "sim", "records", "test", "math", "list", "match"])
+def test_a_name_that_hides_a_module_or_a_word_of_python_is_refused(
+    name: str, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # A file begun in its own folder, as editors do, would import sim/plants/numpy.py where it asks for NumPy.
+    assert main(["new-plant", name, "--project", str(project)]) == 2
+    assert f"write my_{name}" in capsys.readouterr().err
+    assert list((project / "plants").iterdir()) == []
+
+
+def test_a_second_file_that_cannot_be_written_leaves_none(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (project / "plants").rmdir()
+    (project / "plants").write_text("a file where the folder should be", encoding="utf-8")
+    assert main(["new-plant", "crane", "--project", str(project)]) == 2
+    assert "crane.toml" in capsys.readouterr().err
+    assert not (project / "sim" / "plants" / "crane.py").exists()
 
 
 def test_what_is_there_is_not_touched(project: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,6 +6,7 @@ there already are not touched.
 
 import argparse
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 from records.errors import BadInput
@@ -24,6 +25,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--project", type=Path, default=PROJECT, metavar="DIR", help="where sim/ and plants/ are; default: this project"
     )
     options.as_json(parser)
+
+
+def _write_all(files: Mapping[Path, str]) -> None:
+    """Write every file, or, where one cannot be written, leave none."""
+    written: list[Path] = []
+    try:
+        for path, text in files.items():
+            write_atomic(path, text)
+            written.append(path)
+    except BadInput:
+        for path in written:
+            path.unlink(missing_ok=True)
+        raise
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -46,8 +60,7 @@ def run(chosen: argparse.Namespace) -> int:
             expected="a name that no plant has",
             remedy="take another name, or remove the file yourself",
         )
-    for path, text in files.items():
-        write_atomic(path, text)
+    _write_all(files)
     rows = rows_to_add(chosen.name)
     if chosen.json:
         print(json.dumps({"files": [str(path) for path in files], "register": REGISTER, "rows": list(rows)}))
