@@ -1,17 +1,20 @@
 """The command `twinlaw`: one verb per file of twinlaw/verbs, named in the order of the work.
 
-Exit status: 0 done, 1 a verification failed, 2 bad input (one line on stderr: where, what, got, expected, remedy).
+Exit status: 0 done, 1 a verification failed, 2 bad input (one line on stderr: where, what, got, expected, remedy; with --json the same as
+an object on stdout).
 """
 
+import json
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
 from twinlaw import console
-from twinlaw.parser import build_parser
+from twinlaw.parser import WrongCommandLine, build_parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -21,13 +24,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
     try:
-        options = build_parser(words[:1]).parse_args(words)
-        status = int(options.run(options))
+        status = _obey(words)
         sys.stdout.flush()  # here, where a full disk can still be told
         return status
-    except BadInput as error:
-        console.fail(str(error))
-        return 2
     except VerificationFailed as error:
         console.fail(str(error))
         return 1
@@ -45,6 +44,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt as stop:
         console.fail(f"interrupted; {str(stop) or 'files already written are whole, the others were not begun'}")
         return 128 + signal.SIGINT
+
+
+def _obey(words: Sequence[str]) -> int:
+    """Run the verb; what cannot be used is told in one line, and to a program as an object too."""
+    try:
+        options = build_parser(words[:1]).parse_args(words)
+        return int(options.run(options))
+    except WrongCommandLine as error:
+        _tell_program(words, {"error": error.line})
+        raise
+    except BadInput as error:
+        console.fail(str(error))
+        _tell_program(words, {"error": str(error), **asdict(error)})
+        return 2
+
+
+def _tell_program(words: Sequence[str], content: Mapping[str, str]) -> None:
+    if "--json" in words:
+        print(json.dumps(content), flush=True)
 
 
 def _stand_in_for_closed_streams() -> None:

@@ -1,7 +1,6 @@
 """The parser of the command line: all verbs by name, with the options of those that are asked for."""
 
 import argparse
-import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -12,13 +11,22 @@ DESCRIPTION = "From a plant's equations to a verified flight of a microcontrolle
 EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
 
 
+class WrongCommandLine(SystemExit):
+    """Exit status 2, and the line that has been told."""
+
+    def __init__(self, line: str) -> None:
+        super().__init__(2)
+        self.line = line
+
+
 class Parser(argparse.ArgumentParser):
     """A parser that tells what is wrong with the command line in one line, as all else is told."""
 
     def error(self, message: str) -> NoReturn:
         """Leave with exit status 2."""
-        console.fail(f"{message}; `{self.prog} --help` names what there is")
-        sys.exit(2)
+        line = f"{message}; `{self.prog} --help` names what there is"
+        console.fail(line)
+        raise WrongCommandLine(line)
 
 
 def build_parser(asked: Sequence[str]) -> Parser:

@@ -142,6 +142,19 @@ def test_a_wrong_command_line_is_one_clear_line(
         assert word in said.err
 
 
+def test_what_is_wrong_is_an_object_for_a_program_and_the_same_line_on_stderr(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["design", "--json", "--plant", str(tmp_path / "none.toml"), "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr()
+    told = json.loads(said.out)
+    assert set(told) == {"error", "what", "where", "got", "expected", "remedy"}
+    assert (told["error"], told["where"]) == (said.err.partition("error: ")[2].strip(), str(tmp_path / "none.toml"))
+    with pytest.raises(SystemExit):
+        main(["design", "--json", "--plnt", "x"])
+    assert "--plnt" in json.loads(capsys.readouterr().out)["error"]
+
+
 def test_a_plant_file_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _refused(["run", "--plant", str(tmp_path / "none.toml"), "--out", str(tmp_path / "out")], ["none.toml"], capsys)
     assert not (tmp_path / "out").exists()
