@@ -1,5 +1,6 @@
 """Files that are either whole or not there."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterable
@@ -24,8 +25,19 @@ def write_atomic(path: Path, content: str | bytes) -> None:
             stream.write(data)
         Path(name).chmod(0o644)
         Path(name).replace(path)
-    except OSError as error:
+    except BaseException as error:  # Ctrl-C too must leave nothing beside it
         Path(name).unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise _unwritable(path, error) from error
+        raise
+
+
+def demand_writable(path: Path) -> None:
+    """Raise BadInput where `write_atomic` could not write `path`, without writing it; makes the folder."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=path.parent).close()
+    except OSError as error:
         raise _unwritable(path, error) from error
 
 
@@ -41,10 +53,8 @@ def remove_all(paths: Iterable[Path]) -> None:
 
 
 def _unwritable(path: Path, error: OSError) -> BadInput:
-    return BadInput(
-        what="output file",
-        where=str(path),
-        got=error.strerror or str(error),
-        expected="a folder that can be written",
-        remedy="choose another --out or change the folder's permissions",
-    )
+    got = error.strerror or str(error)
+    if error.errno in {errno.ENOSPC, errno.EDQUOT}:
+        return BadInput("output file", str(path), got, "room for it", "make room, or choose another --out")
+    expected, remedy = "a folder that can be written", "choose another --out or change the folder's permissions"
+    return BadInput("output file", str(path), got, expected, remedy)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from records import checks
 from records.errors import BadInput
-from records.files import write_atomic
+from records.files import demand_writable, write_atomic
 from records.log_csv import read_rows, rows_text
 from records.reading import read_toml
 from records.source import Source, parse_source, source_table
@@ -67,6 +67,7 @@ class RunLog:
 
 def save_log(path: Path, log: RunLog) -> None:
     """Write `path` (CSV) and its sidecar NAME.toml; reading them back gives the same numbers. Raises BadInput when unwritable."""
+    demand_log_name(path)
     sidecar = sidecar_text(log)
     write_atomic(path, csv_text(log))
     try:
@@ -74,6 +75,19 @@ def save_log(path: Path, log: RunLog) -> None:
     except BadInput:
         path.unlink(missing_ok=True)
         raise
+
+
+def demand_log_name(path: Path) -> None:
+    """Raise BadInput where the log would have the name of its own sidecar, or of a folder."""
+    if path.suffix == ".toml" or path.is_dir():
+        got = "a folder" if path.is_dir() else "the name of a log's sidecar"
+        raise BadInput("run log", str(path), got, "a file NAME.csv", "choose another name")
+
+
+def demand_log_place(path: Path) -> None:
+    """Raise BadInput now where `save_log` would later find that nothing can be written there, after a flight that is lost then."""
+    demand_log_name(path)
+    demand_writable(path)
 
 
 def csv_text(log: RunLog) -> str:

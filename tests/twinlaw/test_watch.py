@@ -278,6 +278,9 @@ def test_a_log_is_replayed_paused_sped_up_and_begun_again(watch: Open, carried: 
         (["--port", "{carried}/hop.csv", "--plant", "plants/aeroshield.toml"], "plant"),
         (["--port", "{carried}/hop.csv", "--fly"], "--fly"),
         (["--port", "{carried}/hop.csv", "--record", "x.csv"], "--record"),
+        (["--record", "{carried}"], "a folder"),
+        (["--record", "flown.toml"], "NAME.csv"),
+        (["--record", "/dev/null/flown.csv"], "flown.csv"),
         (["--rig", "plants/aeroshield.toml"], "rig"),
         (["--plant", "plants/quanser_aero.toml"], "table"),
         (["--table", "missing.json"], "missing.json"),
@@ -335,6 +338,8 @@ def test_ctrl_c_disarms_and_a_host_that_dies_leaves_the_board_to_make_itself_saf
             page.next("rows", lambda content: content["u"][0][-1] > 0.0)
             process.send_signal(way)
             status = process.wait(PATIENCE_S)
+            assert process.stdout is not None
+            last_words = process.stdout.read()
         assert status == (0 if way is signal.SIGINT else -way)
         with BoardClient.connect(board.path, timeout_s=1.0) as client:
             until(lambda: client.health().state in ("DISARMED", "LOST"))
@@ -343,6 +348,7 @@ def test_ctrl_c_disarms_and_a_host_that_dies_leaves_the_board_to_make_itself_saf
     if way is signal.SIGINT:
         log = load_log(tmp_path / "flown.csv", log_columns(MODELS["ce150"]()))
         assert len(log.t_s) > 1
+        assert json.loads(last_words) == {"recorded": str(tmp_path / "flown.csv"), "rows": len(log.t_s)}
         assert log.table_digest == json.loads((carried / "controller.json").read_text())["digest"]
     else:
         assert not os.listdir(tmp_path)

@@ -15,7 +15,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from diagnosis.ahead import Lookahead
 from records.errors import BadInput
-from records.log import save_log
+from records.log import demand_log_place, save_log
 from sim.bind import BoundPlant
 from sim.loop import live_log
 from twinlaw import options
@@ -52,6 +52,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Open, serve, move it until Ctrl-C, disarm, leave the log."""
+    if chosen.record is not None:
+        demand_log_place(chosen.record)
     fields = ("port", "plant", "table", "out", "rig", "arithmetic", "fly")
     bound, source, locked = open_watched(Watched(**{name: getattr(chosen, name) for name in fields}))
     try:
@@ -94,15 +96,19 @@ def _tell(url: str, chosen: argparse.Namespace) -> None:
 
 def _leave(chosen: argparse.Namespace, bound: BoundPlant, source: Source) -> int:
     """What is left when all is disarmed: the last flight, where it was asked for."""
+    recorded, rows = None, 0
+    if chosen.record is not None and isinstance(source, BoardSource) and len(source.rows) > 1:
+        save_log(chosen.record, live_log(bound, source.rows, source.digest))
+        recorded, rows = str(chosen.record), len(source.rows)
+    if chosen.json:
+        print(json.dumps({"recorded": recorded, "rows": rows}))
+        return 0
     told = "nothing is armed"
-    if chosen.record is not None and isinstance(source, BoardSource):
-        if len(source.rows) < 2:
-            told += f"; {chosen.record} was not written, as nothing flew"
-        else:
-            save_log(chosen.record, live_log(bound, source.rows, source.digest))
-            told += f"; {chosen.record} holds the last flight, {len(source.rows)} rows"
-    if not chosen.json:
-        print(told)
+    if recorded is not None:
+        told += f"; {recorded} holds the last flight, {rows} rows"
+    elif chosen.record is not None:
+        told += f"; {chosen.record} was not written, as nothing flew"
+    print(told)
     return 0
 
 
