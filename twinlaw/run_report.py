@@ -123,8 +123,8 @@ def _margins(report: DesignReport) -> Section:
 
     def panel(label: str, figure: str, scale: float) -> Panel:
         curves = [
-            Curve(psi_deg, scale * np.array([getattr(m, figure) for m in axis.margins]), axis.axis, colour)
-            for axis, colour in ((report.elevation, BLUE), (report.azimuth, ORANGE))
+            Curve(psi_deg, scale * np.array([getattr(m, figure) for m in axis.margins]), axis.axis, colour, dash)
+            for axis, colour, dash in ((report.elevation, BLUE, "-"), (report.azimuth, ORANGE, "--"))
         ]
         return Panel(label, curves)
 
