@@ -4,7 +4,8 @@ import re
 import shutil
 import struct
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from records.errors import BadInput, VerificationFailed
@@ -45,7 +46,8 @@ def flash_through_st_link(elf: Path) -> None:
     Raises BadInput when the tool or the ST-LINK is not there, VerificationFailed when programming had begun and failed.
     """
     command = openocd_command(elf)
-    done = _run(command)
+    with _interrupted(_FLASH_AGAIN):
+        done = _run(command)
     if done.returncode == 0:
         return
     if "** Programming Started **" in done.stdout + done.stderr:
@@ -65,7 +67,8 @@ def flash_through_boot_loader(binary: Path, port: str) -> None:
     VerificationFailed when writing had begun and failed.
     """
     _demand_image(binary)
-    asked = _run(identify_command(port))
+    with _interrupted("nothing was written"):
+        asked = _run(identify_command(port))
     if asked.returncode != 0:
         raise _refused(
             port,
@@ -82,7 +85,8 @@ def flash_through_boot_loader(binary: Path, port: str) -> None:
             expected=" or ".join(f"0x{code:04x} ({name})" for code, name in CHIP_IDS.items()),
             remedy="nothing was written; give the port of the right board as --port",
         )
-    written = _run(boot_loader_command(binary, port))
+    with _interrupted(_FLASH_AGAIN):
+        written = _run(boot_loader_command(binary, port))
     if written.returncode != 0:
         raise _not_programmed(port, written)
     if _STARTED not in written.stdout:  # of a refused start the tool tells, but does not fail
@@ -119,6 +123,15 @@ def _run(command: Sequence[str]) -> subprocess.CompletedProcess[str]:
             remedy=f"install it (Debian: apt install {tool}), or use the other way to flash",
         )
     return subprocess.run(list(command), capture_output=True, text=True, errors="replace", check=False)
+
+
+@contextmanager
+def _interrupted(told: str) -> Iterator[None]:
+    """Ctrl-C leaves word of what the chip may hold then."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(told) from None
 
 
 def _refused(where: str, done: subprocess.CompletedProcess[str], expected: str, remedy: str) -> BadInput:

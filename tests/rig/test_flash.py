@@ -1,6 +1,7 @@
 """Commands that program a board; what is said when they cannot; stm32flash itself against an emulated boot loader."""
 
 import shutil
+import signal
 import struct
 from pathlib import Path
 
@@ -28,6 +29,7 @@ needs_stm32flash = pytest.mark.skipif(
     shutil.which("stm32flash") is None, reason="stm32flash is not installed (Debian: apt install stm32flash)"
 )
 HALF_WAY = FLASH_BASE + 0x1000
+IDENTIFIED = "case $* in *-w*) ;; *) echo 'Device ID : 0x0460'; exit;; esac"  # as the tool, before it is told to write
 VECTORS = struct.pack("<II", 0x20008000, FLASH_BASE + 0x101)
 
 
@@ -101,6 +103,26 @@ def test_what_is_no_image_for_the_chip_is_refused_before_the_port_is_opened(cont
     path.write_bytes(content)
     with pytest.raises(BadInput, match=rf"firmware\.bin: firmware image: got {len(content)} bytes.*twinlaw build"):
         flash_through_boot_loader(path, "/dev/no-such-port")
+
+
+@pytest.mark.parametrize(
+    ("tool", "port", "answer", "told"),
+    [
+        ("openocd", [], "", "the chip may hold a part of the image"),
+        ("stm32flash", ["--port", "/dev/ttyUSB0"], "", "nothing was written"),
+        ("stm32flash", ["--port", "/dev/ttyUSB0"], IDENTIFIED, "the chip may hold a part of the image"),
+    ],
+)
+def test_ctrl_c_tells_what_the_chip_may_hold(tool, port, answer, told, image, fake_tool, tmp_path, capsys) -> None:
+    (tmp_path / "firmware.elf").touch()
+    (tmp_path / "firmware.bin").write_bytes(image.read_bytes())
+    fake_tool(tool, f"{answer}\nkill -INT $PPID")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        assert main(["flash", *port, "--out", str(tmp_path)]) == 128 + signal.SIGINT
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert f"interrupted; {told}" in capsys.readouterr().err
 
 
 @needs_stm32flash
