@@ -154,6 +154,13 @@ def test_a_missing_tool_skips_with_what_to_do() -> None:
     )
 
 
+def test_a_package_that_is_there_and_does_not_load_skips_as_well(tmp_path, monkeypatch) -> None:
+    (tmp_path / "brokenprover.py").write_text("raise ImportError('libc.so.6: version `GLIBC_2.99` not found')")
+    monkeypatch.syspath_prepend(tmp_path)
+    broken = Proof("x", "nothing", (Tool("brokenprover", "install it anew", module="brokenprover"),), prove)
+    assert run_proof(broken, Subject(ce150_table(), {}, b"")).outcome == "skipped"
+
+
 def test_every_proof_has_its_own_name_and_says_what_it_shows() -> None:
     names = [proof.name for proof in PROOFS]
     assert len(set(names)) == len(names) == 7

