@@ -7,13 +7,14 @@ from functools import cached_property
 import numpy as np
 import sympy
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, tape_of
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
-from sim.simulate import simulate
+from sim.reference import reference
 
 Array = NDArray[np.float64]
 START_S = 0.1
@@ -171,8 +172,11 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
 
 def _rest(bound: BoundPlant, tape: Tape, x0: Array) -> Array:
     """States after a while under the first inputs with every axis held."""
-    times = np.linspace(0.0, RUN_UP_S, 401)
-    held = np.tile(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), (len(times), 1))
-    run = simulate(bound, times, x0, held, locked=tuple(axis.name for axis in bound.model.axes), keep="x")
-    assert run.x is not None
-    return np.asarray(run.x[-1])
+    model = bound.model
+    held = {state for axis in model.axes for state in (axis.position, axis.velocity)}
+    moves = np.array([state not in held for state in model.states], dtype=float)
+    low, high = np.array([bound.limits(variable) for variable in model.inputs]).T
+    u = np.clip(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), low, high)
+    rates, still = reference(model).rates, np.zeros(len(model.axes))
+    run = solve_ivp(lambda t_s, x: moves * rates(t_s, x, u, bound.p, still), (0.0, RUN_UP_S), x0, method="LSODA")
+    return np.asarray(run.y[:, -1])

@@ -1,6 +1,6 @@
 """Effects with memory on the way of the inputs, as their mean over each step of a tape: right to third order, with no further instants."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -23,6 +23,7 @@ LOST_FRAMES = "loop.dropped_frames"
 DECLARATIONS = """
 void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double *mean);
 void slew_means(int64_t steps, const double *h_s, const double *wanted, double rate, double *mean);
+void lossy_means(int64_t steps, const double *lost, const double *wanted, double *mean);
 """
 
 
@@ -60,13 +61,7 @@ def _arrived(tape: Tape, share: float) -> Tape:
     less the spread about that mean: a line that loses frames is none that delays them all.
     """
     lost = lost_with(tape.lost, share)
-    arrived = tape.u.copy()
-    for column in range(arrived.shape[1]):
-        value, values = float(tape.u[0, column]), []
-        for command, held in zip(tape.u[:, column].tolist(), lost.tolist(), strict=True):
-            value = command + held * (value - command)
-            values.append(value)
-        arrived[:, column] = values
+    arrived = np.stack([_lossy(lost, tape.u[:, column]) for column in range(tape.u.shape[1])], axis=1)
     taken = lost[tape.lost != 0.0]
     information = float(np.sum(rel_entr(taken, share) + rel_entr(1.0 - taken, 1.0 - share)))
     spread = 0.5 * float(np.sum(tape.loss_power * lost * (1.0 - lost)))
@@ -87,12 +82,23 @@ def lost_with(ratios: Array, share: float) -> Array:
 
 
 def _behind(tape: Tape, column: int, stage: str, value: float) -> Array:
-    ffi, lib = _library()
-    h = np.ascontiguousarray(np.append(np.diff(tape.t_s), tape.t_s[-1] - tape.t_s[-2]))
-    wanted = np.ascontiguousarray(tape.u[:, column])
-    found = np.empty_like(wanted)
-    h_s, given, mean = (ffi.cast("double *", array.ctypes.data) for array in (h, wanted, found))
-    getattr(lib, stage)(len(h), h_s, given, value, mean)
+    _, lib = _library()
+    h = np.append(np.diff(tape.t_s), tape.t_s[-1] - tape.t_s[-2])
+    return _means(
+        h, tape.u[:, column], lambda steps, h_s, wanted, mean: getattr(lib, stage)(steps, h_s, wanted, value, mean)
+    )
+
+
+def _lossy(lost: Array, wanted: Array) -> Array:
+    return _means(lost, wanted, _library()[1].lossy_means)
+
+
+def _means(beside: Array, wanted: Array, stage: Callable[..., None]) -> Array:
+    """What a stage of c/inputs.c makes of commands (m,), with the numbers (m,) that it is told beside them."""
+    ffi, _ = _library()
+    told, given = np.ascontiguousarray(beside), np.ascontiguousarray(wanted)
+    found = np.empty_like(given)
+    stage(len(given), *(ffi.cast("double *", array.ctypes.data) for array in (told, given, found)))
     return found
 
 

@@ -20,7 +20,7 @@ def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
     edge = np.eye(len(times))[:-1] - np.eye(len(times))[1:]
     gram, score = edge @ scores.gram @ edge.T, edge @ scores.score
     middle = 0.5 * (times[:-1] + times[1:])
-    gains = np.array([_gain(gram, score, rate * middle) for rate in RATES_RAD_S])
+    gains = _gains(gram, score, RATES_RAD_S[:, None] * middle)
     chosen: list[float] = []
     for index in np.argsort(-gains).tolist():
         rate = float(RATES_RAD_S[index])
@@ -31,7 +31,10 @@ def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
     return tuple(chosen)
 
 
-def _gain(gram: Array, score: Array, phase: Array) -> float:
-    pair = np.stack([np.sin(phase), np.cos(phase)])
-    own, along = pair @ gram @ pair.T, pair @ score
-    return 0.5 * float(along @ np.linalg.solve(own + 1e-9 * np.trace(own) * np.eye(2) + 1e-12 * np.eye(2), along))
+def _gains(gram: Array, score: Array, phases: Array) -> Array:
+    """What a sine and a cosine together gain, for each row of phases (waves, instants)."""
+    pairs = np.stack([np.sin(phases), np.cos(phases)], axis=1)
+    own, along = pairs @ gram @ pairs.swapaxes(1, 2), pairs @ score
+    ridge = 1e-9 * np.trace(own, axis1=1, axis2=2) + 1e-12
+    solved = np.linalg.solve(own + ridge[:, None, None] * np.eye(2), along[:, :, None])[:, :, 0]
+    return np.asarray(0.5 * np.einsum("ij,ij->i", along, solved))

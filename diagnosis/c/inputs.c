@@ -1,4 +1,5 @@
-/* Inputs behind a stage with memory, as their mean over each step; what holds before the first step is the first command. */
+/* Inputs behind a stage with memory, as their mean over each step or over what is known of each frame; what holds before the first step
+   is the first command. */
 #include <math.h>
 #include <stdint.h>
 
@@ -22,5 +23,15 @@ void slew_means(int64_t steps, const double *h_s, const double *wanted, double r
         const double after = fabs(away) <= most ? wanted[k] : x - copysign(most, away);
         mean[k] = fabs(away) <= most ? wanted[k] + 0.5 * away * fabs(away) / most : 0.5 * (x + after);
         x = after;
+    }
+}
+
+/* A frame that is lost with the probability lost[k] leaves the command before it. */
+void lossy_means(int64_t steps, const double *lost, const double *wanted, double *mean)
+{
+    double x = wanted[0];
+    for (int64_t k = 0; k < steps; k++) {
+        x = wanted[k] + lost[k] * (x - wanted[k]);
+        mean[k] = x;
     }
 }
