@@ -7,18 +7,16 @@ import numpy as np
 
 from diagnosis.case import Case
 from diagnosis.contradiction import Contradiction, contradiction, parted_gain
-from diagnosis.instants import TIMES
+from diagnosis.instants import is_event
 from diagnosis.misfit import ignorance
 from diagnosis.search import Search
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed
+from diagnosis.weigh import UNNAMED, Weighed
 
 WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
 KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
 OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
 REFUTED = 1.4  # times the mean square error of the hold-out without it, beyond which a cause is refuted
-UNNAMED = 0.95  # probability of an unknown effect that is then stated at least
 
 
 @dataclass(frozen=True)
@@ -30,15 +28,7 @@ class Doubt:
 
     def applied(self, weighed: Weighed) -> Weighed:
         """The probabilities with what is doubted given to the unknown."""
-        if not self.forbids or weighed.unknown >= UNNAMED:
-            return weighed
-        factor = (1.0 - UNNAMED) / max(1.0 - weighed.unknown, 1e-12)
-        return replace(
-            weighed,
-            probabilities=tuple(factor * value for value in weighed.probabilities),
-            retune=factor * weighed.retune,
-            unknown=UNNAMED,
-        )
+        return weighed if not self.forbids or weighed.unknown >= UNNAMED else weighed.with_unknown(UNNAMED)
 
 
 def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
@@ -61,7 +51,7 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
             f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
         )
         forbids = True
-    if worse > REFUTED and not _is_event(case, weighed.tried[0]):
+    if worse > REFUTED and not any(is_event(case.kit.effects[name]) for name in weighed.tried[0].effects):
         named = " + ".join(weighed.tried[0].effects)
         sentences.append(
             f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as without"
@@ -74,11 +64,6 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
             "the plant file states"
         )
     return Doubt(tuple(sentences), forbids)
-
-
-def _is_event(case: Case, tried: Tried) -> bool:
-    """Whether an effect happens at an instant, which is another one in another log."""
-    return any(parameter.symbol in TIMES for name in tried.effects for parameter in case.kit.effects[name].parameters)
 
 
 def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:

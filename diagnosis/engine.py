@@ -11,7 +11,7 @@ from diagnosis.detect import Detection, detect
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
-from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, worse
+from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.kit import make_kit
@@ -74,9 +74,11 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
     weighed = weigh(found.tried, retuned, left, None if beyond is None else beyond.score)
     holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
-    weighed = weighed if holdout is None else overruled(holdout, weighed, retuned, left)
+    told: tuple[str, ...] = ()
+    if holdout is not None:
+        weighed, told = partly(holdout, overruled(holdout, weighed, retuned, left))
     doubts = doubt(case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
-    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.sentences)
+    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.sentences, *told)
     chosen = likeliest(weighed, retuned, beyond)
     if holdout is not None:
         chosen = helpful(holdout, chosen)

@@ -1,23 +1,27 @@
 """What logs that were not fitted say: whether a re-tune, an unknown effect and what is named hold there."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnosis.case import Case
 from diagnosis.fit import unfitted
 from diagnosis.hypothesis import nothing_supposed
+from diagnosis.inputs import LOST_FRAMES
+from diagnosis.instants import is_event
 from diagnosis.retune import Retune
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
 from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import FIRST_UNREST
-from diagnosis.weigh import Weighed, confirmed
+from diagnosis.weigh import UNNAMED, Weighed
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
 LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
 NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
+PARTLY = 0.6  # of the hold-out's error that what is named must be able to take away,
+FAR = 2.5  # where some output's error is still that many floors
 HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
@@ -31,9 +35,15 @@ class Holdout:
     tables: Sequence[ControllerTable | None]
     base: Tried
     notes: tuple[str, ...] = ()
+    kept: dict[Tried, tuple[Predicted, ...]] = field(default_factory=dict)
 
     def predicted(self, chosen: Tried) -> tuple[Predicted, ...]:
         """Predictions by the plant as stated, by `base`, and with what was `chosen`."""
+        if chosen not in self.kept:
+            self.kept[chosen] = self._predicted(chosen)
+        return self.kept[chosen]
+
+    def _predicted(self, chosen: Tried) -> tuple[Predicted, ...]:
         stated = replace(nothing_supposed(self.case, FIRST_UNREST), unrest=self.base.fit.supposed.unrest)
         bars = {"nominal": stated, "before": self.base.fit.supposed, "after": chosen.fit.supposed}
         return predict_all(self.case, self.names, bars)
@@ -57,7 +67,8 @@ def holdout_of(
         return trial
     further = 100.0 * (float(np.sqrt(before / stated)) - 1.0)
     told = f"re-tuned within its spread the plant predicts the hold-out {further:.2g} % worse than as stated"
-    return replace(trial, base=Tried((), found, evidence(found)), notes=(f"{told}, so its parameters stay as stated",))
+    notes = (f"{told}, so its parameters stay as stated",)
+    return Holdout(case, names, tables, Tried((), found, evidence(found)), notes)
 
 
 def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) -> Weighed:
@@ -68,7 +79,30 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
     if left > LITTLE * (first.evidence - stated.evidence):
         return weighed
     gone = holdout.shrinkage(holdout.predicted(first)).fraction
-    return weighed if gone is None or gone < NEARLY_ALL else confirmed(weighed, 1.0 - gone)
+    return weighed if gone is None or gone < NEARLY_ALL else weighed.with_unknown(min(1.0 - gone, weighed.unknown))
+
+
+def partly(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[str, ...]]:
+    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown.
+
+    Effects that happen at an instant, which is another one in each log, and frames that are lost at random are not asked.
+    """
+    named = () if weighed.nameless or not weighed.tried else weighed.tried[0].effects
+    if not named or not all(_lasts(holdout.case, name) for name in named):
+        return weighed, ()
+    told = holdout.shrinkage(holdout.predicted(weighed.tried[0]))
+    most = 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
+    far = max((told.rms_after[name] / max(told.rms_floor[name], 1e-300) for name in told.rms_after), default=0.0)
+    if told.fraction is None or most > PARTLY or far < FAR:
+        return weighed, ()
+    gone = max(told.fraction, 0.0)
+    share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
+    note = f"{' + '.join(named)} takes {share}: something else is missing"
+    return weighed.with_unknown(max(min(1.0 - gone, UNNAMED), weighed.unknown)), (note,)
+
+
+def _lasts(case: Case, name: str) -> bool:
+    return name != LOST_FRAMES and not is_event(case.kit.effects[name])
 
 
 def worse(holdout: Holdout, weighed: Weighed) -> float:

@@ -17,6 +17,7 @@ ALIKE, OFF_FORM, OFF_POWER, OFF_SHARE, FURTHER = 10.0, 1.0, 0.35, 4e-4, 2.5
 LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
 FARTHEST = 3e4  # nats beyond which a gap only says that the nominal plant had lost its way
 RETUNE_COST = 10.0
+UNNAMED = 0.95  # probability of an unknown effect where what would be named is refuted
 # Of first answers that stated more than 0.8, 0.9 came true on the 300 cases of seeds 900005 and 900006: a further effect too small to see,
 # or one outside the library that looks like one in it, is always possible.
 CANDOUR = 0.9
@@ -39,6 +40,19 @@ class Weighed:
     def nameless(self) -> bool:
         """Whether nothing that has a name is as probable as an unknown effect."""
         return self.unknown > max(self.retune, *self.probabilities, 0.0)
+
+    def with_unknown(self, share: float) -> "Weighed":
+        """The same with an unknown effect of probability `share`, all else in its old proportions; itself where nothing else is left."""
+        known = sum(self.probabilities) + self.retune
+        if known <= 0.0:
+            return self
+        factor = (1.0 - share) / known
+        return replace(
+            self,
+            probabilities=tuple(factor * value for value in self.probabilities),
+            retune=factor * self.retune,
+            unknown=share,
+        )
 
 
 def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | None = None) -> Weighed:
@@ -91,20 +105,6 @@ def _strain(entry: Tried) -> float:
     """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
     beyond = np.maximum(np.abs(entry.fit.supposed.theta) - SPREAD, 0.0)
     return 0.5 * float(beyond @ beyond)
-
-
-def confirmed(weighed: Weighed, left: float) -> Weighed:
-    """The same where an effect left at most this share of the gap in logs that were not fitted: no more than that is unknown."""
-    known = sum(weighed.probabilities) + weighed.retune
-    if weighed.unknown <= left or known <= 0.0:
-        return weighed
-    factor = (1.0 - left) / known
-    return replace(
-        weighed,
-        probabilities=tuple(factor * value for value in weighed.probabilities),
-        retune=factor * weighed.retune,
-        unknown=left,
-    )
 
 
 def alike(weighed: Weighed, first: Tried) -> list[Tried]:

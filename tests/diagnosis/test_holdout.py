@@ -1,4 +1,4 @@
-"""A re-tune that the hold-out refutes is not written: the plant's parameters then stay as stated, and the notes say so."""
+"""What logs that were not fitted refute: a re-tune, which is then not written, and an effect that leaves most of their error."""
 
 import pytest
 
@@ -35,3 +35,25 @@ def test_a_re_tune_that_predicts_better_is_written(plant: BoundPlant, fly: Fly) 
     assert isinstance(stated, float)
     assert tuned == pytest.approx(TWO_SD * stated, rel=0.03)
     assert not any("parameters stay as stated" in note for note in result.diagnosis.notes)
+
+
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0, "h": 0.0}}
+TILTED = {"azimuth.tilt": {"m": 0.002, "Phi_0": 1.0}}
+
+
+@pytest.mark.parametrize("beside", [{}, TILTED])
+def test_an_effect_that_leaves_most_of_the_hold_outs_error_is_not_the_whole(
+    plant: BoundPlant, fly: Fly, beside
+) -> None:
+    logs = [fly(53, SPRING, rig_seed=53), fly(54, {**SPRING, **beside}, rig_seed=53)]
+    found = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None])).diagnosis
+    assert found.shrinkage is not None
+    assert found.unknown is not None
+    told = [note for note in found.notes if "something else is missing" in note]
+    if not beside:
+        assert (found.found, told) == (("azimuth.cable_spring",), [])
+        assert found.unknown.probability < 0.2
+        return
+    assert "azimuth.cable_spring" in told[0]
+    assert found.unknown.probability > 0.8  # at most 22 % of the error goes
+    assert found.found == ()
