@@ -11,6 +11,7 @@ from identification.solve import Problem
 
 Array = NDArray[np.float64]
 GENERATIONS, POPULATION = 60, 8  # the population is 8 members for each parameter
+SETTLED = 1e-3  # spread of the population's criteria, relative to their mean
 HUGE = 1e100  # of a motion that leaves all bounds; SciPy squares it
 
 
@@ -30,12 +31,7 @@ def evolution(
         return theta
 
     def cost(position: Array) -> float:
-        theta = unscaled(position)
-        with np.errstate(over="ignore", invalid="ignore"):
-            total = sum(
-                float(np.sum(((run.y - predicted(run, problem.names, theta)) / run.sd) ** 2)) for run in problem.runs
-            )
-        return min(total, HUGE) if np.isfinite(total) else HUGE
+        return _criterion(problem, unscaled(position))
 
     bounds = [(np.log(a), np.log(b)) if log else (a, b) for a, b, log in zip(lower, upper, logarithmic, strict=True)]
     started = np.where(logarithmic, np.log(np.maximum(problem.start[places], 1e-300)), problem.start[places])
@@ -45,6 +41,23 @@ def evolution(
         best.append(float(intermediate_result.fun))
         watch(unscaled(intermediate_result.x)[places])
 
-    wishes = {"maxiter": GENERATIONS, "popsize": POPULATION, "tol": 1e-3, "polish": False}
-    found = differential_evolution(cost, bounds, seed=seed, x0=started, callback=told, **wishes)
+    found = differential_evolution(
+        cost,
+        bounds,
+        seed=seed,
+        x0=started,
+        callback=told,
+        maxiter=GENERATIONS,
+        popsize=POPULATION,
+        tol=SETTLED,
+        polish=False,
+    )
     return unscaled(found.x)[places], tuple(best)
+
+
+def _criterion(problem: Problem, theta: Array) -> float:
+    """Criterion (10), `HUGE` where the motion leaves all bounds."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        residuals = [(run.y - predicted(run, problem.names, theta)) / run.sd for run in problem.runs]
+        total = sum(float(np.sum(residual**2)) for residual in residuals)
+    return min(total, HUGE) if np.isfinite(total) else HUGE

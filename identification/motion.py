@@ -10,7 +10,7 @@ import sympy
 from numpy.typing import NDArray
 
 from sim.bind import evaluated
-from sim.kernel import kernel
+from sim.kernel import Kernel, kernel
 from sim.model import Model
 from sim.sensitivities import column_names
 
@@ -49,28 +49,37 @@ def move(
     """
     if not model.states:  # a balance: all that counts is in its observation
         return Motion(columns, np.zeros((t_s.size, 0)), np.zeros((t_s.size, 0, len(columns))), np.zeros((t_s.size, 0)))
-    compiled, places = kernel(model), _column_places(model)
-    lower, upper = _slopes(model, p)
     y = np.empty((t_s.size, len(model.outputs)))
     dy, x = np.empty((*y.shape, len(columns))), np.empty((t_s.size, len(model.states)))
+    rows = {"t_s": t_s, "input": np.ascontiguousarray(u), "y": y, "dy": dy, "x": x}
+    request, _kept = _request(model, p, columns, substeps)
+    _run(kernel(model), request, rows, windows, np.ascontiguousarray(x0))
+    return Motion(columns, y, dy, x)
+
+
+def _request(model: Model, p: Array, columns: tuple[str, ...], substeps: int) -> tuple[Any, Mapping[str, NDArray[Any]]]:
+    """What all windows have in common, and the arrays to which it points: they must live for as long as it does."""
+    compiled, places = kernel(model), _column_places(model)
+    lower, upper = _slopes(model, p)
     column = np.array([places[name] for name in columns], dtype=np.int32)
     kept: dict[str, NDArray[Any]] = {"p": p, "lower_slope": lower, "upper_slope": upper, "column": column}
     request = compiled.ffi.new("sensitivity_request *")
     for name, array in kept.items():
         setattr(request, name, compiled.pointer(array))
     request.substeps, request.columns = substeps, len(columns)
-    moving = {"t_s": t_s, "input": np.ascontiguousarray(u), "y": y, "dy": dy, "x": x}
-    starts = np.ascontiguousarray(x0)
-    bases = {
-        name: compiled.ffi.cast("double *", array.ctypes.data) for name, array in (*moving.items(), ("x0", starts))
-    }
-    for number, rows in enumerate(windows):
-        for name, array in moving.items():
-            setattr(request, name, bases[name] + rows.start * array[0].size)
-        request.x0 = bases["x0"] + number * starts.shape[1]
-        request.samples = rows.stop - rows.start
+    return request, kept
+
+
+def _run(compiled: Kernel, request: Any, rows: Mapping[str, Array], windows: Sequence[slice], starts: Array) -> None:
+    """One call for each window; its part of the arrays `rows` (n, ...) follows from where these begin."""
+    bases = {name: compiled.ffi.cast("double *", array.ctypes.data) for name, array in rows.items()}
+    x0 = compiled.ffi.cast("double *", starts.ctypes.data)
+    for number, window in enumerate(windows):
+        for name, array in rows.items():
+            setattr(request, name, bases[name] + window.start * array[0].size)
+        request.x0 = x0 + number * starts.shape[1]
+        request.samples = window.stop - window.start
         compiled.lib.sensitivity_run(request)
-    return Motion(columns, y, dy, x)
 
 
 def _slopes(model: Model, p: Array) -> tuple[Array, Array]:

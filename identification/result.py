@@ -17,7 +17,9 @@ from records.plant import Parameter, Plant, coefficient_names
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
 INTERRUPTED = "the best so far of a fit that was interrupted"
-TOLD = 0.6  # a parameter whose interval reaches farther is not identified: what holds it is that it was given a size at all
+FARTHEST = (
+    0.6  # of a parameter's size: one whose interval reaches farther is held by having been given a size, not by data
+)
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def identification(
             factors.setdefault(name, interval_factor(stage.dof))
     scales = {name: max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1]) for name in belief.names}
     estimates = tuple(
-        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), TOLD * scales[name])
+        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), FARTHEST * scales[name])
         for name in belief.names
     )
     found = tuple(

@@ -21,7 +21,7 @@ MAX_STEPS = 60
 SETTLED = 1e-3  # a step below this many standard deviations, squared and summed, changes nothing
 ROUNDING = 1e-12
 DAMPING_TOO_HIGH = 1e12
-TOLD = 2.0  # information on a direction, relative to its size: 1 is that it has a size at all
+INFORMED = 2.0  # information on a direction, relative to its size: 1 is that it has a size at all
 
 
 Tell = Callable[[Array], None]  # parameters (parameters,)
@@ -215,7 +215,7 @@ def _within(problem: Problem, theta: Array, damped: Array, A: Array, b: Array) -
         free = ~held
         own = np.ix_(free, free)
         pull = b[free] - damped[np.ix_(free, held)] @ step[held]
-        step[free] = _told_step(damped[own], A[own], pull, problem.scale[free])
+        step[free] = _informed_step(damped[own], A[own], pull, problem.scale[free])
         out = free & ((theta + step < problem.lower) | (theta + step > problem.upper))
         if not out.any():
             break
@@ -224,16 +224,16 @@ def _within(problem: Problem, theta: Array, damped: Array, A: Array, b: Array) -
     return step
 
 
-def _told_step(damped: Array, A: Array, b: Array, scale: Array) -> Array:
-    """damped^-1 b in the span of the directions that the information A tells, or along which there is still a lot to gain.
+def _informed_step(damped: Array, A: Array, b: Array, scale: Array) -> Array:
+    """damped^-1 b in the span of the directions of which A knows something, or along which there is still a lot to gain.
 
     Where the data know nothing of a direction the way down is a curved valley, along which a fit would crawl for nothing: it stays where
-    it is. A direction v of S A S is told with v^T S A S v > `TOLD`; what is left to gain by it is (v^T S b)^2 over that, in variances.
+    it is. A knows a direction v of S A S with v^T S A S v > `INFORMED`; what is left to gain by it is (v^T S b)^2 over that, in variances.
     """
     information, V = np.linalg.eigh(A * np.outer(scale, scale))
     gain = (V.T @ (scale * b)) ** 2
-    told = (information > TOLD) | (gain > np.maximum(information, 1.0))
-    if told.all():
+    open_to_data = (information > INFORMED) | (gain > np.maximum(information, 1.0))
+    if open_to_data.all():
         return np.asarray(np.linalg.solve(damped, b))
-    V = scale[:, None] * V[:, told]
+    V = scale[:, None] * V[:, open_to_data]
     return np.asarray(V @ np.linalg.solve(V.T @ damped @ V, V.T @ b))

@@ -61,16 +61,14 @@ def fuzzy(inputs: Array, outputs: Array, scale: Array, epochs: int = EPOCHS, rad
     for _ in range(epochs):
         now = _solved(_descended(best, z, wanted, rate), z, wanted)
         errors.append(_error(now, z, wanted))
-        best, rate = (now, rate * 1.1) if errors[-1] < _error(best, z, wanted) else (best, rate / 2)
+        best, rate = (now, rate * 1.1) if errors[-1] < min(errors[:-1]) else (best, rate / 2)
     return Trained(replace(best, weights=np.asarray(best.weights * scale)), tuple(errors))
 
 
 def _shares(z: Array, centre: Array, sigma: Array) -> Array:
     """Normalised memberships (n, rules)."""
     exponent = -0.5 * np.sum(((z[:, None] - centre) / sigma) ** 2, axis=2)
-    w = np.exp(
-        exponent - exponent.max(axis=1, keepdims=True)
-    )  # the largest rule counts 1: none far from all divides by zero
+    w = np.exp(exponent - exponent.max(axis=1, keepdims=True))  # the largest is 1: no sum is 0
     return np.asarray(w / w.sum(axis=1, keepdims=True))
 
 

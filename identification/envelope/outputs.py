@@ -16,9 +16,8 @@ from identification.envelope.fuzzy import Fuzzy, Trained, fuzzy
 
 Array = NDArray[np.float64]
 METHODS = ("classical", "linear", "fuzzy")
-SLOPE_ROWS = (
-    9  # of a parabola through measured velocities, whose slope is their derivative; the ends are held beyond the record
-)
+# Rows of a parabola through measured velocities, whose slope is their derivative; the ends are held beyond the record.
+SLOPE_ROWS = 9
 
 Equation = Callable[[Deviations, Array], Array]
 """(flights, states x of them (flights, n, 8), measured or estimated) -> accelerations (flights, n, 3)."""

@@ -10,6 +10,7 @@ from identification.subsystem import subsystem
 from identification.window_starts import lines, position_sd
 from records.errors import BadInput
 from sim.bind import BoundPlant
+from sim.model import Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -28,15 +29,9 @@ def windowed(
             "motion", f"experiment {name}", "no stretch in which the axis moves freely", "at least one",
             "check the mount and the locks, and record again: an axis at rest tells nothing",
         )  # fmt: skip
-    model, driven = part.model, driven_model(part.model)
-    axis = model.axes[0]
-    assert axis.position is not None
     step = part.plant.sensors[output]
     select = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
-    level, slope, _, _ = lines(t_s, angle, begins, step)
-    x0 = np.zeros((begins.size, len(model.states)))
-    x0[:, [model.states.index(axis.position), model.states.index(axis.velocity)]] = np.column_stack([level, slope])
-    loose = max(3.0 * float(np.std(slope)), 1.0)
+    x0, free, start_sd = _starts(part.model, t_s, angle, begins, step)
     return Run(
         name=name,
         bound=part,
@@ -51,11 +46,28 @@ def windowed(
         begins=begins,
         stops=stops,
         x0=x0,
-        free=(str(axis.position), str(axis.velocity)),
-        start_sd=np.tile([position_sd(angle, step), loose], (begins.size, 1)),
-        carried=None if driven is None else Carried(subsystem(part, driven), np.zeros(len(driven.states))),
+        free=free,
+        start_sd=start_sd,
+        carried=_from_rest(part),
         step=np.array([step]),
     )
+
+
+def _from_rest(part: BoundPlant) -> Carried | None:
+    driven = driven_model(part.model)
+    return None if driven is None else Carried(subsystem(part, driven), np.zeros(len(driven.states)))
+
+
+def _starts(model: Model, t_s: Array, angle: Array, begins: Index, step: float) -> tuple[Array, tuple[str, str], Array]:
+    """Guessed states of the axis at the windows' first rows, which of them are free, and how far the guess may be off."""
+    axis = model.axes[0]
+    assert axis.position is not None
+    level, slope, _, _ = lines(t_s, angle, begins, step)
+    x0 = np.zeros((begins.size, len(model.states)))
+    x0[:, model.states.index(axis.position)] = level
+    x0[:, model.states.index(axis.velocity)] = slope
+    start_sd = np.tile([position_sd(angle, step), max(3.0 * float(np.std(slope)), 1.0)], (begins.size, 1))
+    return x0, (str(axis.position), str(axis.velocity)), start_sd
 
 
 def even_windows(t_s: Array, angle: Array, from_s: float, length_s: float) -> tuple[Index, Index]:

@@ -1,6 +1,7 @@
 """Flights of the lateral/directional model as records: rates as they are read, accelerations carried to the centre of gravity."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ def lateral_record(log: RunLog, name: str, plant: Plant) -> Record:
     omega, a_meas = raw.y[:, :3], np.zeros((raw.y.shape[0], 3))
     a_meas[:, 1] = raw.y[:, 3]
     a_cg = to_centre_of_gravity(a_meas, omega, plant.parameters["r_s"].values, raw.period_s)
-    return Record(name, raw.period_s, raw.u, np.column_stack([omega[:, 0], omega[:, 2], a_cg[:, 1]]), raw.r)
+    return replace(raw, y=np.column_stack([omega[:, 0], omega[:, 2], a_cg[:, 1]]))
 
 
 def lateral_records(logs: Mapping[str, RunLog], plant: Plant) -> tuple[Record, ...]:

@@ -11,7 +11,7 @@ from identification.estimate import Range, estimate, problem_of
 from identification.log_run import log_run
 from identification.ranges import ranges_of
 from identification.run import coefficient_names
-from identification.solve import _told_step, solve
+from identification.solve import _informed_step, solve
 from records.errors import BadInput
 
 
@@ -111,7 +111,7 @@ def test_a_direction_of_which_the_data_know_nothing_is_left_unless_it_promises_a
     """Information 1e6 on the sum of two parameters, 1.5 on their difference: the sum takes its step of 1e-3 in either case."""
     V = np.array([[1.0, 1.0], [1.0, -1.0]]) / np.sqrt(2.0)
     A = V @ np.diag([1e6, 1.5]) @ V
-    step = _told_step(A, A, V @ np.array([1e3, slope]), np.ones(2))
+    step = _informed_step(A, A, V @ np.array([1e3, slope]), np.ones(2))
     np.testing.assert_allclose(V @ step, [1e-3, expected], rtol=1e-9, atol=1e-12)
 
 
