@@ -138,6 +138,8 @@ def at(problem: Problem, theta: Array, runs: tuple[Run, ...]) -> Point:
 def _starts(run: Run, own: tuple[Block, ...]) -> Starts:
     weight = 1.0 / run.start_sd**2
     C = np.stack([block.by_start.T @ block.by_start + np.diag(w) for block, w in zip(own, weight, strict=True)])
+    # Starts whose slopes have grown past all digits look parallel.
+    C += ROUNDING * np.einsum("wff->wf", C)[:, :, None] * np.eye(C.shape[1])
     B = np.stack([block.by_parameter.T @ block.by_start for block in own])
     c = np.stack([block.by_start.T @ block.residual for block in own]) - weight * _off(run)
     return Starts(C, B, c)

@@ -9,9 +9,10 @@ from identification import bench
 from identification.belief import NOTHING, Belief
 from identification.estimate import Range, estimate, problem_of
 from identification.log_run import log_run
+from identification.prediction import blocks
 from identification.ranges import ranges_of
 from identification.run import coefficient_names
-from identification.solve import _informed_step, solve
+from identification.solve import _informed_step, _starts, solve
 from records.errors import BadInput
 
 
@@ -121,3 +122,12 @@ def test_a_start_from_which_no_motion_comes_back_is_given_back(bound, work):
     point = solve(problem_of((run,), ("K_A",), {"K_A": Range(1e150, 0.0, 1e151, 1e150)}, NOTHING))
     assert point.theta.tolist() == [1e150]
     assert point.steps == 0
+
+
+def test_starts_whose_slopes_have_grown_past_all_digits_can_still_be_solved_for(work):
+    """All slopes by the start 1e16, so that its states look alike; without the mend LinAlgError from the impulses of a real rig."""
+    run = log_run(work.bound, work.log, "log", 5.0, at_first=work.x0)
+    grown = tuple(replace(block, by_start=np.full_like(block.by_start, 1e16)) for block in blocks(run, (), np.zeros(0)))
+    C = _starts(run, grown).C
+    assert np.all(np.isfinite(np.linalg.solve(C, C)))
+    assert np.all(np.linalg.cond(C) < 1e14)
