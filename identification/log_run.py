@@ -1,6 +1,9 @@
 """A run log as a run for the estimator: cut into windows whose starts are free, which holds an unstable plant to its data."""
 
+from dataclasses import dataclass
+
 import numpy as np
+import sympy
 from numpy.typing import ArrayLike, NDArray
 
 from identification.driven import driven_model
@@ -11,10 +14,12 @@ from identification.window_starts import window_starts
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.model import Model
 
 Array = NDArray[np.float64]
 FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
+MOST_WAITED = (
+    0.25  # of a log, until how its driven states began no longer shows; of a shorter one that is estimated instead
+)
 
 
 def log_run(
@@ -23,21 +28,20 @@ def log_run(
     """The measured outputs of a log as readings, windows of `window_s` (inf: one for the whole log), of which each `every`th is kept.
 
     A reading's error is that of `rounding_sd`. Rows where nothing was measured give no reading. States that only the inputs drive run on
-    from those of `at_first` (states,) at the first row; where these are not given the log is used once they no longer matter. Raises
-    BadInput for a log with less than two rows or without readings, or a plant with effects on the way of its inputs or outputs.
+    from those of `at_first` (states,) at the first row; where these are not given a log is used once they no longer matter, and one that
+    is too short for that with their starts free in each window. Raises BadInput for a log with less than two rows or without readings,
+    or a plant with effects on the way of its inputs or outputs.
     """
     _check(bound, log, name)
-    model, part = bound.model, driven_model(bound.model)
-    carried = None if part is None else Carried(subsystem(bound, part), _carried_start(model, part, at_first))
-    forgotten_s = 0.0 if carried is None or at_first is not None else _forgotten_s(model, carried, log)
-    begins, stops = _windows(log.t_s, window_s, every, forgotten_s)
+    model, driven = bound.model, _driven(bound, log, at_first)
+    begins, stops = _windows(log.t_s, window_s, every, driven.known_after_s)
     used = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     rows = np.isfinite(log.y) & np.isin(np.arange(log.t_s.size), used)[:, None]
     select = np.flatnonzero(rows.ravel())
     channel = select % log.y.shape[1]
     step = np.array([bound.plant.sensors[output] for output in model.outputs])
     noise = np.array([bound.plant.sensor_noise.get(output, 0.0) for output in model.outputs])
-    x0, free, start_sd = window_starts(bound, log, begins, part)
+    x0, free, start_sd = window_starts(bound, log, begins, driven_model(model))
     return Run(
         name=name,
         bound=bound,
@@ -52,9 +56,9 @@ def log_run(
         begins=begins,
         stops=stops,
         x0=x0,
-        free=free,
-        start_sd=start_sd,
-        carried=carried,
+        free=(*free, *driven.free),
+        start_sd=np.hstack([start_sd, driven.sd[begins]]),
+        carried=driven.carried,
         step=step,
     )
 
@@ -74,21 +78,61 @@ def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
         )  # fmt: skip
 
 
-def _carried_start(model: Model, part: Model, x0: ArrayLike | None) -> Array:
-    whole = np.zeros(len(model.states)) if x0 is None else np.asarray(x0, dtype=float)
-    return np.asarray(whole[[model.states.index(state) for state in part.states]])
+@dataclass(frozen=True, eq=False)
+class _Driven:
+    """States that only the inputs drive: where they run on from, how long until that is known, or which are free and by how much.
+
+    sd (n, free) is how far off they may be at each row.
+    """
+
+    carried: Carried | None
+    known_after_s: float
+    free: tuple[str, ...]
+    sd: Array
 
 
-def _forgotten_s(model: Model, carried: Carried, log: RunLog) -> float:
+def _driven(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> _Driven:
+    model, part, known = bound.model, driven_model(bound.model), np.zeros((log.t_s.size, 0))
+    if part is None:
+        return _Driven(None, 0.0, (), known)
+    own = subsystem(bound, part)
+    if at_first is not None:
+        x0 = np.asarray(at_first, dtype=float)[[model.states.index(state) for state in part.states]]
+        return _Driven(Carried(own, x0), 0.0, (), known)
+    u = np.ascontiguousarray(log.u[:, [model.inputs.index(variable) for variable in part.inputs]])
+    rest = np.zeros(len(part.states))
+    forgotten_s = _forgotten_s(own, log.t_s, u)
+    if forgotten_s <= MOST_WAITED * (log.t_s[-1] - log.t_s[0]):
+        return _Driven(Carried(own, rest), forgotten_s, (), known)
+    held = _run_on(own, log.t_s, np.tile(u[0], (log.t_s.size, 1)), rest)[-1]
+    return _Driven(Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held))
+
+
+def _forgotten_s(driven: BoundPlant, t_s: Array, u: Array) -> float:
     """How long after the first row it still shows with what states the log began: two runs from far starts are compared."""
-    part = carried.bound.model
-    u = log.u[:, [model.inputs.index(variable) for variable in part.inputs]]
-    whole = (slice(0, log.t_s.size),)
-    still = move(part, log.t_s, u, carried.bound.p, whole, carried.x0[None, :], ()).x
+    still = _run_on(driven, t_s, u, np.zeros(len(driven.model.states)))
     reach = np.max(np.abs(still), axis=0)
-    other = move(part, log.t_s, u, carried.bound.p, whole, reach[None, :], ()).x
-    apart = np.flatnonzero(np.any(np.abs(other - still) > FORGOTTEN * reach, axis=1))
-    return float(log.t_s[apart[-1]] - log.t_s[0]) if apart.size else 0.0
+    apart = np.flatnonzero(np.any(np.abs(_run_on(driven, t_s, u, reach) - still) > FORGOTTEN * reach, axis=1))
+    return float(t_s[apart[-1]] - t_s[0]) if apart.size else 0.0
+
+
+def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
+    """What is left, row by row (n, driven), of a start as far from x0 (driven,) as any inputs could have brought it."""
+    largest = np.tile(_largest_inputs(driven), (t_s.size, 1))
+    reach = np.max(np.abs(_run_on(driven, t_s, largest, np.zeros(x0.size))), axis=0)
+    left = np.abs(_run_on(driven, t_s, u, x0 + reach) - _run_on(driven, t_s, u, x0))
+    return np.asarray(np.maximum(left, FORGOTTEN * reach))
+
+
+def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
+    return move(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
+
+
+def _largest_inputs(bound: BoundPlant) -> Array:
+    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
+    limits = [bound.model.input_limits[variable] for variable in bound.model.inputs]
+    pairs = [[float(sympy.sympify(limit).xreplace(values)) for limit in pair] for pair in limits]
+    return np.array([max(pair, key=abs) for pair in pairs])
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:
@@ -111,8 +155,8 @@ def rounding_sd(readings: Array, step: float, noise: float = 0.0) -> Array:
 
 
 def _windows(t_s: Array, window_s: float, every: int, from_s: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First rows of windows of about `window_s`, and the rows behind their last; `from_s` at the beginning, or a quarter, is left out."""
-    first_s = t_s[0] + min(from_s, 0.25 * (t_s[-1] - t_s[0]))
+    """First rows of windows of about `window_s`, and the rows behind their last; `from_s` at the beginning is left out."""
+    first_s = t_s[0] + from_s
     count = max(1, round((t_s[-1] - first_s) / window_s)) if np.isfinite(window_s) else 1
     edges = first_s + (t_s[-1] - first_s) * np.arange(count) / count
     begins = np.unique(np.searchsorted(t_s, edges - 1e-9)).astype(np.int64)

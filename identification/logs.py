@@ -29,6 +29,7 @@ COARSE_WINDOWS = 40  # of each log: enough for a start
 COARSE_SETTLED = 10.0
 HOLDOUT_S = 1.0
 WORSE, MOST_LEFT = 1.5, 0.3
+SENSORS = 1.1  # times what a sensor alone leaves: as good as that
 WINDOW_ROWS = (40, 160, 640)
 
 
@@ -96,7 +97,9 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
 
     Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
     that predicts the shortest windows clearly worse than the best does not count, nor one that leaves more than `MOST_LEFT` of what its
-    own readings do, nor one that contradicts the shortest windows by more than both intervals allow.
+    own readings do, nor one that contradicts the shortest windows by more than both intervals allow, unless it leaves no more than
+    sensors do: then the model lacks nothing, and it is the shortest windows that are in doubt. What moves in them may be little more
+    than a controller's answer to an encoder's steps, whose errors are in both input and reading.
     """
     if len(found) == 1:
         return found[0]
@@ -105,10 +108,18 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
         entry
         for entry, cost in zip(found, costs, strict=True)
         if cost <= WORSE**2 * min(costs)
-        and all(test.fit > 1.0 - MOST_LEFT for test in entry.residuals)
-        and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
+        and all(test.fit > 1.0 - MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
+        and (
+            apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
+            or all(test.white and _of_the_sensor(test) for test in entry.residuals)
+        )
     ]
     return min(sound or found[:1], key=_volume)
+
+
+def _of_the_sensor(test: ResidualTest) -> bool:
+    """No more is left than the sensor's own errors: so it is of an axis at rest, too, none of whose readings are explained."""
+    return test.rms <= SENSORS * test.floor
 
 
 def apart_sd(one: Belief, other: Belief) -> float:

@@ -71,15 +71,16 @@ def _with_carried(run: Run, p: Array, u: Array, columns: tuple[str, ...], starts
     wanted = tuple(name for name in columns if name in own or name in offset_names(part))
     carried = move(part, run.t_s, u[:, inputs], values, whole, run.carried.x0[None, :], wanted, run.substeps)
     x0 = run.x0.copy()
-    x0[:, [model.states.index(state) for state in part.states]] = carried.x[run.begins]
+    x0[:, [model.states.index(state) for state in part.states]] += carried.x[run.begins]
     through = tuple(f"x0.{state}" for state in part.states)
-    motion = move(model, run.t_s, u, p, run.windows, x0, columns + starts + through, run.substeps)
-    kept = len(columns) + len(starts)
-    slopes = motion.dy[:, :, :kept].copy()
-    places = [columns.index(name) for name in wanted]
+    kept = columns + starts
+    every = (*kept, *(name for name in through if name not in kept))
+    motion = move(model, run.t_s, u, p, run.windows, x0, every, run.substeps)
+    slopes = motion.dy[:, :, : len(kept)].copy()
+    places, passing = [columns.index(name) for name in wanted], [every.index(name) for name in through]
     for rows, begin in zip(run.windows, run.begins, strict=True):
-        slopes[rows][:, :, places] += motion.dy[rows][:, :, kept:] @ carried.dy[begin]
-    return Motion(columns + starts, motion.y, slopes, motion.x)
+        slopes[rows][:, :, places] += motion.dy[rows][:, :, passing] @ carried.dy[begin]
+    return Motion(kept, motion.y, slopes, motion.x)
 
 
 def _observed(run: Run, p: Array, u: Array, motion: Motion) -> tuple[Array, Array]:

@@ -18,7 +18,10 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """States that only the inputs drive (a rotor's lag): they run on through all windows of a run, from x0 (states,)."""
+    """States that only the inputs drive (a rotor's lag): they run on through all windows of a run, from x0 (states,).
+
+    A window's own x0 counts what it begins beside them.
+    """
 
     bound: BoundPlant
     x0: Array
