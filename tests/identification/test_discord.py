@@ -4,13 +4,18 @@ from dataclasses import replace
 
 import pytest
 
+from design.settings import read_settings
+from design.table import design
 from identification.belief import NOTHING
 from identification.bench import task
 from identification.estimate import estimate
 from identification.log_run import log_run
+from identification.logs import identify_logs
 from identification.notes import stage_notes
 from identification.ranges import ranges_of
 from sim.bind import bind
+from sim.loop import fly_law
+from sim.manoeuvres import flight
 
 NAMES = ("J_A", "b_vA", "J_E")
 
@@ -48,3 +53,24 @@ def test_two_logs_that_contradict_each_other_are_told_once(bound, other):
     runs = [run_of(bound, 1, bound), run_of(other, 2, bound)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     assert [entry.name for entry in found.discords] == ["J_A"]
+
+
+def closed_loop(rig, nominal, from_s):
+    """Forty seconds of the project's flight of that rig under the nominal plant's controller."""
+    table, _ = design(nominal, read_settings(nominal))
+    log, rows = fly_law(rig, table, flight(rig), substeps=4), slice(100 * from_s, 100 * from_s + 4000)
+    return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
+
+
+def test_closed_loops_of_two_rigs_are_told_apart_though_each_bears_the_other_s_misfit(bound, other):
+    """J_A and 1.2 J_A, within 2 %; by the common fit's residuals alone, 25 times the sensors', they would be one."""
+    logs = {"one": closed_loop(bound, bound, 15), "another": closed_loop(other, bound, 15)}
+    found = identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE"))
+    assert [entry.name for entry in found.discords] == ["J_A"]
+    assert found.discords[0].own == pytest.approx(bound.parameter("J_A"), rel=0.02)
+    assert found.discords[0].others == pytest.approx(1.2 * bound.parameter("J_A"), rel=0.02)
+
+
+def test_closed_loops_of_one_rig_agree(bound):
+    logs = {"early": closed_loop(bound, bound, 15), "late": closed_loop(bound, bound, 60)}
+    assert identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE")).discords == ()
