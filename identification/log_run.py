@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 from numpy.typing import ArrayLike, NDArray
 
 from identification.driven import driven_model
@@ -17,9 +16,7 @@ from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
 FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
-MOST_WAITED = (
-    0.25  # of a log, until how its driven states began no longer shows; of a shorter one that is estimated instead
-)
+MOST_WAITED = 0.25  # of a log, until how its driven states began no longer shows; in a shorter one that is estimated
 
 
 def log_run(
@@ -129,10 +126,7 @@ def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
 
 
 def _largest_inputs(bound: BoundPlant) -> Array:
-    values = dict(zip(bound.model.parameter_symbols, bound.p, strict=True))
-    limits = [bound.model.input_limits[variable] for variable in bound.model.inputs]
-    pairs = [[float(sympy.sympify(limit).xreplace(values)) for limit in pair] for pair in limits]
-    return np.array([max(pair, key=abs) for pair in pairs])
+    return np.array([max(bound.limits(variable), key=abs) for variable in bound.model.inputs])
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:

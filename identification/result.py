@@ -17,9 +17,7 @@ from records.plant import Parameter, Plant, coefficient_names
 SCHEMA = "identification/1"
 CORRELATION_DIGITS = 9
 INTERRUPTED = "the best so far of a fit that was interrupted"
-FARTHEST = (
-    0.6  # of a parameter's size: one whose interval reaches farther is held by having been given a size, not by data
-)
+FARTHEST = 0.6  # of a size: a parameter whose interval reaches farther is held by having been given one, not by data
 
 
 @dataclass(frozen=True)
