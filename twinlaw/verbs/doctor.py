@@ -27,7 +27,7 @@ EXTRAS: Mapping[str, str] = {
     "peers": "bench: the tools it compares with",
     "test": "make test",
     "docs": "make docs",
-    "mdf4": "import: logs in MDF4",
+    "mdf4": "import, export: logs in MDF4",
     "cluster": "--cluster: sweeps on Dask",
     "proofs": "verify --proofs",
 }
