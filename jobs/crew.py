@@ -1,11 +1,13 @@
 """Who does the jobs: processes of this computer, or the workers of a Dask cluster; either is an executor of `concurrent.futures`."""
 
+import asyncio
 import logging
 import multiprocessing
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 from jobs.code import code_digest
 from jobs.threads import cores, one_thread_each
@@ -69,7 +71,10 @@ def cluster(address: str) -> Crew:
             remedy = "start one with `dask scheduler`, or correct the address"
             raise BadInput("Dask scheduler", address, _short(error), "one that answers", remedy) from error
         try:
-            yield Hands(client.get_executor(), _width(client, address), lambda: _manned(client))
+            width, muster = _width(client, address), _Muster(client)
+            muster.manned()  # who looks after whom is known from the beginning
+            # Not pure: a job that is tried anew must not meet the end of its first trial under the same key.
+            yield Hands(client.get_executor(pure=False), width, muster.manned)
         finally:
             client.close()
 
@@ -94,13 +99,28 @@ def _width(client: object, address: str) -> int:
     return sum(threads.values())
 
 
-def _manned(client: object) -> bool:
-    """Whether there is a worker, or one comes while we wait: a nanny takes seconds to replace one that died."""
-    try:
-        client.wait_for_workers(1, timeout=PATIENCE_S)  # type: ignore[attr-defined]
-    except TimeoutError:
-        return False
-    return True
+@dataclass
+class _Muster:
+    """Who is left on a cluster: registered workers, or else the nannies of those that were, each of which begins another worker."""
+
+    client: Any
+    nannies: set[str] = field(default_factory=set)
+
+    def manned(self) -> bool:
+        """Whether the scheduler knows a worker, busy or paused, or a nanny answers; nothing is concluded from how long that takes."""
+        workers = self.client.sync(self.client.scheduler.identity)["workers"].values()
+        self.nannies |= {worker["nanny"] for worker in workers if worker["nanny"]}
+        return bool(workers) or bool(self.client.sync(self._answers))
+
+    async def _answers(self) -> bool:
+        met = await asyncio.gather(*map(self._meet, self.nannies), return_exceptions=True)
+        return any(error is None for error in met)
+
+    async def _meet(self, nanny: str) -> None:
+        from distributed.comm import connect
+
+        comm = await connect(nanny, timeout=PATIENCE_S, **self.client.connection_args)
+        comm.abort()
 
 
 def _short(error: Exception) -> str:

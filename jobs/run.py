@@ -15,7 +15,7 @@ from records.errors import BadInput
 
 AHEAD = 2  # jobs handed out for each that is worked on, so that no worker waits for the next
 DIED = "the worker process died in the middle of it (killed, or out of memory); see whether it fits into memory alone"
-LOOK_s = 30.0  # without an answer until it is looked whether anybody works
+LOOK_s = 30.0  # without an answer until it is looked whether anybody is left; nobody at two looks in a row is the end
 Watch = Callable[[Done], None]
 
 
@@ -26,6 +26,7 @@ class _Place:
     job: Job
     key: str
     done: Done | None = None
+    alone: bool = False  # tried with no other job out, so that it is the culprit if its worker dies
 
 
 def run(jobs: Iterable[Job], crew: Crew, keep: Keep, watch: Watch = lambda _: None) -> Iterator[Done]:
@@ -43,7 +44,7 @@ def run(jobs: Iterable[Job], crew: Crew, keep: Keep, watch: Watch = lambda _: No
                 exhausted = job is None
                 if job is not None:
                     order.append(shift.begin(job))
-            elif shift.out:
+            elif shift.busy:
                 shift.wait()
             while order and (done := order[0].done) is not None:
                 order.popleft()
@@ -58,7 +59,9 @@ class _Shift:
         self._code = code_digest()
         self._stack = ExitStack()
         self._hands: Hands | None = None
+        self._deserted = 0  # looks in a row that found nobody
         self.out: dict[Future[Outcome], _Place] = {}
+        self._suspects = deque[_Place]()  # with each of which, and others, worker after worker has died
 
     def __enter__(self) -> "_Shift":
         return self
@@ -69,7 +72,14 @@ class _Shift:
     @property
     def room(self) -> bool:
         """Whether another job can go out."""
+        if self._suspects or any(place.alone for place in self.out.values()):
+            return False
         return self._hands is None or len(self.out) < AHEAD * self._hands.width
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is anything to wait for."""
+        return bool(self.out or self._suspects)
 
     def begin(self, job: Job) -> _Place:
         """Take the kept answer, or hand the job out."""
@@ -82,14 +92,23 @@ class _Shift:
         return place
 
     def wait(self) -> None:
-        """Until at least one job is done; raises BadInput where nobody is left to do one."""
+        """Until at least one job is done or suspected; raises BadInput where nobody is left to do one."""
+        if not self.out:
+            place = self._suspects.popleft()
+            place.alone = True
+            self._hand_out(place)
         finished, _ = wait(self.out, LOOK_s, return_when=FIRST_COMPLETED)
-        if not finished and self._hands is not None and not self._hands.manned():
+        self._deserted = 0 if finished or self._hands is None or self._hands.manned() else self._deserted + 1
+        if self._deserted > 1:
             raise _lost("its last worker gone", "a worker until the end")
         try:
             for future in sorted(finished, key=list(self.out).index):
                 outcome = _outcome(future)
-                self._settle(self.out.pop(future), outcome)
+                place = self.out.pop(future)
+                if outcome.failure == DIED and not place.alone:
+                    self._suspects.append(place)
+                else:
+                    self._settle(place, outcome)
         except BrokenExecutor:
             self._mend()
 

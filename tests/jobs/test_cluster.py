@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 from jobs.crew import cluster, processes
 from jobs.job import Done, Job
 from jobs.keep import Answers
-from jobs.run import run
+from jobs.run import DIED, run
 from records.errors import BadInput
 from tests.jobs import doing
 from tests.test_project import ROOT
@@ -61,24 +62,42 @@ def test_a_worker_that_dies_costs_the_job_that_killed_it_and_no_other(address: s
     assert "the worker process died" in str(done[culprit].failure)
 
 
-def test_a_cluster_whose_last_worker_died_is_told_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jobs.run.LOOK_s", 0.5)
+@contextmanager
+def lone_worker(folder: Path, nanny: str) -> Iterator[str]:
+    """The address of a scheduler with one worker of one thread, as `dask worker` begins it, with or without its nanny."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with distributed.LocalCluster(n_workers=0, host="127.0.0.1", dashboard_address=":0") as local:
         command = [sys.executable, "-m", "distributed.cli.dask_worker", local.scheduler_address]
-        options = ["--no-nanny", "--no-dashboard", "--nthreads", "1", "--local-directory", str(tmp_path)]
+        options = [nanny, "--no-dashboard", "--nthreads", "1", "--local-directory", str(folder)]
         with subprocess.Popen([*command, *options], env=environment, stderr=subprocess.DEVNULL) as worker:
             with distributed.Client(local.scheduler_address, set_as_default=False) as client:
                 client.wait_for_workers(1)
-            monkeypatch.setattr("jobs.crew.PATIENCE_S", 2.0)
-            with pytest.raises(BadInput, match="Dask cluster: got its last worker gone"):
-                swept(
-                    doing.deadly,
-                    [(0, 1, str(tmp_path)), (1, 1, str(tmp_path))],
-                    tmp_path / "kept",
-                    cluster(local.scheduler_address),
-                )
-            worker.wait()
+            try:
+                yield local.scheduler_address
+            finally:
+                worker.kill()  # a nanny that is asked may first wait for a worker that is only beginning
+
+
+def test_a_cluster_whose_last_worker_died_is_told_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("jobs.run.LOOK_s", 0.5)
+    records = [(index, 1, str(tmp_path)) for index in range(2)]
+    with (
+        lone_worker(tmp_path, "--no-nanny") as address,
+        pytest.raises(BadInput, match="Dask cluster: got its last worker gone"),
+    ):
+        swept(doing.deadly, records, tmp_path / "kept", cluster(address))
+
+
+def test_a_worker_that_its_nanny_replaces_is_waited_for_however_often_it_is_looked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # While the nanny begins the next worker there is none, for seconds, and it is looked all the time. As Dask has nobody else to
+    # try the jobs with, both are suspected; the second is innocent.
+    monkeypatch.setattr("jobs.run.LOOK_s", 0.01)
+    records = [(index, 0, str(tmp_path)) for index in range(2)]
+    with lone_worker(tmp_path, "--nanny") as address:
+        done = swept(doing.deadly, records, tmp_path / "kept", cluster(address))
+    assert [(entry.answer, entry.failure) for entry in done] == [(None, DIED), (1, None)]
 
 
 def test_workers_with_other_sources_are_refused_by_name(
