@@ -131,6 +131,19 @@ def test_a_log_is_replayed_with_its_controls(browser: Browser, watch: Open, carr
     page.wait_for("document.querySelector('#state').textContent === 'paused'")
 
 
+def test_every_axis_has_numbers_enough_to_read_its_scale(browser: Browser, watch: Open) -> None:
+    page = board_page(browser, watch())
+    # Centres and widths over four decades; a scale takes two numbers, a third shows that it is even.
+    few = """(() => { const few = [];
+        for (let k = 0; k < 400; k++) for (const centre of [0, 0.3, -7, 100]) {
+            const half = 0.05 * 10 ** (k / 100), { found, digits } = ticks(centre - half, centre + half, 4);
+            const told = new Set(found.map((value) => value.toFixed(digits)));
+            if (told.size < 3 || told.size > 9 || told.size !== found.length) few.push([centre, half, [...told]]);
+        }
+        return few; })()"""
+    assert page.value(few) == []
+
+
 def test_an_address_without_its_token_says_what_to_do(browser: Browser, watch: Open) -> None:
     page = browser.open(watch().server.url.split("#")[0])
     page.wait_for("document.querySelector('#trouble').textContent.includes('not whole')")

@@ -230,10 +230,16 @@ function legend(line) {
 
 function ticks(low, high, count) {
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((value) => value >= rough);
+  const steps = [0.5, 1, 2, 5, 10].map((factor) => factor * power), place = steps.findIndex((value) => value >= rough);
+  // One number on an axis tells no scale: from one step to the next it may be two and a half times too wide.
+  const step = multiples(steps[place], low, high).length < 3 ? steps[place - 1] : steps[place];
+  return { found: multiples(step, low, high), digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+}
+
+function multiples(step, low, high) {
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
-  return { found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+  return found;
 }
 
 function range(lines, from) {
