@@ -15,6 +15,7 @@ from toolchain.cache import CACHE_DIR
 
 PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"(?:^    .*\n|^\n(?=    ))+", flags=re.MULTILINE)
+NUMBER = re.compile(r"(?<![\w.^])-?\d+(?:\.\d+)?(?:e-?\d+)?")
 PATIENCE_S = 600.0
 
 
@@ -45,7 +46,9 @@ def test_every_command_of_the_page_works_and_the_gap_gets_its_name(folder: Path)
             for command in block.splitlines():
                 look(command, folder, environment)
         else:
-            shell(block, folder, environment)
+            said = shell(block, folder, environment)
+            if block.split("\n")[-1].startswith("twinlaw diagnose"):
+                as_the_page_prints_it(said)
     diagnosis = json.loads((folder / "build/diagnosis/diagnosis.json").read_text())
     assert diagnosis["verdict"] == "gap"
     assert diagnosis["found"] == ["azimuth.cable_spring"]
@@ -59,9 +62,30 @@ def test_the_makefile_runs_what_the_page_says_that_it_runs() -> None:
     assert "OUT ?= build" in makefile
 
 
-def shell(script: str, folder: Path, environment: dict[str, str]) -> None:
+def as_the_page_prints_it(said: str) -> None:
+    """The page's lines are said in their order, in these words; the figures within 5 %, as their last bits are the processor's."""
+    (printed,) = re.findall(r"^```text\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
+    lines = iter(said.splitlines())
+    for wanted in printed.splitlines():
+        if wanted != "...":
+            found = next((line for line in lines if NUMBER.sub("#", line) == NUMBER.sub("#", wanted)), None)
+            assert found is not None, (wanted, said)
+            if "chance" not in wanted:  # its exponent alone is told, and moves by one with a bit here and there
+                assert numbers(found) == pytest.approx(numbers(wanted), rel=0.05), (found, wanted)
+    secret, stiffness = re.search(r"value = (\S+)", PAGE), re.search(r"k (\S+) ± (\S+) N m", said)
+    assert secret is not None
+    assert stiffness is not None
+    assert abs(float(stiffness[1]) - float(secret[1])) < float(stiffness[2])
+
+
+def numbers(line: str) -> list[float]:
+    return [float(number) for number in NUMBER.findall(line)]
+
+
+def shell(script: str, folder: Path, environment: dict[str, str]) -> str:
     done = subprocess.run(["sh", "-e", "-c", script], cwd=folder, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, script + done.stdout + done.stderr
+    return done.stdout
 
 
 def look(command: str, folder: Path, environment: dict[str, str]) -> None:
