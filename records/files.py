@@ -54,7 +54,7 @@ def remove_all(paths: Iterable[Path]) -> None:
 
 def _unwritable(path: Path, error: OSError) -> BadInput:
     got = error.strerror or str(error)
-    if error.errno in {errno.ENOSPC, errno.EDQUOT}:
+    if error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
         return BadInput("output file", str(path), got, "room for it", "make room, or choose another --out")
     expected, remedy = "a folder that can be written", "choose another --out or change the folder's permissions"
     return BadInput("output file", str(path), got, expected, remedy)

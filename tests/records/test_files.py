@@ -1,0 +1,30 @@
+"""A file that finds no room is not there at all, and what was there before stays."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.test_project import ROOT
+
+# A limit of this process on the size of files stands for a full disk; Python ignores the signal and meets the error.
+PROGRAM = """
+import resource, sys
+from pathlib import Path
+from records.errors import BadInput
+from records.files import write_atomic
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+try:
+    write_atomic(Path(sys.argv[1]), "x" * 2000)
+except BadInput as error:
+    print(error)
+"""
+
+
+def test_a_file_without_room_leaves_what_was_there_and_says_to_make_room(tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    path.write_text("before", encoding="utf-8")
+    command = [sys.executable, "-c", PROGRAM, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
+    assert done.stdout.startswith(f"{path}: output file: got ")
+    assert "make room" in done.stdout
+    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("kept.json", "before")]
