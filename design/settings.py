@@ -120,7 +120,7 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
             f"plant {bound.plant.name!r}",
             f"the equations of {bound.plant.model}",
             "a helicopter with an elevation (model ce150)",
-            "pass a CE150 plant file; the others are for simulate, identify and diagnose",
+            "pass a CE150 plant file; the others are for identify, diagnose and watch of a log",
         )
     checks.keys(section, where, (), (*DEFAULTS, "psi_min_rad", "psi_max_rad", *AXES, "margins"))
     psi_limit = bound.parameter("Psi_lim")
