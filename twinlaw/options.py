@@ -30,7 +30,7 @@ def out(parser: argparse.ArgumentParser) -> None:
 
 def as_json(parser: argparse.ArgumentParser) -> None:
     """--json."""
-    parser.add_argument("--json", action="store_true", help="print one JSON object instead of tables")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables, and nothing besides")
 
 
 def logs(parser: argparse.ArgumentParser, dest: str, metavar: str, text: str) -> None:

@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for part in (maker, asker, plain):
         sweeping.workers(part)
     for part in (maker, asker, plain, scorer):
-        part.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+        part.add_argument("--json", action="store_true", help="print JSON instead of text, and nothing besides")
 
 
 def run(chosen: argparse.Namespace) -> int:
