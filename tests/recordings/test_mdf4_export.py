@@ -1,5 +1,6 @@
 """A run log as MDF4: every number, time and unit comes back through the importer's own reader."""
 
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -77,3 +78,25 @@ def test_without_asammdf_it_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setitem(sys.modules, "asammdf", None)
     with pytest.raises(BadInput, match="mdf4"):
         mdf4_bytes(log())
+
+
+def test_a_file_that_was_cut_short_is_one_clear_line(tmp_path: Path) -> None:
+    """Truth: the error alone; the package complains a second time when it collects what it had half opened."""
+    pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
+    whole = mdf4_bytes(log())
+    (tmp_path / "run.mf4").write_bytes(whole[: len(whole) // 2])
+    command = [sys.executable, "-m", "twinlaw.command", "import", str(tmp_path / "run.mf4")]
+    done = subprocess.run([*command, "--out", str(tmp_path / "run.csv")], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert not (tmp_path / "run.csv").exists()
+
+
+def test_a_file_at_which_the_reader_dies_is_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A damaged file makes asammdf 8.8 read beyond its memory about once in a hundred times."""
+    (tmp_path / "asammdf.py").write_text("import os, signal\ndef MDF(path): os.kill(os.getpid(), signal.SIGSEGV)\n")
+    (tmp_path / "run.mf4").write_bytes(b"MDF     ")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(BadInput, match="its reader ended with status -11"):
+        read_mdf4(tmp_path / "run.mf4")
