@@ -95,14 +95,19 @@ def _measurement(member: Member, conversion: Conversion) -> Iterator[str]:
     yield f'/begin MEASUREMENT {member.path} "" {kind} {conversion.name} 0 0 {limits}'
     yield f"ECU_ADDRESS 0x{member.address:08X}"
     if member.count > 1:
-        yield f"MATRIX_DIM {member.count}"
+        yield _matrix(member.count)
     yield "/end MEASUREMENT"
+
+
+def _matrix(count: int) -> str:
+    """All three dimensions, which ASAP2 1.6 demands and 1.7 allows: tools of both read it."""
+    return f"MATRIX_DIM {count} 1 1"
 
 
 def _digest(address: int) -> Iterator[str]:
     yield '/begin MEASUREMENT LAW_TABLE_DIGEST "SHA-256 of the controller table" UBYTE NO_COMPU_METHOD 0 0 0 255'
     yield f"ECU_ADDRESS 0x{address:08X}"
-    yield "MATRIX_DIM 32"
+    yield _matrix(32)
     yield "/end MEASUREMENT"
 
 

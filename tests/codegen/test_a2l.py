@@ -64,6 +64,15 @@ def test_blocks_nest_names_are_unique_and_every_reference_is_defined(arithmetic:
     assert {words[4] for words in limits} <= set(named(text, "RECORD_LAYOUT"))
 
 
+@pytest.mark.parametrize("arithmetic", ["float32", "fixed"])
+def test_arrays_have_the_three_dimensions_that_older_tools_demand(arithmetic: str) -> None:
+    """ASAP2 1.6: MATRIX_DIM xDim yDim zDim; 1.7: any number of them."""
+    _, _, text = image(arithmetic)
+    told = re.findall(r"MATRIX_DIM ([^\n]*)", text)
+    assert [dimensions for dimensions in told if not re.fullmatch(r"\d+ 1 1", dimensions)] == []
+    assert "32 1 1" in told
+
+
 def test_the_epk_is_the_digest_and_the_coefficients_are_told() -> None:
     table, _, text = image()
     assert f'EPK "{table.digest}"' in text
