@@ -32,7 +32,7 @@ Polynomial = tuple[float, ...]
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
 PLAUSIBLE_V = 2.0**20
-# A scheduling angle below this counts as zero in the generated law: it moves no coefficient, but its products would be subnormal and slow.
+# A scheduling angle below this counts as zero in the generated law: it moves no coefficient, and its products would be subnormal: slower.
 LEAST_SCHEDULE_RAD = 2.0**-30
 
 
