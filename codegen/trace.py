@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from codegen.trace_names import Constant, constants, find_constant
+from codegen.trace_names import Constant, constants, find_constant, identity
 from design.operating_points import design_point
 from design.settings import AXES, DesignSettings
 from records.errors import BadInput
@@ -99,7 +99,7 @@ def trace(
 
 def names(table: ControllerTable, arithmetic: str = "float32") -> tuple[Constant, ...]:
     """Every constant that can be traced, in the order of the C text."""
-    return tuple(constants(table, arithmetic))
+    return (*constants(table, arithmetic), *identity(table, arithmetic))
 
 
 def _points(table: ControllerTable, constant: Constant) -> Iterator[PointTrace]:

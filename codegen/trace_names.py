@@ -5,7 +5,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from codegen.fixed_formats import law_formats
+from codegen.fixed_formats import MISSING, law_formats
+from codegen.law import ARITHMETIC_CODES
 from codegen.law_frame import without_vanishing_powers
 from codegen.trace_literals import LEFT_OUT, LITERALS, Literal
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
@@ -60,7 +61,7 @@ def constants(table: ControllerTable, arithmetic: str = "float32") -> Iterator[C
 
 def find_constant(table: ControllerTable, name: str, arithmetic: str = "float32") -> Constant:
     """The constant called `name`, however it is spelled: LAW_ELEVATION_Q1[2] is elevation_q_1_V_rad[2]; raises BadInput."""
-    known = list(constants(table, arithmetic))
+    known = [*constants(table, arithmetic), *identity(table, arithmetic)]
     for constant in known:
         if constant.name == name:
             return constant
@@ -98,6 +99,20 @@ def _constants(table: ControllerTable) -> Iterator[Constant]:
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
     yield Constant("LEAST_SCHEDULE_RAD", LEAST_SCHEDULE_RAD, "rad", "constant of the method: below it Psi counts as 0")
+
+
+def identity(table: ControllerTable, arithmetic: str = "float32") -> Iterator[Constant]:
+    """What the C says of itself: which law this is, in which arithmetic, and the word that is no number."""
+    code = ARITHMETIC_CODES[arithmetic]
+    made_as = "constant of the method: the arithmetic that the board reports, 0 float32, 1 fixed"
+    yield Constant("LAW_ARITHMETIC_CODE", code, "1", made_as, literal=Literal(str(code), str(code)))
+    number = int(table.digest, 16)
+    made_as = "SHA-256 of the controller table, its name in its file, the image, frames, logs and reports"
+    literal = Literal(f'"{table.digest}"', str(number))
+    yield Constant("LAW_TABLE_DIGEST_HEX", float(number), "1", made_as, literal=literal)
+    if arithmetic == "fixed":
+        made_as = "constant of the method: the word for no number, which has no negative of its own"
+        yield Constant("LAW_MISSING", MISSING, "1", made_as, literal=Literal("INT32_MIN", str(MISSING)))
 
 
 def _formats(table: ControllerTable) -> Iterator[Constant]:
