@@ -4,6 +4,7 @@ Every coefficient is fitted over the same points with the same degree and weight
 fits of sums: P(1) = 0 and the small Q(1), which decide the slow poles, survive although single coefficients are off by far more.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,7 @@ from records.table import AxisLaw, Polynomial
 Array = NDArray[np.float64]
 
 NOISE = 1e-11
+DIGITS = 8  # float32 holds 7
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,14 @@ def fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
     coefficients[: len(fitted)] = fitted
     contributions = np.abs(coefficients) * np.max(np.abs(psi_rad)) ** np.arange(degree + 1)
     noise = contributions <= NOISE * np.max(np.abs(values))
-    return tuple(float(c) for c in np.where(noise, 0.0, coefficients))
+    return settled(np.where(noise, 0.0, coefficients))
+
+
+def settled(coefficients: Array) -> Polynomial:
+    """Coefficients to DIGITS digits of the largest: beyond, processors round differently, and a design shall have one digest on all."""
+    largest = float(np.max(np.abs(coefficients), initial=0.0))
+    places = DIGITS - 1 - math.floor(math.log10(largest)) if largest > 0.0 else 0
+    return tuple(round(c, places) + 0.0 for c in coefficients.tolist())
 
 
 def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degree: int) -> Schedule:

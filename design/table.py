@@ -12,7 +12,7 @@ from design.gate import check
 from design.operating_points import DesignPoints, design_points
 from design.report import DesignReport, make_report
 from design.rounding import FLOAT32, Rounding
-from design.schedule import fit, fit_error, fit_schedule
+from design.schedule import DIGITS, NOISE, fit, fit_error, fit_schedule
 from design.settings import AXES, DesignSettings
 from records.errors import BadInput
 from records.plant import plant_text
@@ -139,7 +139,9 @@ def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> d
         "poles_rad_s": [[pole.real, pole.imag] for pole in wishes.poles_rad_s],
         "free_degree": wishes.free_degree,
         "observer_pole": wishes.observer_pole,
-        "fit_error": asdict(fit_error(points.psi_rad, deltas, schedule)),
+        "fit_error": {
+            name: _plain([value])[0] for name, value in asdict(fit_error(points.psi_rad, deltas, schedule)).items()
+        },
         "b": [_plain(design.transfer.b) for design in designs],
         "a": [_plain(design.transfer.a) for design in designs],
         "q_V_rad": [_plain(delta.q) for delta in deltas],
@@ -148,4 +150,7 @@ def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> d
 
 
 def _plain(values: Iterable[float]) -> list[float]:
-    return [float(value) for value in values]
+    """The numbers to DIGITS digits each, 0 for what is rounding beside the largest: the same on every processor, as the table's own are."""
+    found = [float(value) for value in values]
+    least = NOISE * max(map(abs, found), default=0.0)
+    return [float(f"{value:.{DIGITS}g}") if abs(value) > least else 0.0 for value in found]

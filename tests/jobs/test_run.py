@@ -139,7 +139,14 @@ def test_ended_in_the_middle_it_keeps_what_is_done_and_leaves_no_process(
     program.write_text(PROGRAM)
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, str(program), str(tmp_path)]
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        command,
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs do not hear it
+    )
     assert process.stdout is not None
     said = process.stdout.readline() + process.stdout.readline()
     workers = begun(tmp_path, "begun", 2)
