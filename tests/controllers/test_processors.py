@@ -1,0 +1,36 @@
+"""One plant file makes one table: which kernels a processor lends to the matrix library does not show in the digest."""
+
+import os
+import platform
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = """
+from pathlib import Path
+from controllers.table import CONTROLLERS
+from design.settings import read_settings
+from records.plant import load_plant
+from sim.bind import bind
+
+bound = bind(load_plant(Path("plants/ce150.toml")))
+for name, controller in CONTROLLERS.items():
+    print(name, controller.design(bound, read_settings(bound)).digest)
+"""
+# Names by which OpenBLAS picks its kernels: with none of fused products, with longer vectors, with both.
+KERNELS = ("Prescott", "Sandybridge", "Haswell")
+
+
+def digests(kernels: str) -> str:
+    environment = {**os.environ, "OPENBLAS_CORETYPE": kernels, "OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=False)
+    if done.returncode < 0:
+        pytest.skip(f"this processor does not have the kernels {kernels}")
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="kernels are named for x86-64")
+def test_other_kernels_make_the_same_table() -> None:
+    assert digests(KERNELS[0]) == digests(KERNELS[1]) == digests(KERNELS[2])
