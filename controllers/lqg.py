@@ -27,7 +27,7 @@ from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.lqg_gains import WEIGHTS, gains_at
-from design.schedule import fit
+from design.schedule import fit, stored_fit
 from design.settings import AXES
 from design.table import SENSORS
 from records.law_table import LawTable
@@ -168,7 +168,7 @@ def _degree(points: Points, values: Array) -> int:
 
 def _gains(points: Points, axis: str, values: dict[str, Array], degrees: dict[str, int]) -> LqgGains:
     return LqgGains(
-        **{name: fit(points.psi_rad, values[name], degrees[name]) for name in NAMES},
+        **{name: stored_fit(points.psi_rad, values[name], degrees[name]) for name in NAMES},
         angle_max_rad=ANGLE_MAX_RAD,
         rate_max_rad_s=RATE_MAX_RAD_S,
         missing_max_V=MISSING_MAX_V,

@@ -54,21 +54,24 @@ def fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
     coefficients[: len(fitted)] = fitted
     contributions = np.abs(coefficients) * np.max(np.abs(psi_rad)) ** np.arange(degree + 1)
     noise = contributions <= NOISE * np.max(np.abs(values))
-    return settled(np.where(noise, 0.0, coefficients))
+    return tuple(float(c) for c in np.where(noise, 0.0, coefficients))
 
 
-def settled(coefficients: Array) -> Polynomial:
-    """Coefficients to DIGITS digits of the largest: beyond, processors round differently, and a design shall have one digest on all."""
-    largest = float(np.max(np.abs(coefficients), initial=0.0))
+def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
+    """The same as a table holds it, to DIGITS digits of the largest coefficient: beyond, processors round differently, and one design
+    shall have one digest on all of them."""
+    coefficients = fit(psi_rad, values, degree)
+    largest = max(map(abs, coefficients))
     places = DIGITS - 1 - math.floor(math.log10(largest)) if largest > 0.0 else 0
-    return tuple(round(c, places) + 0.0 for c in coefficients.tolist())
+    return tuple(round(c, places) + 0.0 for c in coefficients)
 
 
 def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degree: int) -> Schedule:
     """Fit all coefficients of the designs (points,) with one degree and equal weights."""
     q, p = np.array([design.q for design in designs]), np.array([design.p for design in designs])
     return Schedule(
-        q=tuple(fit(psi_rad, column, degree) for column in q.T), p=tuple(fit(psi_rad, column, degree) for column in p.T)
+        q=tuple(stored_fit(psi_rad, column, degree) for column in q.T),
+        p=tuple(stored_fit(psi_rad, column, degree) for column in p.T),
     )
 
 

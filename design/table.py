@@ -12,7 +12,7 @@ from design.gate import check
 from design.operating_points import DesignPoints, design_points
 from design.report import DesignReport, make_report
 from design.rounding import FLOAT32, Rounding
-from design.schedule import DIGITS, NOISE, fit, fit_error, fit_schedule
+from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import AXES, DesignSettings
 from records.errors import BadInput
 from records.plant import plant_text
@@ -101,7 +101,7 @@ def frame_entries(
     voltages_V = np.array([point.u0[AXES.index(axis)] for point in equilibria])
     u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
     return {
-        "feedforward_V": fit(psi_rad, voltages_V, settings.feedforward_degree),
+        "feedforward_V": stored_fit(psi_rad, voltages_V, settings.feedforward_degree),
         "prefilter_time_constant_s": wishes.prefilter_time_constant_s,
         "u_min_V": u_min_V,
         "u_max_V": u_max_V,

@@ -123,10 +123,13 @@ def loop():
 
 @pytest.mark.parametrize(
     ("on", "amplitudes", "off_dB", "off_deg"),
-    [("inputs", (0.5, 0.5), 0.4, 4.0), ("references", (0.06, 0.15), 0.4, 4.0)],
+    [("inputs", (0.8, 0.8), 0.4, 4.0), ("references", (0.06, 0.15), 0.4, 4.0)],
 )
 def test_the_ce150_in_its_loop_has_the_responses_of_its_linearisation(loop, on, amplitudes, off_dB, off_deg):
-    """Where both axes' own responses are coherent they are those of A and B at the operating point, as rms over the matched range."""
+    """Where both axes' own responses are coherent they are those of A and B at the operating point, as rms over the matched range.
+
+    With half a volt the loop's answer to the encoders' steps is two to three times the azimuth's random errors, and told.
+    """
     plant, table = loop
     sweep = design_sweep(0.3, 10.0, table.sample_period_s)
     logs = closed_loop_sweeps(plant, table, sweep, PSI_RAD, amplitudes, on)
