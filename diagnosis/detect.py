@@ -88,10 +88,10 @@ def _events(case: Case, ground: Ground, drawn: Array) -> tuple[list[float], Arra
 
 def _pulses(ground: Ground, drawn: Array, target: int) -> tuple[float, Array]:
     """The largest gain of steps and pulses of one target, in the log and in each replica."""
-    answers = ground.answers_to_steps(target)
     _, scores = ground.steps(target)
-    share = ground.solve @ (ground.slopes.T @ answers)
-    score = answers.T @ drawn - share.T @ (ground.slopes.T @ drawn)
+    met = ground.steps_against(target, np.concatenate([drawn, ground.slopes], axis=1))
+    replicas = drawn.shape[1]
+    score = met[:, :replicas] - met[:, replicas:] @ ground.solve @ (ground.slopes.T @ drawn)
     gram = scores.gram
     first, last = _spans(len(gram))
     norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)

@@ -1,6 +1,6 @@
 """The extended Kalman filter of diagnosis/c, compiled with a plant's equations: whitened innovations and their slopes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from sim.sincos import sincos_header
 from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 
 C_DIR = Path(__file__).parent / "c"
-MAX_COLUMNS = 256
+PART = 256  # instants answered at a time: what they fill stays in the processor's cache
 # Read once, when this module is: what is compiled later and how it is called stay of one make, whatever happens to the files.
 SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c"))
 HEADERS = tuple(c_text(path) for folder in (C_DIR, SIM_C) for path in sorted(folder.glob("*.h")))
@@ -86,7 +86,7 @@ class Filter:
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
-        assert len(columns) <= MAX_COLUMNS
+        assert len(columns) <= self.lib.MAX_COLUMNS
         width, steps = max(slots) + 1, len(tape.t_s)
         rubs = noise.rub if self.axes else np.zeros(1)
         given = _given(tape, p, x0, replace(noise, rub=rubs)) | {
@@ -131,39 +131,50 @@ class Filter:
         return request
 
     def respond(
-        self,
-        tape: Tape,
-        run: Pass,
-        values: Array,
-        targets: Sequence[int],
-        slots: Sequence[int],
-        into: Array | None = None,
-    ) -> Array:
-        """Change of the whitened innovations, shape (rows, slots, columns), by small disturbances `values` (steps, targets, columns).
+        self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]
+    ) -> Iterator[tuple[NDArray[np.int64], Array]]:
+        """Change of the whitened innovations by small disturbances `values` (steps, targets, columns), some of the tape at a time.
 
-        A target below the number of states is a state, disturbed over the step from an instant; beyond, an output at that instant.
-        The answer is written `into` zeros of that shape where they are given.
+        Yields places (m,) among the run's w, taken row by row, and the changes (m, columns) there, in room that the next part takes;
+        places that no part names do not change. A target below the number of states is a state, disturbed over the step from an
+        instant; beyond, an output at that instant.
         """
         assert run.gains is not None
-        assert values.shape[2] <= MAX_COLUMNS
-        F, K, H = run.gains
-        width, columns = max(slots) + 1, values.shape[2]
-        dw = np.zeros((tape.rows, width, columns)) if into is None else into
-        arrays: dict[str, NDArray[Any] | None] = {
-            "F": F,
-            "K": K,
-            "H": H,
-            "s": _double(run.s),
-            "value": _double(values),
-            "target": np.array(targets, dtype=np.int32),
-            "slot": np.array(slots, dtype=np.int32),
-            "place": np.ascontiguousarray(tape.place, dtype=np.int64),
-            "dw": dw,
-        }
-        request = self._request("response_request *", arrays)
-        request.steps, request.columns, request.targets, request.slots = len(tape.t_s), columns, len(targets), width
-        self.lib.filter_respond(request)
-        return dw
+        width, count = max(slots) + 1, values.shape[2]
+        assert count <= self.lib.MAX_COLUMNS
+        counts = (tape.place >= 0) & (np.array(slots) >= 0)
+        places = (tape.place * width + np.array(slots))[counts]
+        within = np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1)
+        s, state, room = run.s.reshape(-1)[places], np.zeros((self.states, self.lib.MAX_COLUMNS)), np.zeros((0, count))
+        awake = 0
+        for first in range(0, len(tape.t_s), PART):
+            part = slice(first, first + PART)
+            begin, end = int(counts[:first].sum()), int(counts[: part.stop].sum())
+            if len(room) < end - begin:
+                room = np.zeros((end - begin, count))
+            arrays: dict[str, NDArray[Any] | None] = {
+                **dict(zip("FKH", (gain[part] for gain in run.gains), strict=True)),
+                "s": s[begin:end],
+                "value": _double(values[part]),
+                "target": np.array(targets, dtype=np.int32),
+                "slot": np.zeros(len(slots), dtype=np.int32),
+                "place": np.maximum(within[part] - begin, -1),
+                "dw": room,
+                "state": state,
+            }
+            request = self._request("response_request *", arrays)
+            request.steps, request.columns, request.targets, request.slots = len(values[part]), count, len(targets), 1
+            request.awake = awake
+            self.lib.filter_respond(request)
+            awake = request.awake
+            yield places[begin:end], room[: end - begin]
+
+    def response(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:
+        """The whole of `respond`, shape (rows, slots, columns)."""
+        found = np.zeros((run.w.size, values.shape[2]))
+        for places, changes in self.respond(tape, run, values, targets, slots):
+            found[places] = changes
+        return found.reshape(*run.w.shape, -1)
 
 
 def _given(tape: Tape, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[Any] | None]:

@@ -1,6 +1,6 @@
 """Where looks are taken from: a fit, what projects its numbers out, and how the filter there answers small disturbances."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,7 +44,6 @@ class Ground:
     tapes: tuple[Tape, ...]
     filter: Filter
     kept: dict[int, tuple[Array, Scores]] = field(default_factory=dict)
-    answers: dict[int, Array] = field(default_factory=dict)
 
     def still_to_gain(self, w: Array) -> float:
         """What moving the plant's coefficients would add to the log likelihood of innovations w, to first order."""
@@ -61,54 +60,88 @@ class Ground:
         """Scores of columns (rows, k)."""
         return self.scores(columns.T @ columns, self.slopes.T @ columns, columns.T @ self.w)
 
-    def gains_of(self, columns: Array) -> Array:
-        """Gain of the log likelihood (k,) by each of columns (rows, k) alone, in its own direction only."""
-        cross = self.slopes.T @ columns
+    def scores_by(self, values: Sequence[Array], target: int) -> Scores:
+        """Scores of the answers to disturbances values[flight] (steps, k) of one target, see filter.py."""
+        gram, beside = self._met(values, target, _gram, self._own())
+        return self.scores(gram, beside[:, :-1].T, beside[:, -1])
+
+    def gains_by(self, values: Sequence[Array], target: int) -> Array:
+        """Gain of the log likelihood (k,) by each of the answers to disturbances alone, in its own direction only."""
+        squares, beside = self._met(values, target, _squares, self._own())
+        cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
         own = self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta)
-        norm = np.einsum("ij,ij->j", columns, columns) - np.einsum("ij,ij->j", cross, share)
-        score = share.T @ own - columns.T @ self.w
+        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ own - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
-
-    def answer(self, values: Sequence[Array], target: int) -> Array:
-        """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target, see filter.py."""
-        own = len(self.case.kit.states)
-        if target >= own:
-            target += self.filter.states - own
-
-        width = max(self.case.slots) + 1
-        found = np.zeros((sum(tape.rows for tape in self.tapes) * width, values[0].shape[1]))
-        ends = np.cumsum([tape.rows * width for tape in self.tapes])[:-1]
-
-        def over(tape: Tape, run: Pass, value: Array, room: Array) -> None:
-            into = room.reshape(tape.rows, width, -1)
-            self.filter.respond(tape, run, value[:, None, :], [target], self.case.slots, into)
-
-        each(over, self.tapes, self.runs, values, np.split(found, ends))
-        return found
 
     def steps(self, target: int) -> tuple[Array, Scores]:
         """Instants (k,) and the scores of unit steps at them, in acceleration or in the output, of one target."""
         if target not in self.kept:
-            answers = self.answers_to_steps(target)
-            self.kept[target] = self.instants(), self.scores_of(answers)
+            self.kept[target] = self.instants(), self.scores_by(self._unit_steps(target), target)
         return self.kept[target]
 
-    def answers_to_steps(self, target: int) -> Array:
-        """Answers (rows, k) to unit steps of one target."""
-        if target not in self.answers:
-            values = []
-            for tape in self.tapes:
-                on = (tape.t_s[:, None] >= self.instants()[None, :] - 1e-9).astype(float)
-                moves = target < len(self.case.kit.states)
-                values.append(on * np.append(np.diff(tape.t_s), 0.0)[:, None] if moves else on)
-            self.answers[target] = self.answer(values, target)
-        return self.answers[target]
+    def steps_against(self, target: int, columns: Array) -> Array:
+        """Products (k, m) of the answers to those unit steps with columns (rows, m)."""
+        return self._met(self._unit_steps(target), target, _squares, columns)[1]
+
+    def answer(self, values: Sequence[Array], target: int) -> Array:
+        """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target."""
+        place = self._place(target)
+
+        def over(tape: Tape, run: Pass, value: Array) -> Array:
+            return self.filter.response(tape, run, value[:, None, :], [place], self.case.slots)
+
+        return np.concatenate(
+            [found.reshape(-1, found.shape[2]) for found in each(over, self.tapes, self.runs, values)]
+        )
+
+    def _met(
+        self, values: Sequence[Array], target: int, product: Callable[[Array], Array], columns: Array
+    ) -> tuple[Array, Array]:
+        """Sums over all rows of a product of the answers (rows, k) with themselves, and of theirs (k, m) with columns (rows, m)."""
+        place, sizes = self._place(target), [run.w.size for run in self.runs]
+
+        def over(tape: Tape, run: Pass, value: Array, part: Array) -> tuple[Array, Array]:
+            sums: tuple[Array, Array] | None = None
+            for places, E in self.filter.respond(tape, run, value[:, None, :], [place], self.case.slots):
+                found = product(E), E.T @ part[places]
+                sums = found if sums is None else (sums[0] + found[0], sums[1] + found[1])
+            assert sums is not None
+            return sums
+
+        found = each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
+        return sum(one for one, _ in found), sum(other for _, other in found)  # type: ignore[return-value]
+
+    def _own(self) -> Array:
+        """The slopes with the innovations behind them (rows, free + 1)."""
+        return np.column_stack([self.slopes, self.w])
+
+    def _unit_steps(self, target: int) -> list[Array]:
+        """Unit steps at the grid's instants by flight (steps, k)."""
+        found = []
+        for tape in self.tapes:
+            on = (tape.t_s[:, None] >= self.instants()[None, :] - 1e-9).astype(float)
+            moves = target < len(self.case.kit.states)
+            found.append(on * np.append(np.diff(tape.t_s), 0.0)[:, None] if moves else on)
+        return found
+
+    def _place(self, target: int) -> int:
+        """A target of the kit's own states and outputs, counted as the filter's."""
+        own = len(self.case.kit.states)
+        return target if target < own else target + self.filter.states - own
 
     def instants(self) -> Array:
         """The grid of instants of steps (k,), in s."""
         end = max(tape.t_s[-1] for tape in self.tapes)
         return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
+
+
+def _gram(E: Array) -> Array:
+    return E.T @ E
+
+
+def _squares(E: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->j", E, E))
 
 
 def ground_of(case: Case, fit: Fit) -> Ground:

@@ -43,7 +43,7 @@ WORTH = 10.0  # nats below which no frame counts as lost
 def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
     """The case whose tapes say of each frame how much likelier it is lost than not, and its fit with such losses, None where nothing
     speaks for them: then what the tapes say keeps losses from explaining a delay. The case as it was where nothing can be said."""
-    if LOST_FRAMES not in case.kit.candidates or not _drives(case):
+    if LOST_FRAMES not in case.kit.candidates or not drives(case):
         return case, None
     if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
         return case, None
@@ -90,7 +90,7 @@ def evidence(case: Case, share: float) -> float:
     return float(np.sum(np.logaddexp(np.log1p(-share), np.log(share) + ratios[ratios != 0.0])))
 
 
-def _drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
+def drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     """Input column -> the state that it drives and by how much; only rotors whose speed is a state of its own have one."""
     kit, model = case.kit, case.kit.bound.model
     return {
@@ -112,7 +112,7 @@ def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: i
         w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
         at += rows
         before = _supposed(flight.tape, ground.fit.supposed)
-        ratios, power = _ratios(flight.tape.u, list(_drives(case)), unit, w, before, _judged(flight.tape), sweeps)
+        ratios, power = _ratios(flight.tape.u, list(drives(case)), unit, w, before, _judged(flight.tape), sweeps)
         flights.append(replace(flight, tape=replace(flight.tape, lost=ratios, loss_power=power)))
     return case.with_flights(flights)
 
@@ -122,13 +122,13 @@ def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
     tape, run, supposed = ground.tapes[index], ground.runs[index], ground.fit.supposed
     p = coefficients(case, case.kit.variant(supposed.effects), supposed)
     model = case.kit.bound.model
-    rows, drives = np.arange(len(tape.t_s)), _drives(case)
+    rows = np.arange(len(tape.t_s))
     h = np.append(np.diff(tape.t_s), 0.0)
     found = []
-    for state, gain in drives.values():
+    for state, gain in drives(case).values():
         values = np.zeros((len(rows), 1, APART))
         values[rows, 0, rows % APART] = h * evaluated(model, p[: case.kit.own], gain)
-        found.append(ground.filter.respond(tape, run, values, [state], case.slots))
+        found.append(ground.filter.response(tape, run, values, [state], case.slots))
     return _unfolded(np.stack(found, axis=2))
 
 

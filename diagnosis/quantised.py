@@ -39,9 +39,9 @@ def _gains(ground: Ground, column: int, target: int, steps: Array) -> Array:
     for tape in ground.tapes:
         u = tape.u[:, column, None]
         h = np.append(np.diff(tape.t_s), 0.0)[:, None]
-        values.append((steps * np.round(u / steps) - u) * h)
-    # Errors that the rig has move the innovations as its answer says; what the model would add moves them the other way.
-    return ground.gains_of(-ground.answer(values, target))
+        # Errors that the rig has move the innovations as its answer says; what the model would add moves them the other way.
+        values.append((u - steps * np.round(u / steps)) * h)
+    return ground.gains_by(values, target)
 
 
 def _target(ground: Ground, variable: sympy.Symbol) -> int | None:

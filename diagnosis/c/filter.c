@@ -11,11 +11,21 @@
 
 #define N N_STATES
 #define WIDTH ((N + 7) / 8 * 8)
-#define MAX_COLUMNS 256
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
+#define BLOCK 8    /* columns of slopes worked on at a time, so that they stay in registers */
+#define BLOCKS (MAX_COLUMNS / BLOCK)
+#define PENDING 32 /* measurements whose slopes are multiplied at a time */
+
 typedef double matrix[N][WIDTH]; /* N by N, its rows filled up with zeros to whole vectors */
+typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
+
+/* The entries of each row that are not 0. */
+typedef struct {
+    int count[N], place[N][N];
+    double value[N][N];
+} sparse;
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
@@ -29,8 +39,22 @@ typedef struct {
     int64_t pieces;
     jacobians j;
     matrix P;
-    double S[N][MAX_COLUMNS];
+    int pending;
+    /* By blocks of columns: slopes of the state, whitened slopes not yet multiplied, the lower half of their products, and those with
+     * the innovations; what the plant's equations say of the columns. Columns beyond the request's are 0. */
+    block S[BLOCKS][N], waiting[BLOCKS][PENDING], gram[BLOCKS][MAX_COLUMNS], pull[BLOCKS];
+    block E[BLOCKS], D[N][BLOCKS];
 } filter_state;
+
+static int blocks(const filter_request *request) { return (request->columns + BLOCK - 1) / BLOCK; }
+
+/* The request's columns of a row of slopes by all parameters. */
+static void gather(const filter_request *request, const double *row, block *to)
+{
+    double *const entry = (double *)to;
+    for (int k = 0; k < request->columns; k++)
+        entry[k] = row[request->column[k]];
+}
 
 static void start(filter_state *at, filter_request *request)
 {
@@ -41,8 +65,18 @@ static void start(filter_state *at, filter_request *request)
         at->body.x[i] = request->x0[i];
         for (int j = 0; j < WIDTH; j++)
             at->P[i][j] = i == j ? request->p0[i] : 0.0;
-        for (int k = 0; k < request->columns; k++)
-            at->S[i][k] = 0.0;
+        for (int b = 0; b < blocks(request); b++)
+            at->S[b][i] = (block){0.0};
+    }
+    at->pending = 0;
+    for (int b = 0; b < blocks(request); b++) {
+        for (int m = 0; m < PENDING; m++)
+            at->waiting[b][m] = (block){0.0};
+        for (int k = 0; k < MAX_COLUMNS; k++)
+            at->gram[b][k] = (block){0.0};
+        at->pull[b] = at->E[b] = (block){0.0};
+        for (int i = 0; i < N; i++)
+            at->D[i][b] = (block){0.0};
     }
     for (int a = 0; a < N_AXES; a++)
         if (request->locked[a]) {
@@ -59,6 +93,23 @@ static void apply(filter_state *at, int64_t step)
 {
     for (int j = 0; j < N_INPUTS; j++)
         at->u[j] = lane_clamp(at->request->u[step * N_INPUTS + j], at->c[INPUT_LOWER[j]], at->c[INPUT_UPPER[j]]);
+}
+
+/* gram += W'W of the slopes that wait, four rows of it at a time. */
+static void multiply(filter_state *at)
+{
+    for (int k = 0; k < at->request->columns; k += 4) {
+        const double *const left = (const double *)at->waiting[k / BLOCK] + k % BLOCK;
+        for (int b = 0; b <= k / BLOCK; b++) {
+            block sum[4] = {{0.0}};
+            for (int m = 0; m < at->pending; m++)
+                for (int i = 0; i < 4; i++)
+                    sum[i] += left[m * BLOCK + i] * at->waiting[b][m];
+            for (int i = 0; i < 4; i++)
+                at->gram[b][k + i] += sum[i];
+        }
+    }
+    at->pending = 0;
 }
 
 /* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
@@ -95,30 +146,25 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         r->w[row * r->slots + slot] = nu * scale;
         r->s[row * r->slots + slot] = s;
     }
-    if (!r->columns)
-        return;
-    double slope[MAX_COLUMNS];
-    for (int k = 0; k < r->columns; k++)
-        slope[k] = -E[r->column[k]];
-    for (int i = 0; i < N; i++)
-        if (H[i] != 0.0)
-            for (int k = 0; k < r->columns; k++)
-                slope[k] -= H[i] * at->S[i][k];
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < r->columns; k++)
-            at->S[i][k] += K[i] * slope[k];
-    if (counts && r->dw)
-        for (int k = 0; k < r->columns; k++)
-            r->dw[(row * r->slots + slot) * r->columns + k] = slope[k] * scale;
-    if (!counts || !r->gram)
-        return;
-    for (int k = 0; k < r->columns; k++) {
-        const double part = slope[k] / s;
-        double *const restrict to = r->gram + (int64_t)k * r->columns;
-        r->pull[k] += part * nu;
-        for (int l = 0; l <= k; l++)
-            to[l] += part * slope[l];
+    gather(r, E, at->E);
+    for (int b = 0; b < blocks(r); b++) {
+        block slope = -at->E[b];
+        for (int i = 0; i < N; i++)
+            if (H[i] != 0.0)
+                slope -= H[i] * at->S[b][i];
+        for (int i = 0; i < N; i++)
+            at->S[b][i] += K[i] * slope;
+        if (!counts)
+            continue;
+        slope *= scale;
+        at->waiting[b][at->pending] = slope;
+        at->pull[b] += slope * (nu * scale);
+        if (r->dw)
+            for (int k = b * BLOCK; k < r->columns && k < (b + 1) * BLOCK; k++)
+                r->dw[(row * r->slots + slot) * r->columns + k] = slope[k % BLOCK];
     }
+    if (counts && ++at->pending == PENDING)
+        multiply(at);
 }
 
 static void measure(filter_state *at, int64_t step)
@@ -146,28 +192,39 @@ static void measure(filter_state *at, int64_t step)
             r->filtered[row * N + i] = at->body.x[i];
 }
 
-/* to = left times right; most entries of `left` are 0. */
-static void product(const matrix left, const matrix right, matrix to)
+static void entries_of(const double *rows, int stride, sparse *to)
+{
+    for (int i = 0; i < N; i++) {
+        int count = 0;
+        for (int k = 0; k < N; k++)
+            if (rows[i * stride + k] != 0.0) {
+                to->place[i][count] = k;
+                to->value[i][count++] = rows[i * stride + k];
+            }
+        to->count[i] = count;
+    }
+}
+
+static void product(const sparse *left, const matrix right, matrix to)
 {
     for (int i = 0; i < N; i++) {
         double sum[WIDTH] = {0.0};
-        for (int m = 0; m < N; m++)
-            if (left[i][m] != 0.0)
-                for (int k = 0; k < WIDTH; k++)
-                    sum[k] += left[i][m] * right[m][k];
+        for (int e = 0; e < left->count[i]; e++)
+            for (int k = 0; k < WIDTH; k++)
+                sum[k] += left->value[i][e] * right[left->place[i][e]][k];
         for (int k = 0; k < WIDTH; k++)
             to[i][k] = sum[k];
     }
 }
 
-/* F = 1 + h A + h^2 A^2 / 2, with the rows of a held axis' velocity emptied. */
-static void transition(const double *slopes, double h_s, matrix F)
+/* F = 1 + h A + h^2 A^2 / 2 */
+static void transition(const double *slopes, const sparse *entries, double h_s, matrix F)
 {
     matrix A = {{0.0}}, square;
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++)
             A[i][k] = slopes[i * N + k];
-    product(A, A, square);
+    product(entries, A, square);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < WIDTH; k++)
             F[i][k] = (i == k) + h_s * (A[i][k] + 0.5 * h_s * square[i][k]);
@@ -177,11 +234,13 @@ static void transition(const double *slopes, double h_s, matrix F)
 static void spread(filter_state *at, const matrix F, const double *noise)
 {
     matrix FP, PF = {{0.0}};
-    product(F, at->P, FP);
+    sparse entries;
+    entries_of(F[0], WIDTH, &entries);
+    product(&entries, at->P, FP);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++)
             PF[k][i] = FP[i][k];
-    product(F, PF, at->P);
+    product(&entries, PF, at->P);
     for (int i = 0; i < N; i++) {
         for (int k = 0; k < i; k++)
             at->P[k][i] = at->P[i][k];
@@ -189,34 +248,27 @@ static void spread(filter_state *at, const matrix F, const double *noise)
     }
 }
 
-static void rates_of(const filter_state *at, double from[N][MAX_COLUMNS], double to[N][MAX_COLUMNS], bool forced)
+/* The slopes one step on: S + h (1 + h A / 2) (A S + D). */
+static void move_slopes(filter_state *at, const sparse *A, double h_s)
 {
     const filter_request *const r = at->request;
-    const jacobians *const j = &at->j;
-    for (int i = 0; i < N; i++) {
-        if (forced)
-            for (int k = 0; k < r->columns; k++)
-                to[i][k] = j->D[i * N_PARAMETERS + r->column[k]];
-        else
-            for (int k = 0; k < r->columns; k++)
-                to[i][k] = 0.0;
-        for (int m = 0; m < N; m++) {
-            const double a = j->A[i * N + m];
-            if (a != 0.0)
-                for (int k = 0; k < r->columns; k++)
-                    to[i][k] += a * from[m][k];
+    for (int i = 0; i < N; i++)
+        gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
+    for (int b = 0; b < blocks(r); b++) {
+        block *const S = at->S[b], rates[N];
+        for (int i = 0; i < N; i++) {
+            block sum = at->D[i][b];
+            for (int e = 0; e < A->count[i]; e++)
+                sum += A->value[i][e] * S[A->place[i][e]];
+            rates[i] = sum;
+        }
+        for (int i = 0; i < N; i++) {
+            block second = {0.0};
+            for (int e = 0; e < A->count[i]; e++)
+                second += A->value[i][e] * rates[A->place[i][e]];
+            S[i] += h_s * (rates[i] + 0.5 * h_s * second);
         }
     }
-}
-
-static void move_slopes(filter_state *at, double h_s)
-{
-    static _Thread_local double first[N][MAX_COLUMNS], second[N][MAX_COLUMNS];
-    rates_of(at, at->S, first, true);
-    rates_of(at, first, second, false);
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < at->request->columns; k++)
-            at->S[i][k] += h_s * (first[i][k] + 0.5 * h_s * second[i][k]);
 }
 
 /* Half of a step's unrest comes before its motion, so that it reaches the position within the step: else a very sure reading of a
@@ -257,6 +309,7 @@ static void advance(filter_state *at, int64_t step)
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
     double x[N], middle[N], noise[N];
     matrix F;
+    sparse A;
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
@@ -283,16 +336,16 @@ static void advance(filter_state *at, int64_t step)
             for (int k = 0; k < N_PARAMETERS; k++)
                 j->D[v * N_PARAMETERS + k] = 0.0;
         }
-    transition(j->A, h_s, F);
-    if (r->columns)
-        move_slopes(at, h_s);
+    entries_of(j->A, N, &A);
+    transition(j->A, &A, h_s, F);
+    move_slopes(at, &A, h_s);
     for (int a = 0; a < N_AXES; a++)
         if (at->body.move[a] == 0.0) {
             const int v = AXIS_VELOCITY[a];
             for (int k = 0; k < N; k++)
                 F[v][k] = 0.0;
-            for (int k = 0; k < r->columns; k++)
-                at->S[v][k] = 0.0;
+            for (int b = 0; b < blocks(r); b++)
+                at->S[b][v] = (block){0.0};
             if (r->locked[a])
                 noise[v] = 0.0;
         }
@@ -322,6 +375,12 @@ int32_t filter_run(filter_request *request)
                 return (int32_t)step;
         if (at.pieces > PIECES_ALLOWED + PIECES_A_STEP * step)
             return (int32_t)step;
+    }
+    multiply(&at);
+    for (int k = 0; k < request->columns; k++) {
+        request->pull[k] = at.pull[k / BLOCK][k % BLOCK];
+        for (int l = 0; l <= k; l++)
+            request->gram[k * request->columns + l] = at.gram[l / BLOCK][k][l % BLOCK];
     }
     return (int32_t)request->steps;
 }
@@ -364,18 +423,15 @@ static void respond_output(const response_request *r, int64_t step, int output, 
         r->dw[place * r->columns + k] = nu[k] * scale;
 }
 
-int32_t filter_respond(const response_request *r)
+int32_t filter_respond(response_request *r)
 {
-    static _Thread_local double e[N][MAX_COLUMNS], next[N][MAX_COLUMNS];
+    static _Thread_local double next[N][MAX_COLUMNS];
+    double (*const e)[MAX_COLUMNS] = (double(*)[MAX_COLUMNS])r->state;
     if (r->columns > MAX_COLUMNS)
         return -1;
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < r->columns; k++)
-            e[i][k] = 0.0;
-    int awake = 0;
     for (int64_t step = 0; step < r->steps; step++) {
         const double *const value = r->value + step * r->targets * r->columns;
-        awake = disturbed(r, value, awake);
+        const int awake = r->awake = disturbed(r, value, r->awake);
         for (int o = 0; o < N_OUTPUTS; o++) {
             const double *added = 0;
             for (int t = 0; t < r->targets; t++)

@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+enum { MAX_COLUMNS = 256 };
+
 /* A tape of `steps` instants: the inputs held from each to the next, and at some of them a measurement, NaN where there is none.
  *
  * Whitened innovations w and their slopes dw go to the row of the instant, the outputs to their slots. A measurement whose place or slot
@@ -20,17 +22,20 @@ typedef struct {
     const int32_t *column, *slot;            /* [columns] parameters to differentiate by; [N_OUTPUTS] */
     double *w, *s, *dw, *x;                  /* [rows][slots] twice, [rows][slots][columns] or NULL, [rows][N_STATES] predicted */
     double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
-    double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements, or NULL */
+    double *gram, *pull;                     /* [columns][columns] dw'dw, its lower half, and [columns] dw'w over all measurements */
     double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
     double rest_s;                           /* the usual step from row to row */
     double log_likelihood;
 } filter_request;
 
 /* The filter's linear answer to small disturbances, `columns` of them side by side: added to a state over the step from an instant
- * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. */
+ * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. A tape may be answered in parts:
+ * `state` and `awake`, 0 at the start, carry the answer from one to the next. */
 typedef struct {
     int64_t steps;
     int32_t columns, targets, slots;
+    int32_t awake;                  /* columns disturbed so far */
+    double *state;                  /* [N_STATES][MAX_COLUMNS] */
     const double *F, *K, *H, *s;    /* as above; s by row and slot */
     const double *value;            /* [steps][targets][columns] */
     const int32_t *target, *slot;   /* [targets], [N_OUTPUTS] */
@@ -39,6 +44,6 @@ typedef struct {
 } response_request;
 
 int32_t filter_run(filter_request *request);
-int32_t filter_respond(const response_request *request);
+int32_t filter_respond(response_request *request);
 
 #endif
