@@ -131,15 +131,20 @@ def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit
     assert np.allclose(found[:end], change, atol=0.02 * np.abs(change).max())
 
 
-def test_sums_over_parts_are_those_of_the_whole_answer(case: Case, fitted: Fit) -> None:
-    # Each disturbance begins in another part of the tape, the last in none; every sum within 1e-9 of the whole's largest.
+def test_sums_over_parts_are_those_of_the_whole_answer(
+    case: Case, fitted: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Each disturbance begins and ends in another part of the tape, the last in none; every sum within 1e-9 of the whole's largest.
     ground = ground_of(case, fitted)
     steps = len(ground.tapes[0].t_s)
     values = np.zeros((steps, 4))
     for column, first in enumerate((0, PART - 1, 3 * PART + 7)):
         values[first : first + 2 * PART, column] = np.linspace(1.0, -2.0, len(values[first : first + 2 * PART]))
     for target in (1, len(case.kit.states)):
-        whole, parts = ground.scores_of(ground.answer([values], target)), ground.scores_by([values], target)
+        parts = ground.scores_by([values], target)
+        with monkeypatch.context() as patched:
+            patched.setattr("diagnosis.filter.PART", steps)
+            whole = ground.scores_of(ground.answer([values], target))
         for one, other in ((parts.gram, whole.gram), (parts.score, whole.score), (parts.raw, whole.raw)):
             assert np.allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())
         assert parts.raw[3] == 0.0
