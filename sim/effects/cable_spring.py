@@ -23,7 +23,7 @@ def effects(model: Model) -> Iterator[Effect]:
         if entry.level:
             twins |= {
                 f"{axis}.tilt": "within a half turn, sin(angle) is nearly straight",
-                f"{axis}.wind": "within a half turn, a cosine is nearly straight",
+                f"{axis}.wind": "within a quarter turn, the drag's slope is nearly straight",
             }
         elif entry.gravity is not None:
             twins |= {f"{axis}.centre_of_gravity": "near the horizontal, both are straight in the angle"}

@@ -1,7 +1,7 @@
 """What turns the azimuth of a rig that does not stand still and level.
 
 (1)  torque - m sin(Phi - Phi_0)                the base is not level
-(2)  torque + c cos(Phi - Phi_w)                a steady draught
+(2)  torque + c s |s|, s = cos(Phi - Phi_w) - T_w Phi'      a steady draught past an arm that moves
 (3)  torque + offset on any axis, written - offset
 """
 
@@ -14,7 +14,7 @@ from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
 
-TURN = 3.2  # a little more than half a turn
+TURN = 6.3  # a whole turn either way: no fit that starts within half a turn is stopped
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -22,7 +22,8 @@ def effects(model: Model) -> Iterator[Effect]:
     for axis, entry in model.places.axes.items():
         yield _offset(axis, entry)
         if entry.level:
-            yield from _periodic(axis, entry)
+            yield _tilt(axis, entry)
+            yield _wind(axis, entry)
 
 
 def _offset(axis: str, entry: AxisPlace) -> Effect:
@@ -39,11 +40,9 @@ def _offset(axis: str, entry: AxisPlace) -> Effect:
     )
 
 
-def _periodic(axis: str, entry: AxisPlace) -> Iterator[Effect]:
+def _tilt(axis: str, entry: AxisPlace) -> Effect:
     size, angle = entry.torque_size, short(entry.angle)
-    same = "identical by form: one sine of the angle with a free phase"
-    near = "within a half turn, a sine is nearly straight"
-    yield Effect(
+    return Effect(
         name=f"{axis}.tilt",
         depends=f"torque({angle})",
         parameters=(
@@ -54,18 +53,36 @@ def _periodic(axis: str, entry: AxisPlace) -> Iterator[Effect]:
         story="The base is not level: the arm wants to swing to the low side.",
         source="pendulum on a tilted base",
         edit=lambda model, m, Phi_0: with_torque(model, axis, -m * sympy.sin(axis_of(model, axis).position - Phi_0)),
-        twins={f"{axis}.wind": same, f"{axis}.cable_spring": near},
+        twins={
+            f"{axis}.wind": "both pull to one side, and a fast wind hardly damps",
+            f"{axis}.cable_spring": "within a half turn, a sine is nearly straight",
+        },
     )
-    yield Effect(
+
+
+def _wind(axis: str, entry: AxisPlace) -> Effect:
+    size, angle = entry.torque_size, short(entry.angle)
+    return Effect(
         name=f"{axis}.wind",
-        depends=f"torque({angle})",
+        depends=f"torque({angle}, {angle}_dot)",
         parameters=(
-            EffectParameter("c", entry.torque_unit, -size, size, 0.05 * size, 0.0),
-            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(0.0, 1.57)),
+            EffectParameter("c", entry.torque_unit, 0.0, size, 0.05 * size, 0.0),
+            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14)),
+            EffectParameter("T_w", "s", 0.0, 2.0, 0.2),
         ),
-        equation=f"+ c cos({angle} - Phi_w)",
+        equation=f"+ c s |s|, s = cos({angle} - Phi_w) - T_w {angle}_dot",
         story="A steady draught in the room blows against the arm.",
-        source="drag of a steady wind, to first order",
-        edit=lambda model, c, Phi_w: with_torque(model, axis, c * sympy.cos(axis_of(model, axis).position - Phi_w)),
-        twins={f"{axis}.tilt": same, f"{axis}.cable_spring": near},
+        source="drag of a steady wind, by the square of the stream past the arm; T_w is the arm's length by its speed",
+        edit=lambda model, c, Phi_w, T_w: with_torque(model, axis, c * _stream(model, axis, Phi_w, T_w)),
+        twins={
+            f"{axis}.tilt": "both pull to one side, and a fast wind hardly damps",
+            f"{axis}.cable_spring": "within a quarter turn, the drag's slope is nearly straight",
+        },
     )
+
+
+def _stream(model: Model, name: str, Phi_w: sympy.Symbol, T_w: sympy.Symbol) -> sympy.Expr:
+    """The square of the stream past the arm, with its sign."""
+    axis = axis_of(model, name)
+    stream = sympy.cos(axis.position - Phi_w) - T_w * axis.velocity
+    return stream * sympy.Abs(stream)

@@ -66,7 +66,7 @@ def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> No
     assert {"azimuth", "elevation", "tail_input"} <= set(told)
     never = told["azimuth"].split(" of any size")[0]
     assert "quadratic_drag" in never
-    assert "end_stop" in never
+    assert "upper_stop" in never
     assert "delay below tau = " in told["main_input"]
     assert len(told) == len([note for note in hover.notes if note.startswith(UNSEEN)])
     assert len([note for note in hover.notes if note.startswith(IMITATION)]) == 1

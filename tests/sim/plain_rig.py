@@ -29,10 +29,15 @@ class Case:
 BEGIN_S = 5.0
 TAIL_BACKWARDS = (430.0, -0.45, 0.5, -250.0, 0.6, -0.7)
 NEAR_STOPS = (430.0, 0.55, 0.2, 250.0, 2.02, 0.3)
+NEAR_LOWER_STOP = (430.0, 0.55, 0.2, 250.0, -2.02, -0.3)
 
 
 def sgn(x: float) -> float:
     return float(x > 0) - float(x < 0)
+
+
+def squared(x: float) -> float:
+    return x * abs(x)
 
 
 def ramp(t: float, at: float) -> float:
@@ -100,7 +105,8 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.weight_shift": lambda s: -s.Delta * ramp(s.t, s.t_1) * cos(s.psi),
     "elevation.balance_weight": lambda s: -s.tau_g * s.b * cos(s.psi),
     "elevation.offset_force": lambda s: -s.offset,
-    "elevation.end_stop": lambda s: s.k * (max(-pi / 4 + s.a - s.psi, 0.0) - max(s.psi - pi / 4 + s.a, 0.0)),
+    "elevation.upper_stop": lambda s: -s.k * max(s.psi - pi / 4 + s.a, 0.0),
+    "elevation.lower_stop": lambda s: s.k * max(-pi / 4 + s.a - s.psi, 0.0),
     "elevation.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
     "elevation.centrifugal": lambda s: s.c * s.v_phi**2 * sin(2 * s.psi),
     "elevation.tail_gyroscopic": lambda s: s.K * s.w_T * s.v_phi,
@@ -119,8 +125,9 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.presliding": lambda s: -s.b * s.z / s.z_0,
     "azimuth.offset_force": lambda s: -s.offset,
     "azimuth.tilt": lambda s: -s.m * sin(s.phi - s.Phi_0),
-    "azimuth.wind": lambda s: s.c * cos(s.phi - s.Phi_w),
-    "azimuth.end_stop": lambda s: s.k * (max(-s.Phi_lim + s.a - s.phi, 0.0) - max(s.phi - s.Phi_lim + s.a, 0.0)),
+    "azimuth.wind": lambda s: s.c * squared(cos(s.phi - s.Phi_w) - s.T_w * s.v_phi),
+    "azimuth.upper_stop": lambda s: -s.k * max(s.phi - s.Phi_lim + s.a, 0.0),
+    "azimuth.lower_stop": lambda s: s.k * max(-s.Phi_lim + s.a - s.phi, 0.0),
     "azimuth.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
     "azimuth.gyroscopic": lambda s: -s.K * s.v_psi * s.w_M * sin(s.psi),
     "azimuth.coriolis": lambda s: s.c * sin(2 * s.psi) * s.v_psi * s.v_phi,

@@ -12,7 +12,7 @@ from sim.effects.effect import coefficient
 from sim.sensitivities import sensitivities
 from sim.simulate import simulate
 from tests.sim.conftest import PLANTS
-from tests.sim.plain_rig import BEGIN_S, NEAR_STOPS, SAMPLE_S, TAIL_BACKWARDS, Case, PlainRig, commands
+from tests.sim.plain_rig import BEGIN_S, NEAR_LOWER_STOP, NEAR_STOPS, SAMPLE_S, TAIL_BACKWARDS, Case, PlainRig, commands
 
 BOUND = bind(load_plant(PLANTS / "ce150.toml"))
 LIBRARY = library(BOUND)
@@ -30,13 +30,15 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "tail_input.deadzone": {"w": 0.8},
     "elevation.stribeck": {"v_s": 0.4},
     "azimuth.stribeck": {"v_s": 0.4, "e": 3.0},
-    "elevation.end_stop": {"a": 0.3},
-    "azimuth.end_stop": {"a": 0.3},
+    "elevation.upper_stop": {"a": 0.3},
+    "elevation.lower_stop": {"a": 1.2},
+    "azimuth.upper_stop": {"a": 0.3},
+    "azimuth.lower_stop": {"a": 0.3},
     "main_rotor.warmup": {"T": 8.0},
     "tail_rotor.warmup": {"T": 8.0},
     "azimuth.inertia_shape": {"J_0": 0.0005},
     "azimuth.tilt": {"Phi_0": 0.7},
-    "azimuth.wind": {"Phi_w": -0.6},
+    "azimuth.wind": {"Phi_w": -0.6, "T_w": 0.3},
     "azimuth.cable_spring": {"angle_0": 0.3, "h": 0.2},
     "main_input.delay": {"tau": 0.0125},
     "tail_input.delay": {"tau": 0.0125},
@@ -46,8 +48,9 @@ VALUES: Mapping[str, Mapping[str, float]] = {
 }
 STARTS = {
     "tail_rotor.reverse_asymmetry": TAIL_BACKWARDS,
-    "elevation.end_stop": NEAR_STOPS,
-    "azimuth.end_stop": NEAR_STOPS,
+    "elevation.upper_stop": NEAR_STOPS,
+    "azimuth.upper_stop": NEAR_STOPS,
+    "azimuth.lower_stop": NEAR_LOWER_STOP,
 }
 # What the difference of the two calculations may be, as a share of the largest change that the effect makes.
 TOLERANCE = 2e-4
@@ -168,8 +171,10 @@ def test_all_effects_at_next_to_no_size_have_derivatives_by_their_sizes() -> Non
         "elevation.weight_shift",
         "elevation.disturbance",
         "azimuth.disturbance",
-        "elevation.end_stop",
-        "azimuth.end_stop",
+        "elevation.upper_stop",
+        "elevation.lower_stop",
+        "azimuth.upper_stop",
+        "azimuth.lower_stop",
         "main_input.saturation",
         "tail_input.saturation",
         "tail_rotor.reverse_asymmetry",
