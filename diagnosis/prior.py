@@ -21,7 +21,6 @@ ONE_WAY = {
     "warmup": "a",
     "ground_effect": "a",
     "downwash": "a",
-    "wind": "c",
     "load_friction": "c",
 }
 MANY_SHAPES = 0.8  # by which friction that falls with speed goes behind dry friction, which is among its forms
