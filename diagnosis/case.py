@@ -37,6 +37,11 @@ class Flight:
     locked: tuple[str, ...]
     drive: Array
 
+    @cached_property
+    def step_s(self) -> float:
+        """The usual step from row to row."""
+        return float(np.median(np.diff(self.log.t_s)))
+
 
 @dataclass(frozen=True, eq=False)
 class Case:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -103,8 +104,7 @@ class Filter:
         F, K, H, gram = (found.pop(name) for name in ("F", "K", "H", "gram"))
         assert gram is not None
         gains = None if F is None or K is None or H is None else (F, K, H)
-        whole = gram + np.tril(gram, -1).T
-        return Pass(**found, gram=whole, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
+        return Pass(**found, gram=gram, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
 
     def _found(self, tape: Tape, width: int, columns: int, slopes: bool, gains: bool) -> dict[str, Array | None]:
         """Room for what a run leaves, as in filter.h; None for what is not kept."""
@@ -126,8 +126,8 @@ class Filter:
         """A request of C whose pointers are those of the arrays, which must live as long."""
         request = self.ffi.new(kind)
         for name, array in arrays.items():
-            address = self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
-            setattr(request, name, address)
+            if array is not None:
+                setattr(request, name, self.ffi.cast("void *", array.ctypes.data))
         return request
 
     def respond(
@@ -140,33 +140,29 @@ class Filter:
         instant; beyond, an output at that instant.
         """
         assert run.gains is not None
-        width, count = max(slots) + 1, values.shape[2]
+        F, K, H = run.gains
+        width, count, steps = max(slots) + 1, values.shape[2], len(tape.t_s)
         assert count <= self.lib.MAX_COLUMNS
         counts = (tape.place >= 0) & (np.array(slots) >= 0)
         places = (tape.place * width + np.array(slots))[counts]
-        within = np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1)
-        s, state, room = run.s.reshape(-1)[places], np.zeros((self.states, self.lib.MAX_COLUMNS)), np.zeros((0, count))
-        awake = 0
-        for first in range(0, len(tape.t_s), PART):
-            part = slice(first, first + PART)
-            begin, end = int(counts[:first].sum()), int(counts[: part.stop].sum())
-            if len(room) < end - begin:
-                room = np.zeros((end - begin, count))
-            arrays: dict[str, NDArray[Any] | None] = {
-                **dict(zip("FKH", (gain[part] for gain in run.gains), strict=True)),
-                "s": s[begin:end],
-                "value": _double(values[part]),
-                "target": np.array(targets, dtype=np.int32),
-                "slot": np.zeros(len(slots), dtype=np.int32),
-                "place": np.maximum(within[part] - begin, -1),
-                "dw": room,
-                "state": state,
-            }
-            request = self._request("response_request *", arrays)
-            request.steps, request.columns, request.targets, request.slots = len(values[part]), count, len(targets), 1
-            request.awake = awake
+        begins = np.append(0, np.cumsum(counts.sum(axis=1)))[[*range(0, steps, PART), steps]]
+        room = np.zeros((int(np.diff(begins).max()), count))
+        arrays: dict[str, NDArray[Any] | None] = {
+            "F": F,
+            "K": K,
+            "H": H,
+            "s": run.s.reshape(-1)[places],
+            "value": _double(values),
+            "target": np.array(targets, dtype=np.int32),
+            "place": np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1),
+            "dw": room,
+            "state": np.zeros((self.states, self.lib.MAX_COLUMNS)),
+        }
+        request = self._request("response_request *", arrays)
+        request.columns, request.targets = count, len(targets)
+        for part, (begin, end) in enumerate(pairwise(begins.tolist())):
+            request.first, request.end, request.base = part * PART, min((part + 1) * PART, steps), begin
             self.lib.filter_respond(request)
-            awake = request.awake
             yield places[begin:end], room[: end - begin]
 
     def response(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:

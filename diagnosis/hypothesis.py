@@ -71,14 +71,11 @@ def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, f
 
 def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed, rub_s: float) -> Noise:
     """The filter's noise: on each axis' speed its unrest, next to none elsewhere."""
-    kit = case.kit
     x0, p0 = start_under(variant, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
-    for axis, unrest in zip(kit.bound.model.axes, supposed.unrest, strict=True):
-        q[kit.states.index(str(axis.velocity))] = 10.0 ** (2.0 * unrest)
+    q[list(case.kit.velocities)] = 10.0 ** (2.0 * supposed.unrest)
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    rest_s = float(np.median(np.diff(flight.log.t_s)))
-    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive, rest_s)
+    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive, flight.step_s)
 
 
 def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:

@@ -73,6 +73,11 @@ class Kit:
         return tuple(str(state) for state in self.bound.model.states)
 
     @cached_property
+    def velocities(self) -> tuple[int, ...]:
+        """Which of its states is each axis' velocity."""
+        return tuple(self.states.index(str(axis.velocity)) for axis in self.bound.model.axes)
+
+    @cached_property
     def frictionless(self) -> frozenset[str]:
         """Axes without dry friction as stated."""
         model, known = self.bound.model, named_values(self.bound.model, self.bound.p)

@@ -52,7 +52,7 @@ def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tup
     power = np.zeros(len(BANDS_HZ) - 1)
     for flight, one, other in zip(case.flights, before, after, strict=True):
         change = np.nan_to_num(one - other)
-        step_s = float(np.median(np.diff(flight.log.t_s)))
+        step_s = flight.step_s
         spectrum = np.sum(np.abs(np.fft.rfft(change, axis=0)) ** 2, axis=1)
         frequency = np.fft.rfftfreq(len(change), step_s)
         power += np.histogram(frequency, BANDS_HZ, weights=spectrum)[0]

@@ -380,7 +380,7 @@ int32_t filter_run(filter_request *request)
     for (int k = 0; k < request->columns; k++) {
         request->pull[k] = at.pull[k / BLOCK][k % BLOCK];
         for (int l = 0; l <= k; l++)
-            request->gram[k * request->columns + l] = at.gram[l / BLOCK][k][l % BLOCK];
+            request->gram[k * request->columns + l] = request->gram[l * request->columns + k] = at.gram[l / BLOCK][k][l % BLOCK];
     }
     return (int32_t)request->steps;
 }
@@ -395,32 +395,32 @@ static int disturbed(const response_request *r, const double *value, int awake)
     return awake;
 }
 
-/* One output's part of the answer: the disturbance's own innovation, taken up by the gain. */
+/* One output's part of the answer: the disturbance's own innovation, taken up by the gain; none where nothing was read. */
 static void respond_output(const response_request *r, int64_t step, int output, int awake, const double *added,
                            double e[N][MAX_COLUMNS])
 {
     const double *const H = r->H + (step * N_OUTPUTS + output) * N, *const K = r->K + (step * N_OUTPUTS + output) * N;
+    const int64_t place = r->place[step * N_OUTPUTS + output];
     double nu[MAX_COLUMNS];
     bool seen = false;
     for (int i = 0; i < N; i++)
         seen |= H[i] != 0.0;
-    if (!seen)
-        return;
     for (int k = 0; k < awake; k++)
-        nu[k] = added ? added[k] : 0.0;
+        nu[k] = seen && added ? added[k] : 0.0;
     for (int i = 0; i < N; i++)
         if (H[i] != 0.0)
             for (int k = 0; k < awake; k++)
                 nu[k] += H[i] * e[i][k];
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < awake; k++)
-            e[i][k] -= K[i] * nu[k];
-    const int64_t row = r->place[step * N_OUTPUTS + output], place = row * r->slots + r->slot[output];
-    if (row < 0 || r->slot[output] < 0)
+    if (seen)
+        for (int i = 0; i < N; i++)
+            for (int k = 0; k < awake; k++)
+                e[i][k] -= K[i] * nu[k];
+    if (place < 0)
         return;
-    const double scale = 1.0 / sqrt(r->s[place]);
+    const double scale = seen ? 1.0 / sqrt(r->s[place]) : 0.0;
+    double *const dw = r->dw + (place - r->base) * r->columns;
     for (int k = 0; k < awake; k++)
-        r->dw[place * r->columns + k] = nu[k] * scale;
+        dw[k] = nu[k] * scale;
 }
 
 int32_t filter_respond(response_request *r)
@@ -429,7 +429,7 @@ int32_t filter_respond(response_request *r)
     double (*const e)[MAX_COLUMNS] = (double(*)[MAX_COLUMNS])r->state;
     if (r->columns > MAX_COLUMNS)
         return -1;
-    for (int64_t step = 0; step < r->steps; step++) {
+    for (int64_t step = r->first; step < r->end; step++) {
         const double *const value = r->value + step * r->targets * r->columns;
         const int awake = r->awake = disturbed(r, value, r->awake);
         for (int o = 0; o < N_OUTPUTS; o++) {

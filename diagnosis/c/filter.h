@@ -22,25 +22,27 @@ typedef struct {
     const int32_t *column, *slot;            /* [columns] parameters to differentiate by; [N_OUTPUTS] */
     double *w, *s, *dw, *x;                  /* [rows][slots] twice, [rows][slots][columns] or NULL, [rows][N_STATES] predicted */
     double *filtered;                        /* [rows][N_STATES] with the row's own measurement, or NULL */
-    double *gram, *pull;                     /* [columns][columns] dw'dw, its lower half, and [columns] dw'w over all measurements */
+    double *gram, *pull;                     /* [columns][columns] dw'dw and [columns] dw'w over all measurements */
     double *F, *K, *H;                       /* [steps][N_STATES^2], [steps][N_OUTPUTS][N_STATES] twice, or NULL */
     double rest_s;                           /* the usual step from row to row */
     double log_likelihood;
 } filter_request;
 
 /* The filter's linear answer to small disturbances, `columns` of them side by side: added to a state over the step from an instant
- * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. A tape may be answered in parts:
- * `state` and `awake`, 0 at the start, carry the answer from one to the next. */
+ * (target < N_STATES) or to an output at an instant (target - N_STATES), as the gains F, K, H of a run say. A tape is answered in parts, the
+ * instants from `first` up to `end`: `state` and `awake`, 0 at the start, carry the answer from one to the next. */
 typedef struct {
-    int64_t steps;
-    int32_t columns, targets, slots;
+    int64_t first, end;
+    int32_t columns, targets;
     int32_t awake;                  /* columns disturbed so far */
     double *state;                  /* [N_STATES][MAX_COLUMNS] */
-    const double *F, *K, *H, *s;    /* as above; s by row and slot */
-    const double *value;            /* [steps][targets][columns] */
-    const int32_t *target, *slot;   /* [targets], [N_OUTPUTS] */
-    const int64_t *place;
-    double *dw;                     /* [rows][slots][columns] */
+    const double *F, *K, *H;        /* as above */
+    const double *s;                /* the variances of the whitened innovations, one after another */
+    const double *value;            /* [instants][targets][columns] */
+    const int32_t *target;          /* [targets] */
+    const int64_t *place;           /* [instants][N_OUTPUTS] the whitened innovation of each reading, or -1, */
+    int64_t base;                   /* and the first of this part */
+    double *dw;                     /* [from base on][columns] */
 } response_request;
 
 int32_t filter_run(filter_request *request);

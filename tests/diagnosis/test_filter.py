@@ -149,3 +149,14 @@ def test_sums_over_parts_are_those_of_the_whole_answer(
             assert np.allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())
         assert parts.raw[3] == 0.0
         assert np.all(parts.raw[:3] > 0.0)
+
+
+def test_what_was_not_read_answers_nothing(case: Case, fitted: Fit) -> None:
+    # A second without readings in the middle of a steady push: the innovations there are none, whatever came before.
+    (flight,) = case.flights
+    y = flight.tape.y.copy()
+    y[PART : PART + 100] = np.nan
+    ground = ground_of(case.with_flights([replace(flight, tape=replace(flight.tape, y=y))]), fitted)
+    found = ground.answer([np.full((len(y), 1), 0.01)], 1).reshape(len(y), -1)
+    assert np.all(found[PART : PART + 100] == 0.0)
+    assert np.all(np.abs(found[PART - 1]) + np.abs(found[PART + 101]) > 0.0)
