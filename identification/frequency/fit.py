@@ -85,30 +85,50 @@ def match(
             "0.6 or more over a part of the band", "sweep with more amplitude, or longer, or over another band",
         )  # fmt: skip
     size = np.maximum(np.abs(model.start), np.maximum(model.spread, 1e-12))
-    period_s = swept[0].period_s
-    mismatch = _watched(_mismatch(model, points, omega, period_s), by_name(model.names, told))
+    work = _Work(model, swept, measured, size)
+    mismatch = _watched(work.mismatch(points), by_name(model.names, told))
     searches = restarted(mismatch, _starts(model, seed, from_start), size)
     if not searches:
         raise BadInput("start", "frequency search", "no response there", "a model that has one", "mend the plant file")
-    return _corrected(model, swept, measured, points, searches, size)
+    return _corrected(work, points, searches)
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What all steps of a match share: `measured` responses of the records, and a typical `size` of each parameter."""
+
+    model: LinearModel
+    records: tuple[Record, ...]
+    measured: Responses
+    size: Array
+
+    def T(self, theta: Array) -> Complex | None:
+        """The model's responses as the records' sampling holds them; None where the model has none."""
+        of = self.model.matrices(theta)
+        return None if of is None else held_response(of, self.measured.omega_rad_s, self.records[0].period_s)
+
+    def runs(self, theta: Array) -> list[Array]:
+        """The model's outputs (n, outputs) on the inputs of each record."""
+        of = self.model.matrices(theta)
+        assert of is not None
+        return [linear_run(of, record).y for record in self.records]
+
+    def mismatch(self, points: Target) -> Residual:
+        """The roots of the cost's terms by theta; None where the model has no finite response."""
+
+        def F(theta: Array) -> Array | None:
+            with np.errstate(all="ignore"):
+                T = self.T(theta)
+                r = None if T is None else residual(points, T)
+            return r if r is not None and np.all(np.isfinite(r)) else None
+
+        return F
 
 
 def _starts(model: LinearModel, seed: int, from_start: bool) -> list[Array]:
     rng = np.random.default_rng([seed, 7])
     drawn = [model.start + model.spread * rng.standard_normal(model.start.size) for _ in range(RESTARTS)]
     return [model.start, *drawn] if from_start else drawn
-
-
-def _mismatch(model: LinearModel, points: Target, omega: Array, period_s: float) -> Residual:
-    def F(theta: Array) -> Array | None:
-        of = model.matrices(theta)
-        if of is None:
-            return None
-        with np.errstate(all="ignore"):
-            r = residual(points, held_response(of, omega, period_s))
-        return r if np.all(np.isfinite(r)) else None
-
-    return F
 
 
 def _watched(F: Residual, tell: Tell) -> Residual:
@@ -126,56 +146,50 @@ def _watched(F: Residual, tell: Tell) -> Residual:
     return watched
 
 
-def _corrected(
-    model: LinearModel,
-    records: tuple[Record, ...],
-    measured: Responses,
-    points: Target,
-    searches: tuple[Found, ...],
-    size: Array,
-) -> FrequencyFit:
+def _corrected(work: _Work, points: Target, searches: tuple[Found, ...]) -> FrequencyFit:
     """Refit with the error of finite windows taken off, which the model itself tells: its records give what its T is not."""
-    omega, period_s = measured.omega_rad_s, records[0].period_s
-    best, now = searches[0], measured
+    best, measured = searches[0], work.measured
+    now = measured
     for _ in range(CORRECTIONS):
-        of = model.matrices(best.theta)
-        assert of is not None
-        runs = [linear_run(of, record) for record in records]
-        simulated = [replace(record, y=run.y) for record, run in zip(records, runs, strict=True)]
-        leak = responses_with(measured, simulated) - held_response(of, omega, period_s)
+        T = work.T(best.theta)
+        assert T is not None
+        simulated = [replace(record, y=y) for record, y in zip(work.records, work.runs(best.theta), strict=True)]
+        leak = responses_with(measured, simulated) - T
         before, now = now, replaced(measured, measured.T - leak)
         moved = residual(with_response(points, now.T), before.T)
         points = with_response(points, now.T)
-        again = secant_search(_mismatch(model, points, omega, period_s), best.theta, size)
+        again = secant_search(work.mismatch(points), best.theta, work.size)
         assert again is not None
         best = again
         if float(moved @ moved) < CORRECTED * best.J:
             break
-    return _with_intervals(model, records, now, points, best, searches, size, measured.T)
+    return _with_intervals(work, points, now, best, searches)
 
 
 def _with_intervals(
-    model: LinearModel,
-    records: tuple[Record, ...],
-    now: Responses,
-    points: Target,
-    best: Found,
-    searches: tuple[Found, ...],
-    size: Array,
-    T_raw: Complex,
+    work: _Work, points: Target, now: Responses, best: Found, searches: tuple[Found, ...]
 ) -> FrequencyFit:
-    of = model.matrices(best.theta)
-    assert of is not None
-    left = tuple(record.y - linear_run(of, record).y for record in records)
-    F = _mismatch(model, points, now.omega_rad_s, records[0].period_s)
-    J, held = _slopes(F, best.theta, size)
-    at_bound = tuple(model.names[place] for place in held)
-    r = F(best.theta)
+    left = tuple(record.y - y for record, y in zip(work.records, work.runs(best.theta), strict=True))
+    F = work.mismatch(points)
+    J, held = _slopes(F, best.theta, work.size)
+    r, T = F(best.theta), work.T(best.theta)
     assert r is not None
-    spread = covariance(now, records, left, points, slopes(J, size))
-    T = held_response(of, now.omega_rad_s, records[0].period_s)
+    assert T is not None
     return FrequencyFit(
-        model, best.theta, spread, best.J, r, now, points, T, J, records, left, searches, at_bound, T_raw
+        model=work.model,
+        theta=best.theta,
+        covariance=covariance(now, work.records, left, points, slopes(J, work.size)),
+        J=best.J,
+        r=r,
+        responses=now,
+        points=points,
+        T=T,
+        slopes=J,
+        records=work.records,
+        left=left,
+        searches=searches,
+        at_bound=tuple(work.model.names[place] for place in held),
+        T_raw=work.measured.T,
     )
 
 
