@@ -4,6 +4,10 @@
  * each step, second order in its length. The slopes leave out how the gain itself moves.
  */
 #define LANES 1
+#include "lane.h"
+
+#include "quick_exp.h"
+#define lane_exp quick_exp /* in the plant's equations below; where friction and stops act, events.c goes its own way */
 #include "events.h"
 #include "step.h"
 
@@ -299,7 +303,7 @@ static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
         const double rest_s = at->request->rest_s, width = square * rest_s * rest_s + at->P[v][v];
         const double lasts_s = at->body.move[a] == 0.0 ? rest_s : h_s;
         if (square > 0.0 && rub > 0.0)
-            noise[v] += square * lasts_s * rub * exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
+            noise[v] += square * lasts_s * rub * quick_exp(-0.5 * at->body.x[v] * at->body.x[v] / (width + 1e-12));
     }
 }
 

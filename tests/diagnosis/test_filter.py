@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
-from diagnosis.filter import PART
+from diagnosis.filter import C_DIR, FLAGS, PART
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
 from diagnosis.hypothesis import Supposed, coefficients, nothing_supposed, passes
@@ -16,6 +16,7 @@ from diagnosis.lost_frames import drives
 from diagnosis.predict import predictions
 from sim.bind import BoundPlant, evaluated
 from tests.diagnosis.conftest import Fly
+from toolchain.host import CText, build_shared, c_text, load_shared
 
 
 @pytest.fixture(scope="module")
@@ -160,3 +161,19 @@ def test_what_was_not_read_answers_nothing(case: Case, fitted: Fit) -> None:
     found = ground.answer([np.full((len(y), 1), 0.01)], 1).reshape(len(y), -1)
     assert np.all(found[PART : PART + 100] == 0.0)
     assert np.all(np.abs(found[PART - 1]) + np.abs(found[PART + 101]) > 0.0)
+
+
+def test_the_quick_exponential_is_e_to_the_x() -> None:
+    # Truth: numpy's, right to half a unit in the last place. Within 1e-15 of it from -700 to 700; beyond, finite and no larger, or smaller.
+    lines = ['#include "quick_exp.h"', "void many(const double *x, double *y, int n)", "{"]
+    text = "\n".join([*lines, "    for (int i = 0; i < n; i++)", "        y[i] = quick_exp(x[i]);", "}", ""])
+    library = build_shared("quick-exp", [CText("many.c", text), c_text(C_DIR / "quick_exp.h")], flags=FLAGS)
+    ffi, lib = load_shared("void many(const double *x, double *y, int n);", library)
+    x = np.concatenate(
+        [np.linspace(-700.0, 700.0, 100_001), np.linspace(-1.0, 1.0, 100_001), [0.0, 1e-300, 1e9, -1e300]]
+    )
+    y = np.empty_like(x)
+    lib.many(ffi.cast("double *", x.ctypes.data), ffi.cast("double *", y.ctypes.data), len(x))
+    assert np.allclose(y[:-2], np.exp(x[:-2]), rtol=1e-15, atol=0.0)
+    assert y[-2] == pytest.approx(np.exp(700.0), rel=1e-15)
+    assert y[-1] == pytest.approx(np.exp(-700.0), rel=1e-15)
