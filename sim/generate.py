@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Sequence
 
+import numpy as np
 import sympy
 
 from sim.assignments import Constants, assignments, constant_lines
@@ -38,6 +39,7 @@ def model_header(model: Model) -> str:
             f"/* Equations of {model.name}, generated; see sim/plants. */",
             *(f"#define {name} {value}" for name, value in sizes.items()),
             *_index_tables(model),
+            *_pattern_tables(model),
             _function("ALWAYS_INLINE void model_constants(const num *p, num *c)", fill),
             *functions,
             "",
@@ -70,6 +72,18 @@ def _index_tables(model: Model) -> list[str]:
     places = itertools.count()
     tables |= {name: [next(places) for _ in limits] for name, limits in _limits(model).items()}
     return [f"static const int {name}[] = {{{', '.join(map(str, values or [0]))}}};" for name, values in tables.items()]
+
+
+def _pattern_tables(model: Model) -> list[str]:
+    """Which entries of A = df/dx, and of 1 + h A + h^2 A^2 / 2, are not identically zero."""
+    A = np.zeros((len(model.states), len(model.states)), dtype=bool)
+    for place in jacobian(model.state_rates(), model.states).todok():
+        A[place] = True
+    patterns = {"A_HAS": A, "F_HAS": np.eye(len(A), dtype=bool) | A | (A @ A)}
+    rows = {
+        name: ", ".join(f"{{{', '.join(map(str, row))}}}" for row in has.astype(int)) for name, has in patterns.items()
+    }
+    return [f"static const int {name}[N_STATES][N_STATES] = {{{text}}};" for name, text in rows.items()]
 
 
 def _bound(stop: sympy.Expr | None, absent: sympy.Expr) -> sympy.Expr:

@@ -25,12 +25,6 @@
 typedef double matrix[N][WIDTH]; /* N by N, its rows filled up with zeros to whole vectors */
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
 
-/* The entries of each row that are not 0. */
-typedef struct {
-    int count[N], place[N][N];
-    double value[N][N];
-} sparse;
-
 /* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
     double A[N * N], D[N * N_PARAMETERS], H[N_OUTPUTS * N], E[N_OUTPUTS * N_PARAMETERS];
@@ -196,39 +190,28 @@ static void measure(filter_state *at, int64_t step)
             r->filtered[row * N + i] = at->body.x[i];
 }
 
-static void entries_of(const double *rows, int stride, sparse *to)
+/* to = left times right, where `has` says which entries of `left` can be other than 0: known to the compiler, which leaves out the rest. */
+ALWAYS_INLINE void product(const matrix left, const int has[N][N], const matrix right, matrix to)
 {
-    for (int i = 0; i < N; i++) {
-        int count = 0;
-        for (int k = 0; k < N; k++)
-            if (rows[i * stride + k] != 0.0) {
-                to->place[i][count] = k;
-                to->value[i][count++] = rows[i * stride + k];
-            }
-        to->count[i] = count;
-    }
-}
-
-static void product(const sparse *left, const matrix right, matrix to)
-{
-    for (int i = 0; i < N; i++) {
+    UNROLLED for (int i = 0; i < N; i++) {
         double sum[WIDTH] = {0.0};
-        for (int e = 0; e < left->count[i]; e++)
-            for (int k = 0; k < WIDTH; k++)
-                sum[k] += left->value[i][e] * right[left->place[i][e]][k];
+        UNROLLED for (int m = 0; m < N; m++)
+            if (has[i][m])
+                for (int k = 0; k < WIDTH; k++)
+                    sum[k] += left[i][m] * right[m][k];
         for (int k = 0; k < WIDTH; k++)
             to[i][k] = sum[k];
     }
 }
 
 /* F = 1 + h A + h^2 A^2 / 2 */
-static void transition(const double *slopes, const sparse *entries, double h_s, matrix F)
+static void transition(const double *slopes, double h_s, matrix F)
 {
     matrix A = {{0.0}}, square;
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++)
             A[i][k] = slopes[i * N + k];
-    product(entries, A, square);
+    product(A, A_HAS, A, square);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < WIDTH; k++)
             F[i][k] = (i == k) + h_s * (A[i][k] + 0.5 * h_s * square[i][k]);
@@ -238,13 +221,11 @@ static void transition(const double *slopes, const sparse *entries, double h_s, 
 static void spread(filter_state *at, const matrix F, const double *noise)
 {
     matrix FP, PF = {{0.0}};
-    sparse entries;
-    entries_of(F[0], WIDTH, &entries);
-    product(&entries, at->P, FP);
+    product(F, F_HAS, at->P, FP);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++)
             PF[k][i] = FP[i][k];
-    product(&entries, PF, at->P);
+    product(F, F_HAS, PF, at->P);
     for (int i = 0; i < N; i++) {
         for (int k = 0; k < i; k++)
             at->P[k][i] = at->P[i][k];
@@ -253,23 +234,25 @@ static void spread(filter_state *at, const matrix F, const double *noise)
 }
 
 /* The slopes one step on: S + h (1 + h A / 2) (A S + D). */
-static void move_slopes(filter_state *at, const sparse *A, double h_s)
+static void move_slopes(filter_state *at, double h_s)
 {
     const filter_request *const r = at->request;
+    const double *const A = at->j.A;
     for (int i = 0; i < N; i++)
         gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
     for (int b = 0; b < blocks(r); b++) {
         block *const S = at->S[b], rates[N];
-        for (int i = 0; i < N; i++) {
-            block sum = at->D[i][b];
-            for (int e = 0; e < A->count[i]; e++)
-                sum += A->value[i][e] * S[A->place[i][e]];
-            rates[i] = sum;
+        UNROLLED for (int i = 0; i < N; i++) {
+            rates[i] = at->D[i][b];
+            UNROLLED for (int m = 0; m < N; m++)
+                if (A_HAS[i][m])
+                    rates[i] += A[i * N + m] * S[m];
         }
-        for (int i = 0; i < N; i++) {
+        UNROLLED for (int i = 0; i < N; i++) {
             block second = {0.0};
-            for (int e = 0; e < A->count[i]; e++)
-                second += A->value[i][e] * rates[A->place[i][e]];
+            UNROLLED for (int m = 0; m < N; m++)
+                if (A_HAS[i][m])
+                    second += A[i * N + m] * rates[m];
             S[i] += h_s * (rates[i] + 0.5 * h_s * second);
         }
     }
@@ -313,7 +296,6 @@ static void advance(filter_state *at, int64_t step)
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
     double x[N], middle[N], noise[N];
     matrix F;
-    sparse A;
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
@@ -340,9 +322,8 @@ static void advance(filter_state *at, int64_t step)
             for (int k = 0; k < N_PARAMETERS; k++)
                 j->D[v * N_PARAMETERS + k] = 0.0;
         }
-    entries_of(j->A, N, &A);
-    transition(j->A, &A, h_s, F);
-    move_slopes(at, &A, h_s);
+    transition(j->A, h_s, F);
+    move_slopes(at, h_s);
     for (int a = 0; a < N_AXES; a++)
         if (at->body.move[a] == 0.0) {
             const int v = AXIS_VELOCITY[a];
