@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,13 +15,17 @@ from typing import Any
 
 import pytest
 
+from diagnosis.ahead import Lookahead
 from records.log import load_log
 from rig.client import BoardClient
 from rig.emulator.pty_port import PtyBoard
 from sim.columns import log_columns
 from sim.plants import MODELS
-from tests.twinlaw.conftest import PATIENT_S, Open, Watch
+from tests.twinlaw.conftest import PATIENT_S, PLANT, Open, Watch
 from twinlaw.command import main
+from twinlaw.watching.events import Events
+from twinlaw.watching.opening import Watched, open_watched
+from twinlaw.watching.session import Session
 
 PATIENCE_S = 60.0
 
@@ -236,7 +241,12 @@ def test_a_page_that_is_open_but_no_longer_answers_disarms(watch: Open) -> None:
     page.next("status", lambda status: status["armed"])
     page.lives = False
     late_s[0] = PATIENT_S + 1.0
-    assert page.next("status", lambda status: not status["armed"])["state"] == "DISARMED"
+    disarmed = page.next("status", lambda status: not status["armed"])
+    assert disarmed["state"] == "DISARMED"
+    assert "silent for 30 s" in disarmed["trouble"]  # as a page that comes back would ask why
+    page.lives = True
+    assert page.wish(do="arm")[0] == 200
+    assert page.next("status", lambda status: status["armed"])["trouble"] is None
 
 
 def test_no_more_pages_than_eight(watch: Open) -> None:
@@ -309,6 +319,33 @@ def test_a_tcp_port_that_is_taken_is_one_line(watch: Open, carried: Path, capsys
     defaults = ["--table", str(carried / "controller.json"), "--out", str(carried)]
     assert main(["watch", *defaults, "--http-port", taken]) == 2
     assert "a free port is taken" in capsys.readouterr().err
+
+
+def test_a_signal_at_the_end_of_a_wait_ends_it(carried: Path) -> None:
+    # Truth: `stop` from the handler of a signal ends `run`, also where the handler takes longer than what is left of a wait.
+    log = Watched(str(carried / "hop.csv"), PLANT, carried / "controller.json", carried, None, "float32", False)
+    bound, source, locked = open_watched(log)
+    source.obey({"do": "pause"})  # so that all its time passes in waits of 50 ms
+    session, late = Session(source, Lookahead(bound, locked), Events()), []
+
+    def slow(*_: object) -> None:
+        time.sleep(0.2)
+        session.stop()
+
+    def rescue() -> None:
+        late.append("woken by a wish")
+        session.ask("page", {"do": "pause"})
+
+    timer = threading.Timer(PATIENCE_S, rescue)
+    former = signal.signal(signal.SIGALRM, slow)
+    timer.start()
+    signal.setitimer(signal.ITIMER_REAL, 0.325)
+    try:
+        session.run()
+    finally:
+        signal.signal(signal.SIGALRM, former)
+        timer.cancel()
+    assert late == []
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from queue import Empty, SimpleQueue
+from queue import Empty, Queue
 from typing import Any
 
 from diagnosis.ahead import Ahead, Lookahead
@@ -49,16 +49,19 @@ class Session:
         self.events = events
         self.source = source
         self._lookahead, self._clock = lookahead, clock
-        self._wishes: SimpleQueue[Wish] = SimpleQueue()
+        # Not SimpleQueue: CPython's waits for ever where a signal's handler, that of Ctrl-C, outlasts the timeout.
+        self._wishes: Queue[Wish] = Queue()
         self._ending = threading.Event()
         self._heard: dict[str, float] = {}
         self._pilot: str | None = None
+        self._silence: str | None = None
         self._rows: list[LiveRow] = []
         self._found: list[Ahead] = []
         self._published_s = self._told_s = -1.0
 
     def ask(self, page: str, content: Mapping[str, Any]) -> None:
         """Have a wish obeyed by the thread that runs; raises BadInput when it is refused."""
+        self.heard(page)
         wish = Wish(page, content)
         self._wishes.put(wish)
         try:
@@ -114,6 +117,7 @@ class Session:
         if not self.source.armed:
             self._pilot = None
         if self._pilot is not None and self._clock() - self._heard.get(self._pilot, -self._lost_s) > self._lost_s:
+            self._silence = f"disarmed: the page that armed was closed, or silent for {self._lost_s:g} s"
             self._carry_out(Wish(self._pilot, {"do": "stop"}))
 
     def _obey_until(self, next_s: float) -> None:
@@ -131,7 +135,7 @@ class Session:
             self._demand_leave(wish)
             self.source.obey(wish.content)
             if wish.content["do"] == "arm":
-                self._pilot = wish.page
+                self._pilot, self._silence = wish.page, None
         except BadInput as error:
             wish.answer.set_exception(error)
         else:
@@ -153,7 +157,9 @@ class Session:
             self.events.put("rows", rows_content(self._rows, self._found, self._lookahead.gap))
             self._rows, self._found, self._published_s = [], [], now_s
         if now_s - self._told_s >= STATUS_S:
-            self.events.put("status", {**self.source.status(), "pilot": self._pilot})
+            status = self.source.status()
+            told = {"pilot": self._pilot, "trouble": status["trouble"] or self._silence}
+            self.events.put("status", {**status, **told})
             self._told_s = now_s
 
 
