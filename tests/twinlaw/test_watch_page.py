@@ -55,6 +55,7 @@ def test_a_person_arms_flies_sees_the_twin_beside_the_rig_and_stops(browser: Bro
     ]
     assert "predicted 1 s before" in captions[0]
     page.wait_for("/^elevation psi[0-9.]+ deg/.test(document.querySelector('#gap').textContent)")
+    assert page.value("[1.48e-11, 0.0213, 12.34, 123.4].map(number)") == ["0.0000", "0.0213", "12.3", "123"]
     assert "frames that the board took" in page.text("#health")
     page.value("document.dispatchEvent(new KeyboardEvent('keydown', {key: 'Escape'}))")
     page.wait_for("document.querySelector('#state').textContent === 'disarmed, power stage off'")

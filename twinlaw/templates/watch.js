@@ -179,7 +179,10 @@ function fill(id, entries) {
   }));
 }
 
-function number(value) { return Math.abs(value) >= 100 ? value.toFixed(0) : value.toPrecision(3); }
+function number(value) {
+  const size = Math.abs(value);
+  return size >= 100 ? value.toFixed(0) : size < 1e-3 ? value.toFixed(4) : value.toPrecision(3);
+}
 
 // --- charts ---
 
