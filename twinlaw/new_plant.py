@@ -11,6 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from records.errors import BadInput
 
+WINDOWS_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 TEMPLATES: Mapping[str, str] = {"sim/plants/{}.py": "plant.py.j2", "plants/{}.toml": "plant.toml.j2"}
 
 
@@ -35,6 +36,9 @@ def _check(name: str) -> None:
         got = repr(name) if len(name) <= 40 else f"{name[:40]!r} and so on, {len(name)} characters"
         expected = "a Python module's name: small letters, digits and _, a letter first, 64 at most"
         raise BadInput("name of a plant", "new-plant", got, expected, "write my_arm, say")
+    if name in WINDOWS_DEVICES:
+        got, remedy = f"{name!r}, which Windows keeps for a device", f"write my_{name}, say"
+        raise BadInput("name of a plant", "new-plant", got, "a name that a file can have on any computer", remedy)
     if keyword.issoftkeyword(name) or hasattr(builtins, name) or find_spec(name) is not None:
         got, remedy = f"{name!r}, which means something else in Python here", f"write my_{name}, say"
         raise BadInput("name of a plant", "new-plant", got, "a name of its own", remedy)

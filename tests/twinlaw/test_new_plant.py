@@ -83,6 +83,16 @@ def test_a_name_that_hides_a_module_or_a_word_of_python_is_refused(
     assert list((project / "plants").iterdir()) == []
 
 
+@pytest.mark.parametrize("name", ["con", "nul", "aux", "prn", "com1", "lpt9"])
+def test_a_name_that_no_file_can_have_on_windows_is_refused(
+    name: str, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # con.toml is the console there, whatever its ending: a checkout with such a file cannot be cloned.
+    assert main(["new-plant", name, "--project", str(project)]) == 2
+    assert f"write my_{name}" in capsys.readouterr().err
+    assert list((project / "plants").iterdir()) == []
+
+
 def test_a_second_file_that_cannot_be_written_leaves_none(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (project / "plants").rmdir()
     (project / "plants").write_text("a file where the folder should be", encoding="utf-8")
