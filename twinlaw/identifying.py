@@ -22,6 +22,7 @@ from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
 from records.experiment import Experiment, load_experiment
 from records.files import write_atomic
 from records.log import RunLog, load_log
+from records.plant import SCHEMA as PLANT_SCHEMA
 from records.plant import coefficient_names, plant_text
 from records.reading import read_toml
 from sim.bind import BoundPlant, bind
@@ -65,7 +66,11 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
     experiments, logs = [], []
     for path in _files(paths):
         sidecar = path.with_suffix(".toml")
-        if read_toml(sidecar, "experiment or sidecar of a run log").get("schema") == EXPERIMENT_SCHEMA:
+        schema = read_toml(sidecar, "experiment or sidecar of a run log").get("schema")
+        if schema == PLANT_SCHEMA:
+            remedy = "leave it out, or give its folder, of which the experiments alone are read"
+            raise BadInput("file", str(path), "a plant file", "an experiment or a run log", remedy)
+        if schema == EXPERIMENT_SCHEMA:
             experiments.append(load_experiment(sidecar))
             check_setup(experiments[-1], bound)
         else:

@@ -57,6 +57,16 @@ def test_a_few_experiments_name_what_they_cannot_tell(folder, tmp_path, capsys):
     assert "J_A" not in said
 
 
+def test_the_rigs_own_parameters_are_no_experiment(folder, tmp_path, capsys):
+    # What a shell makes of DIR/*.toml: the nine experiments and truth.toml.
+    assert main(["identify", "--out", str(tmp_path), *map(str, sorted(folder.glob("*.toml")))]) == 2
+    said = capsys.readouterr().err
+    assert "truth.toml" in said
+    assert "a plant file" in said
+    assert "give its folder" in said
+    assert not list(tmp_path.iterdir())
+
+
 def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tmp_path):
     original, calls = identifying.identify_stage, []
 
