@@ -81,7 +81,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         return FirmwareReplay(True, True, None, None, None, residuals)
     told = explain(flight, table, others)
     if told is None:
-        return FirmwareReplay(True, False, at_s, NOT_FOUND, _unexplained(residuals), residuals)
+        return FirmwareReplay(True, False, at_s, NOT_FOUND, _unexplained(residuals, rows[0] == 0), residuals)
     if told.cause is None and at_s is None:
         return FirmwareReplay(True, True, None, None, None, residuals)
     if told.cause is None:
@@ -121,7 +121,7 @@ def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ..
     return tuple(result)
 
 
-def _unexplained(residuals: Sequence[Residual]) -> str:
+def _unexplained(residuals: Sequence[Residual], from_the_first: bool) -> str:
     different = max(entry.samples_different for entry in residuals)
     greatest = max(residuals, key=lambda entry: entry.max_V)
     size = f"up to {greatest.max_V:.3g} V ({greatest.max_ulp:.3g} units of the last place)"
@@ -130,4 +130,11 @@ def _unexplained(residuals: Sequence[Residual]) -> str:
         if greatest.max_V < ROUNDING_V
         else ""
     )
-    return f"none of the firmwares that were tried leaves no difference; {different} samples differ, {size}{hint}"
+    begun = (
+        ", from the first row on: has the log lost its beginning, and with it the law's state?"
+        if from_the_first
+        else ""
+    )
+    return (
+        f"none of the firmwares that were tried leaves no difference; {different} samples differ, {size}{hint}{begun}"
+    )

@@ -1,8 +1,9 @@
-"""A log that begins in flight: the law's state at its first row is not known, but at a quiet moment the log itself nearly tells it.
+"""A log that begins in flight: the law's state at its first row is not known, but after a while the log itself nearly tells it.
 
-Where references have rested long enough for their filter to settle, and the output was off its limits for four samples,
+The reference filters and the errors forget how they began: run over the log's own references and angles for long enough, they are those
+that flew. Where the output was then off its limits for four samples, the feedback follows from what was sent,
 
-    x_1 = x_2 = r,   w = 0,   s = v = u - u_ff(r),   and the differences of e and s follow from the last rows.
+    w = 0,   s = v = u - u_ff(x_2),   and the differences of s from the last rows.
 
 Known to the rounding of u only, the state cannot give equal bits: agreement is within a stated voltage.
 """
@@ -16,24 +17,24 @@ from design.law import polynomial
 from diagnosis.firmware_replay_events import Workshop
 from diagnosis.firmware_replay_flight import Flight
 from diagnosis.firmware_replay_law import ReplayLaw, Setup
-from records.table import AxisLaw, ControllerTable
+from records.table import ControllerTable
 
 Array = NDArray[np.float64]
 
-SETTLED = 20.0  # time constants of the reference filter: exp(-20) (1 + 20) of a step is left
-HISTORY = 4  # samples that the differences of e and s reach back
-BOUNDS_V = (1e-6, 1e-5, 1e-4)
+SETTLED = 20.0  # time constants of the reference filter: exp(-20) (1 + 20) of a wrong beginning is left
+HISTORY = 4  # samples that the differences of s reach back, and one
+BOUNDS_V = (1e-6, 1e-5, 1e-4, 1e-3)
 LEAST_ROWS = 500
 
 
 def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, float] | None:
     """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None."""
-    row = _quiet_row(shop.flight, table)
+    row = _telling_row(shop.flight, table)
     if row is None:
         return None
     setup = Setup(table)
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
-    state = _state(law, shop.flight, table, row)
+    state = _state(law, inputs, shop.flight, table, row)
     wanted, slack = shop.answers(setup)
     for bound_V in BOUNDS_V:
         if law.run(law.copied(state), (row, n), inputs, wanted, slack + bound_V) == n:
@@ -41,44 +42,45 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     return None
 
 
-def _quiet_row(flight: Flight, table: ControllerTable) -> int | None:
-    """The first row before which both references rested for SETTLED time constants and HISTORY rows are whole and off the limits."""
+def _telling_row(flight: Flight, table: ControllerTable) -> int | None:
+    """The first row before which references were known for SETTLED time constants, and HISTORY rows are whole and off the limits."""
     n = len(flight.t_s)
     longest_s = max(table.elevation.prefilter_time_constant_s, table.azimuth.prefilter_time_constant_s)
-    rest = max(HISTORY, int(np.ceil(SETTLED * longest_s / table.sample_period_s)))
-    moved = np.concatenate([[True], np.any(flight.reference_rad[1:] != flight.reference_rad[:-1], axis=1)])
-    last_move = np.maximum.accumulate(np.where(moved, np.arange(n), 0))
+    settling = max(HISTORY, int(np.ceil(SETTLED * longest_s / table.sample_period_s)))
+    known = np.all(np.isfinite(flight.reference_rad) & np.isfinite(flight.angle_rad), axis=1)
     low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V])
     high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V])
     with np.errstate(invalid="ignore"):
-        free = np.all((flight.logged_V > low) & (flight.logged_V < high) & np.isfinite(flight.angle_rad), axis=1)
-    run = np.concatenate([[0], np.cumsum(free)])
-    rows = np.arange(HISTORY, max(HISTORY, n - LEAST_ROWS))
-    quiet = (run[rows] - run[rows - HISTORY] == HISTORY) & (rows - last_move[rows] >= rest)
-    found = rows[quiet]
+        free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
+    rows = np.arange(settling, max(settling, n - LEAST_ROWS))
+    telling = (_run_before(known, settling)[rows]) & (_run_before(free, HISTORY)[rows])
+    found = rows[telling]
     return int(found[0]) if found.size else None
 
 
-def _state(law: ReplayLaw, flight: Flight, table: ControllerTable, row: int) -> Any:
+def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
+    """Row k holds whether the `count` rows before it are all marked; there is one row more than in `marked`."""
+    total = np.concatenate([[0], np.cumsum(marked)])
+    result = np.zeros(len(total), bool)
+    result[count:] = total[count:] - total[:-count] == count
+    return result
+
+
+def _state(law: ReplayLaw, inputs: NDArray[Any], flight: Flight, table: ControllerTable, row: int) -> Any:
     """The state before `row`."""
-    state = law.start(flight.angle_rad[row - 1])
+    first, ahead_rad = row - HISTORY, []
+    state = law.start(inputs[0, 2:])
+    law.run(state, (0, first), inputs, None, None)
+    for last in range(first, row):
+        law.run(state, (last, last + 1), inputs, None, None)
+        ahead_rad.append(state.axis[0].reference_2_rad)
     for index, axis in enumerate((table.elevation, table.azimuth)):
-        reference_rad = _held(axis, flight.reference_rad[row - 1, index])
-        ahead_rad = _held(table.elevation, flight.reference_rad[row - 1, 0])
-        e_rad = reference_rad - flight.angle_rad[row - HISTORY : row, index]
-        s_V = flight.logged_V[row - HISTORY : row, index] - polynomial(axis.feedforward_V, ahead_rad)
+        s_V = flight.logged_V[first:row, index] - [polynomial(axis.feedforward_V, angle) for angle in ahead_rad]
         own = state.axis[index]
-        own.reference_1_rad = own.reference_2_rad = reference_rad
-        own.e_0_rad, own.e_1_rad, own.e_2_rad = _differences(e_rad)
         own.v_V = float(s_V[-1])
         for power, value in enumerate(_differences(s_V)):
-            own.s_V[power] = value
-        state.reference_rad[index] = float(flight.reference_rad[row - 1, index])
+            own.s_V[power], own.w_V[power] = value, 0.0
     return state
-
-
-def _held(axis: AxisLaw, reference_rad: float) -> float:
-    return float(np.clip(reference_rad, axis.reference_min_rad, axis.reference_max_rad))
 
 
 def _differences(values: Array) -> tuple[float, float, float]:

@@ -185,7 +185,7 @@ def _grid(u_V: Array) -> float:
     distinct = np.unique(u_V[np.isfinite(u_V)])
     gaps = np.diff(distinct)
     gaps = gaps[gaps > LEAST_GRID_V / 10.0]
-    if distinct.size < 20:
+    if distinct.size < 20 or not gaps.size:
         return 0.0
     for step in (PWM_STEP_V, float(gaps.min())):
         off = np.abs(distinct / step - np.round(distinct / step))
