@@ -56,7 +56,7 @@ def load_scheduled(path: Path, use: str) -> ControllerTable:
     """The scheduled law's table, for what only it has: `use` says what; raises BadInput for another controller's."""
     row, table = load(path)
     if not isinstance(table, ControllerTable):
-        remedy = "give a table of `twinlaw design`; other controllers are checked by `twinlaw validate` and `twinlaw compare`"
+        remedy = "give a table of `twinlaw design` without --controller; others are checked by `twinlaw validate` and `twinlaw compare`"
         raise BadInput(
             "controller table", str(path), f"one of the controller {row.name!r}", f"the scheduled law's: {use}", remedy
         )

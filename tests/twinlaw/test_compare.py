@@ -58,6 +58,15 @@ def test_an_unknown_controller_is_refused_in_one_line(capsys: pytest.CaptureFixt
     assert not list(tmp_path.iterdir())
 
 
+def test_a_cluster_that_is_not_there_is_told_before_anything_is_built(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    # With the extra `cluster` or without it: no scheduler has such an address.
+    assert main(["compare", "--controllers", "pid", "--cluster", "nonsense://nowhere", "--out", str(tmp_path)]) == 2
+    assert "Dask" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_page_is_of_today_s_tables() -> None:
     """To write it anew, the page itself names the command."""
     page = (ROOT / "docs" / "controllers.md").read_text(encoding="utf-8")

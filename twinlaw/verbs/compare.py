@@ -47,9 +47,10 @@ def run(chosen: argparse.Namespace) -> int:
     bound = load_bound(chosen.plant)
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
-    each = sweeping.each(
-        "flights, 25 at a time", sweeping.crew_of(chosen), chosen.out / "jobs", lambda order: order.name
-    )
+    crew = sweeping.crew_of(chosen)
+    with crew():  # a cluster that is not there is told now, not after a minute of building
+        pass
+    each = sweeping.each("flights, 25 at a time", crew, chosen.out / "jobs", lambda order: order.name)
     rows = compare_controllers(bound, names, wanted, chosen.out, each)
     eq26 = eq26_errors(bound, names)
     content = facts(bound, rows, wanted, eq26)
