@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # Okabe and Ito's palette.
+BLACK = "#000000"
 BLUE, ORANGE, GREEN, RED, GREY, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666", "#56B4E9"
 
 _STYLE: Any = {
@@ -41,6 +42,7 @@ class Curve:
     colour: str = BLUE
     dash: Any = "-"
     marker: str = ""
+    marker_size: float = 4.0
 
 
 @dataclass(frozen=True)
@@ -166,7 +168,7 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
 
 def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
     for curve in panel.curves:
-        style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": 4.0}
+        style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": curve.marker_size}
         axes.plot(curve.x, curve.y, label=curve.label or None, color=curve.colour, **style)
     for value, label in panel.limits:
         axes.axhline(value, color=GREY, linestyle=":", linewidth=1.0, label=label or None)

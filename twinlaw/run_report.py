@@ -13,7 +13,7 @@ from sim.tracking import Tracking
 from toolchain.elf import ImageSizes
 from twinlaw import summary
 from twinlaw.page import Page, Section, Table
-from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
+from twinlaw.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
 
 Array = NDArray[np.float64]
 
@@ -105,15 +105,15 @@ def _poles(report: DesignReport) -> Section:
 
 
 def _pole_panel(axis: AxisReport) -> Panel:
-    def curve(poles: NDArray[np.complex128], label: str, colour: str, marker: str) -> Curve:
-        return Curve(poles.real.ravel(), poles.imag.ravel(), label, colour, "", marker)
+    def curve(poles: NDArray[np.complex128], label: str, colour: str, marker: str, size: float = 4.0) -> Curve:
+        return Curve(poles.real.ravel(), poles.imag.ravel(), label, colour, "", marker, size)
 
     return Panel(
         f"{axis.axis}: imaginary part [rad/s]",
         (
             curve(axis.poles_fitted_rad_s, "after the fit", ORANGE, "o"),
             curve(axis.poles_flown_rad_s, "after rounding, as they fly", BLUE, "."),
-            curve(np.array(axis.poles_rad_s), "designed", RED, "x"),
+            curve(np.array(axis.poles_rad_s), "designed", BLACK, "x", 8.0),
         ),
     )
 

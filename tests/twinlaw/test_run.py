@@ -73,6 +73,14 @@ def test_verification_has_the_fields_of_the_contract_and_passes(out: Path) -> No
         assert 0 < row["ram_bytes"] <= 32 * 1024
 
 
+def test_the_poles_that_were_asked_for_stand_out_of_those_that_came(out: Path) -> None:
+    # Hundreds of dots lie over the six crosses of an axis: a cross 8 points wide, twice a dot, is seen on them.
+    text = (out / "report.html").read_text(encoding="utf-8")
+    cross = re.search(r'<path id="(\w+)" d="M -4 4\s+L 4 -4\s', text)
+    assert cross is not None
+    assert text.count(f'"#{cross[1]}"') == 2 * (6 + 1)  # six an axis, and one in the legend
+
+
 def test_the_flight_tracks_within_two_percent_and_a_twentieth_of_a_degree(out: Path) -> None:
     log = load_log(out / "run.csv", log_columns(MODELS["ce150"]()))
     assert log.t_s[-1] >= 95.0
