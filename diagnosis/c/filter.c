@@ -15,6 +15,7 @@
 
 #define N N_STATES
 #define WIDTH ((N + 7) / 8 * 8)
+#define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
@@ -260,13 +261,13 @@ static void move_slopes(filter_state *at, double h_s)
 
 /* Half of a step's unrest comes before its motion, so that it reaches the position within the step: else a very sure reading of a
  * position leaves the speed no freedom at all. What an axis at rest loses by its emptied row all comes after. */
-static void stir(filter_state *at, double *noise)
+static void stir(filter_state *at, const bool *rests, double *noise)
 {
-    bool rests[N] = {false};
+    bool emptied[N] = {false};
     for (int a = 0; a < N_AXES; a++)
-        rests[AXIS_VELOCITY[a]] = at->body.move[a] == 0.0;
+        emptied[AXIS_VELOCITY[a]] = rests[a];
     for (int i = 0; i < N; i++)
-        if (!rests[i]) {
+        if (!emptied[i]) {
             noise[i] *= 0.5;
             at->P[i][i] += noise[i];
         }
@@ -274,12 +275,8 @@ static void stir(filter_state *at, double *noise)
 
 /* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. At rest, where the
  * speed's row is emptied, the doubt is that of `rest_s` however long the step, so that instants more or less change nothing. */
-static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
+static void doubt(const filter_state *at, const double *level, double h_s, double *noise)
 {
-    double level[AXES] = {0.0}, sign[AXES];
-    for (int a = 0; a < AXES; a++)
-        sign[a] = 1.0;
-    model_friction(t_s, at->body.x, at->u, at->c, sign, level);
     for (int a = 0; a < N_AXES; a++) {
         const int v = AXIS_VELOCITY[a];
         const double rub = at->request->rub[a], square = level[a] * level[a];
@@ -290,17 +287,34 @@ static void doubt(const filter_state *at, double t_s, double h_s, double *noise)
     }
 }
 
+/* Which axes are taken to rest: held by a stop, or by friction that could have stopped what is known of their speed. Where a flight
+ * begins nothing is, and an axis that the first guess holds may well be moving: to take it as sure would keep all later readings out. */
+static void resting(const filter_state *at, const double *level, const double *noise, bool *rests)
+{
+    for (int a = 0; a < N_AXES; a++) {
+        const int v = AXIS_VELOCITY[a];
+        const double position = at->body.x[AXIS_POSITION[a]], stopped = level[a] * at->request->rest_s;
+        const bool rubs = level[a] > 0.0 && !at->request->locked[a] && position > at->c[AXIS_LOWER[a]] && position < at->c[AXIS_UPPER[a]];
+        const bool unsure = rubs && at->P[v][v] > UNSURE * UNSURE * (noise[v] + stopped * stopped);
+        rests[a] = at->body.move[a] == 0.0 && !unsure;
+    }
+}
+
 static void advance(filter_state *at, int64_t step)
 {
     filter_request *const r = at->request;
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
-    double x[N], middle[N], noise[N];
+    double x[N], middle[N], noise[N], level[AXES] = {0.0}, sign[AXES];
+    bool rests[AXES];
     matrix F;
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
         noise[i] = r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0);
-    doubt(at, t_s, h_s, noise);
+    for (int a = 0; a < AXES; a++)
+        sign[a] = 1.0;
+    model_friction(t_s, at->body.x, at->u, at->c, sign, level);
+    doubt(at, level, h_s, noise);
     rk4_step(t_s, h_s, &at->body, at->u, at->c, x, &seen);
     const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, h_s, at->c, &seen));
     if (suspect)
@@ -310,12 +324,13 @@ static void advance(filter_state *at, int64_t step)
             at->body.x[i] = x[i];
     for (int i = 0; i < N; i++)
         middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
+    resting(at, level, noise, rests);
     jacobians *const j = &at->j;
     model_state_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->A);
     if (r->columns)
         model_parameter_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->D);
     for (int a = 0; a < N_AXES; a++)
-        if (at->body.move[a] == 0.0) {
+        if (rests[a]) {
             const int v = AXIS_VELOCITY[a];
             for (int k = 0; k < N; k++)
                 j->A[v * N + k] = 0.0;
@@ -325,7 +340,7 @@ static void advance(filter_state *at, int64_t step)
     transition(j->A, h_s, F);
     move_slopes(at, h_s);
     for (int a = 0; a < N_AXES; a++)
-        if (at->body.move[a] == 0.0) {
+        if (rests[a]) {
             const int v = AXIS_VELOCITY[a];
             for (int k = 0; k < N; k++)
                 F[v][k] = 0.0;
@@ -334,7 +349,7 @@ static void advance(filter_state *at, int64_t step)
             if (r->locked[a])
                 noise[v] = 0.0;
         }
-    stir(at, noise);
+    stir(at, rests, noise);
     spread(at, F, noise);
     if (r->F)
         for (int i = 0; i < N; i++)

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from design.settings import read_settings
+from design.table import design
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
 from diagnosis.filter import C_DIR, FLAGS, PART
@@ -14,7 +16,10 @@ from diagnosis.hypothesis import Supposed, coefficients, nothing_supposed, passe
 from diagnosis.kit import Kit, make_kit
 from diagnosis.lost_frames import drives
 from diagnosis.predict import predictions
+from records.log import RunLog
 from sim.bind import BoundPlant, evaluated
+from sim.columns import log_columns
+from sim.simulate import Noise, simulate
 from tests.diagnosis.conftest import Fly
 from toolchain.host import CText, build_shared, c_text, load_shared
 
@@ -177,3 +182,20 @@ def test_the_quick_exponential_is_e_to_the_x() -> None:
     assert np.allclose(y[:-2], np.exp(x[:-2]), rtol=1e-15, atol=0.0)
     assert y[-2] == pytest.approx(np.exp(700.0), rel=1e-15)
     assert y[-1] == pytest.approx(np.exp(-700.0), rel=1e-15)
+
+
+def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(kit: Kit, plant: BoundPlant) -> None:
+    # Truth: the log begins 0.2 s after a ramp of 0.08 rad/s has ended, the arm slides on. Model and noise are those that flew, so no
+    # innovation after the first second is beyond 5 sd; taken to rest at its first readings, the arm is 7 sd away when it moves again.
+    table, _ = design(plant, read_settings(plant))
+    t_s = np.arange(0.0, 14.0, 0.01)
+    reference = np.zeros((len(t_s), 2))
+    reference[:, 0] = np.interp(t_s, [3.0, 8.6], [-0.2, 0.248]) + 0.1 * (t_s > 12.0)
+    noise = Noise(1, process_sd=[0.0, 0.0, 2e-4, 0.0, 0.0, 2e-4])
+    x0 = np.array([470.0, 0.0, 0.0, 150.0, 0.0, 0.0])
+    run = simulate(plant, t_s, x0, table, reference=reference, noise=noise, keep="uy")
+    log = RunLog(log_columns(plant.model), 0.01, "closed", t_s[880:], run.u[880:], run.y[880:])
+    case = make_case(kit, [log])
+    (found,) = passes(case, nothing_supposed(case, -3.2)) or [None]
+    assert found is not None
+    assert np.nanmax(np.abs(found.w)) < 5.0
