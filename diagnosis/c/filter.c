@@ -111,6 +111,30 @@ static void multiply(filter_state *at)
     at->pending = 0;
 }
 
+/* The slopes of a measurement's innovation, and what its gain takes off those of the state; kept whitened where it has a place. */
+static void correct_slopes(filter_state *at, const double *H, const double *K, double nu, double scale, int64_t place)
+{
+    const filter_request *const r = at->request;
+    for (int b = 0; b < blocks(r); b++) {
+        block slope = -at->E[b];
+        for (int i = 0; i < N; i++)
+            if (H[i] != 0.0)
+                slope -= H[i] * at->S[b][i];
+        for (int i = 0; i < N; i++)
+            at->S[b][i] += K[i] * slope;
+        if (place < 0)
+            continue;
+        slope *= scale;
+        at->waiting[b][at->pending] = slope;
+        at->pull[b] += slope * (nu * scale);
+        if (r->dw)
+            for (int k = b * BLOCK; k < r->columns && k < (b + 1) * BLOCK; k++)
+                r->dw[place * r->columns + k] = slope[k % BLOCK];
+    }
+    if (place >= 0 && ++at->pending == PENDING)
+        multiply(at);
+}
+
 /* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
 static void correct(filter_state *at, int64_t step, int output, double predicted, const double *H, const double *E)
 {
@@ -138,32 +162,14 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
             r->H[(step * N_OUTPUTS + output) * N + i] = H[i];
         }
     const int slot = r->slot[output];
-    const int64_t row = r->place[step * N_OUTPUTS + output];
-    const bool counts = row >= 0 && slot >= 0;
-    if (counts) {
+    const int64_t row = r->place[step * N_OUTPUTS + output], place = row >= 0 && slot >= 0 ? row * r->slots + slot : -1;
+    if (place >= 0) {
         r->log_likelihood -= 0.5 * (nu * nu / s + log(s));
-        r->w[row * r->slots + slot] = nu * scale;
-        r->s[row * r->slots + slot] = s;
+        r->w[place] = nu * scale;
+        r->s[place] = s;
     }
     gather(r, E, at->E);
-    for (int b = 0; b < blocks(r); b++) {
-        block slope = -at->E[b];
-        for (int i = 0; i < N; i++)
-            if (H[i] != 0.0)
-                slope -= H[i] * at->S[b][i];
-        for (int i = 0; i < N; i++)
-            at->S[b][i] += K[i] * slope;
-        if (!counts)
-            continue;
-        slope *= scale;
-        at->waiting[b][at->pending] = slope;
-        at->pull[b] += slope * (nu * scale);
-        if (r->dw)
-            for (int k = b * BLOCK; k < r->columns && k < (b + 1) * BLOCK; k++)
-                r->dw[(row * r->slots + slot) * r->columns + k] = slope[k % BLOCK];
-    }
-    if (counts && ++at->pending == PENDING)
-        multiply(at);
+    correct_slopes(at, H, K, nu, scale, place);
 }
 
 static void measure(filter_state *at, int64_t step)
