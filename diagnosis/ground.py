@@ -53,7 +53,7 @@ class Ground:
     def scores(self, gram: Array, cross: Array, pull: Array) -> Scores:
         """Scores of columns with products gram = E'E (k, k), cross = J'E (free, k) and pull = E'w (k,)."""
         share = self.solve @ cross
-        own = self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta)
+        own = self._pull()
         return Scores(gram - cross.T @ share, -(pull - share.T @ own), np.diag(gram).copy())
 
     def scores_of(self, columns: Array) -> Scores:
@@ -70,7 +70,7 @@ class Ground:
         squares, beside = self._met(values, target, _squares, self._own())
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
-        own = self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta)
+        own = self._pull()
         norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ own - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
@@ -111,6 +111,10 @@ class Ground:
 
         found = each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
         return sum(one for one, _ in found), sum(other for _, other in found)  # type: ignore[return-value]
+
+    def _pull(self) -> Array:
+        """What the innovations and what is known of the coefficients say together of each (free,)."""
+        return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta))
 
     def _own(self) -> Array:
         """The slopes with the innovations behind them (rows, free + 1)."""
