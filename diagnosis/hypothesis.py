@@ -42,12 +42,14 @@ def nothing_supposed(case: Case, unrest: float) -> Supposed:
 
 
 def coefficients(case: Case, variant: Variant, supposed: Supposed) -> Array:
-    """The vector p of a variant; coefficients that cannot be negative stay where they can be."""
+    """The vector p of a variant, whose other effects are off; coefficients that cannot be negative stay where they can be."""
     kit = case.kit
     p = variant.p.copy()
     p[case.free] = kit.bound.p[case.free] + supposed.theta * case.sd
     for place in case.nonnegative:
         p[place] = max(p[place], 1e-3 * kit.bound.p[place])
+    p[list(variant.switches.values())] = 0.0
+    p[[place for name, place in variant.switches.items() if name in supposed.effects]] = 1.0
     for name, values in supposed.effects.items():
         if name in variant.names:
             for symbol, value in values.items():

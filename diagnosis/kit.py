@@ -25,7 +25,9 @@ from records.files import write_atomic
 from records.reading import read_text
 from sim.bind import BoundPlant, named_values
 from sim.effects.api import combined, library, redundant
+from sim.effects.build import switched_model
 from sim.effects.effect import Effect, coefficient
+from sim.effects.switch import switch_name
 from sim.model import Model
 from toolchain.cache import CACHE_DIR, is_whole
 
@@ -37,11 +39,12 @@ BUILDING = Lock()
 class Variant:
     """One compiled filter: the effects `names` are in its equations, at next to no size in `p`; `index` finds coefficients in p.
 
-    `states` are the plant's own, then those that effects brought.
+    `states` are the plant's own, then those that effects brought; `switches` the places in p of the effects' switches.
     """
 
     filter: Filter
     names: frozenset[str]
+    switches: Mapping[str, int]
     states: tuple[str, ...]
     p: Array
     index: Mapping[str, int]
@@ -158,6 +161,7 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     return Variant(
         filter=open_filter(Path(known["library"]), known["sizes"], tuple(known["axes"])),
         names=frozenset(names),
+        switches=known["switches"],
         states=tuple(known["states"]),
         p=p,
         index={name: place for place, name in enumerate(known["parameters"])},
@@ -165,16 +169,22 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
 
 
 def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
+    """What is noted of a variant with these effects, all switched on."""
     behind = [name for name in names if is_lag(name)]
-    plant = combined(bound, [name for name in names if name not in behind])
-    model, p = plant.model, plant.p
+    switched = [name for name in names if name not in behind]
+    stated = combined(bound, switched)
+    values = dict(zip(map(str, stated.model.parameter_symbols), stated.p.tolist(), strict=True))
+    model = switched_model(bound.plant.model, switched)
     for name in behind:
-        model, p = lagged(model, name), np.append(p, library(bound)[name].size.reference)
+        model = lagged(model, name)
+        values[coefficient(name, "tau")] = library(bound)[name].size.reference
     model = observed(model, bound.model)
+    parameters = [str(symbol) for symbol in model.parameter_symbols]
     return {
         "library": str(build_filter(model)),
-        "parameters": [str(symbol) for symbol in model.parameter_symbols],
-        "p": p.tolist(),
+        "parameters": parameters,
+        "p": [values.get(name, 1.0) for name in parameters],
+        "switches": {name: parameters.index(switch_name(library(bound)[name])) for name in switched},
         "states": [str(state) for state in model.states],
         "sizes": {"states": len(model.states), "outputs": len(model.outputs)},
         "axes": [axis.name for axis in model.axes],

@@ -1,6 +1,6 @@
 """Symbolic expressions as a short list of C assignments: constants taken out, sine and cosine paired, common parts computed once."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
@@ -8,6 +8,9 @@ import sympy
 
 from sim.printer import c_text
 from sim.slopes import symbols_of
+from sim.switches import Line, Switches, levels, vanishing
+
+MOST_BLOCKS = 48  # in one loop: a double holds 53 bits
 
 
 @dataclass
@@ -20,6 +23,7 @@ class Constants:
     variables: frozenset[sympy.Symbol]
     expressions: list[sympy.Expr] = field(default_factory=list)
     reserved: int = 0
+    switches: Switches = frozenset()
     places: dict[sympy.Expr, int] = field(default_factory=dict)  # of those that are not reserved
     known: dict[sympy.Expr, sympy.Expr] = field(default_factory=dict, init=False)  # parts that were lifted before
 
@@ -40,7 +44,7 @@ class Constants:
         if expression.is_Number:
             return expression
         if isinstance(expression, sympy.Expr) and not symbols_of(expression) & self.variables:
-            return sympy.Symbol(f"c[{self.index(expression)}]", real=True) if symbols_of(expression) else expression
+            return _constant(self.index(expression)) if symbols_of(expression) else expression
         if expression.is_Add or expression.is_Mul:
             return self._split(expression)
         if expression.is_Atom:
@@ -52,23 +56,86 @@ class Constants:
         moving = [self.lifted(argument) for argument in expression.args if symbols_of(argument) & self.variables]
         return expression.func(self.lifted(expression.func(*fixed)), *moving)
 
+    def zeros(self) -> dict[sympy.Symbol, Switches]:
+        """For each c[i] that is 0 while some switches are off, those switches."""
+        own = {switch: frozenset((switch,)) for switch in self.switches}
+        found = {_constant(index): vanishing(expression, own) for index, expression in enumerate(self.expressions)}
+        return {symbol: switches for symbol, switches in found.items() if switches is not None}
 
-def assignments(targets: Mapping[str, sympy.Expr], constants: Constants, prefix: str = "v") -> list[str]:
+
+def _constant(index: int) -> sympy.Symbol:
+    return sympy.Symbol(f"c[{index}]", real=True)
+
+
+def assignments(targets: Mapping[str, sympy.Expr], constants: Constants) -> list[str]:
     """C lines that compute `targets` (C variable or array element: expression), which must not depend on one another."""
+    return _printed(_lines(targets, constants), constants)
+
+
+def entries(targets: Mapping[str, sympy.Expr], constants: Constants) -> list[str]:
+    """The same for entries of an array that was emptied before: those that are 0 while terms are switched off are not set then."""
+    named = [replace(line, sets=line.sets or (sympy.Symbol(line.target),)) for line in _lines(targets, constants)]
+    return _printed(named, constants)
+
+
+def _lines(targets: Mapping[str, sympy.Expr], constants: Constants) -> list[Line]:
     expressions = [_single_angles(sympy.sympify(expression)) for expression in targets.values()]
-    angles = _angles(expressions)
-    lines, replaced = [], {}
-    for index, angle in enumerate(angles):
-        sine, cosine = f"sin_{prefix}{index}", f"cos_{prefix}{index}"
-        lines += [f"num {sine}, {cosine};", f"lane_sincos({c_text(constants.lifted(angle))}, &{sine}, &{cosine});"]
-        replaced[sympy.sin(angle)], replaced[sympy.cos(angle)] = sympy.Symbol(sine), sympy.Symbol(cosine)
-    variables = constants.variables | set(replaced.values())
-    scope = replace(constants, variables=frozenset(variables))
+    lines: list[Line] = []
+    replaced: dict[sympy.Expr, sympy.Symbol] = {}
+    for index, angle in enumerate(_angles(expressions)):
+        pair = sympy.Symbol(f"sin_v{index}"), sympy.Symbol(f"cos_v{index}")
+        lines.append(Line(pair, sympy.Tuple(constants.lifted(angle), 1)))  # the 1 says that not both can vanish
+        replaced |= dict(zip((sympy.sin(angle), sympy.cos(angle)), pair, strict=True))
+    scope = replace(constants, variables=constants.variables | set(replaced.values()))
     lifted = [scope.lifted(expression.xreplace(replaced)) for expression in expressions]
-    names = sympy.numbered_symbols(prefix, real=True)
-    shared, reduced = sympy.cse(lifted, symbols=names, order="none")
-    lines += [f"const num {symbol} = {c_text(expression)};" for symbol, expression in shared]
-    return lines + [f"{name} = {c_text(expression)};" for name, expression in zip(targets, reduced, strict=True)]
+    shared, reduced = sympy.cse(lifted, symbols=sympy.numbered_symbols("v", real=True), order="none")
+    lines += [Line((symbol,), expression) for symbol, expression in shared]
+    return lines + [Line((), expression, name) for name, expression in zip(targets, reduced, strict=True)]
+
+
+def _printed(lines: Sequence[Line], constants: Constants) -> list[str]:
+    """The lines as C, level by level."""
+    found = levels(lines, constants.zeros())
+    added = {
+        symbol
+        for level in found
+        for block in level.blocks.values()
+        for line in block
+        if line.adds
+        for symbol in line.sets
+    }
+    text = []
+    for level in found:
+        text += [statement for line in level.lines for statement in _statements(line, added)]
+        blocks = list(level.blocks.items())
+        for first in range(0, len(blocks), MOST_BLOCKS):
+            text += _switch(blocks[first : first + MOST_BLOCKS], constants)
+    return text
+
+
+def _switch(blocks: Sequence[tuple[Switches, list[Line]]], constants: Constants) -> list[str]:
+    """A loop over those of the blocks that are on: a constant holds one bit for each."""
+    bits = sympy.Add(*(2**bit * sympy.Heaviside(sympy.Add(*guard)) for bit, (guard, _) in enumerate(blocks)))
+    text = [
+        f"for (int64_t left = lane_bits({constants.lifted(bits)}); left; left &= left - 1)",
+        "    switch (__builtin_ctzll(left)) {",
+    ]
+    for bit, (_, block) in enumerate(blocks):
+        text += [f"    case {bit}: {{"]
+        text += [f"        {statement}" for line in block for statement in _statements(line, ())]
+        text += ["        break;", "    }"]
+    return [*text, "    }"]
+
+
+def _statements(line: Line, changed: Collection[sympy.Symbol]) -> list[str]:
+    """The line as C, with the declaration of what it sets, which is constant unless it is `changed` further on."""
+    if isinstance(line.expression, sympy.Tuple):
+        sine, cosine = line.sets
+        return [f"num {sine}, {cosine};", f"lane_sincos({c_text(line.expression.args[0])}, &{sine}, &{cosine});"]
+    if line.target or line.adds:
+        return [f"{line.target or line.sets[0]} {'+=' if line.adds else '='} {c_text(line.expression)};"]
+    declared = "num" if line.sets[0] in changed else "const num"
+    return [f"{declared} {line.sets[0]} = {c_text(line.expression)};"]
 
 
 def constant_lines(constants: Constants, parameters: Sequence[sympy.Symbol]) -> list[str]:

@@ -1,12 +1,12 @@
 """A model's equations as the C header `model.h` that the fixed kernels of sim/c include; a pure function of the model."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 import sympy
 
-from sim.assignments import Constants, assignments, constant_lines
+from sim.assignments import Constants, assignments, constant_lines, entries
 from sim.model import TIME, Model
 from sim.slopes import jacobian
 
@@ -17,7 +17,7 @@ def model_header(model: Model) -> str:
     """C text of a model: sizes, constants of the parameters, rates with torques, friction, outputs, and the slopes of rates and outputs."""
     limits = [limit for row in _limits(model).values() for limit in row]
     variables = frozenset((TIME, *model.states, *model.inputs, *model.friction_signs))
-    constants = Constants(variables, limits, reserved=len(limits))
+    constants = Constants(variables, limits, reserved=len(limits), switches=frozenset(model.switches))
     functions = [
         _rates(model, constants),
         _friction(model, constants),
@@ -100,10 +100,11 @@ def _rates(model: Model, constants: Constants) -> str:
             f"torque[{place}]": axis.torque,
             f"up[{place}]": coulomb.xreplace({sign: sympy.Integer(1)}).subs(at_rest),
             f"down[{place}]": coulomb.xreplace({sign: sympy.Integer(-1)}).subs(at_rest),
-            f"const num friction_{place}": coulomb * sign,
-            f"const num inverse_inertia_{place}": 1 / axis.inertia,
+            f"friction_{place}": coulomb * sign,
+            f"inverse_inertia_{place}": 1 / axis.inertia,
         }
-    lines = [*_locals(model), *assignments(targets, constants)]
+    declared = [f"num friction_{place}, inverse_inertia_{place};" for place in range(len(model.axes))]
+    lines = [*_locals(model), *declared, *assignments(targets, constants)]
     for place, axis in enumerate(model.axes):
         row = model.states.index(axis.velocity)
         lines.append(f"dx[{row}] = move[{place}]*((torque[{place}] - friction_{place})*inverse_inertia_{place});")
@@ -139,14 +140,14 @@ def _slopes(model: Model, constants: Constants) -> list[str]:
     Each is a function of its own: D costs more than all others together, and few callers need it.
     """
     rates, outputs = model.state_rates(), sympy.Matrix(list(model.outputs.values()))
-    by_state, by_parameter = model.states, model.parameter_symbols
+    by_state, by_parameter, fixed = model.states, model.parameter_symbols, model.switches
     head = f"ALWAYS_INLINE void model_{{}}_slopes({_ARGUMENTS}, const num *sign, num *{{}})"
     outputs_head = "ALWAYS_INLINE void model_output_slopes(num t_s, const num *x, const num *c, num *H, num *E)"
-    output_slopes = {**_entries("H", outputs, by_state), **_entries("E", outputs, by_parameter)}
+    output_slopes = {**_entries("H", outputs, by_state), **_entries("E", outputs, by_parameter, fixed)}
     return [
         *(
             _function(
-                head.format(name, letter), [*_locals(model), *assignments(_entries(letter, rates, by), constants)]
+                head.format(name, letter), [*_locals(model), *entries(_entries(letter, rates, by, fixed), constants)]
             )
             for name, letter, by in (
                 ("state", "A", by_state),
@@ -154,13 +155,15 @@ def _slopes(model: Model, constants: Constants) -> list[str]:
                 ("parameter", "D", by_parameter),
             )
         ),
-        _function(outputs_head, [*_locals(model, inputs=False), *assignments(output_slopes, constants)]),
+        _function(outputs_head, [*_locals(model, inputs=False), *entries(output_slopes, constants)]),
     ]
 
 
-def _entries(letter: str, functions: sympy.Matrix, variables: Sequence[sympy.Symbol]) -> dict[str, sympy.Expr]:
-    """The entries of a Jacobian that are not identically zero, by their place in C."""
-    slopes = jacobian(functions, variables)
+def _entries(
+    letter: str, functions: sympy.Matrix, variables: Sequence[sympy.Symbol], fixed: Collection[sympy.Symbol] = ()
+) -> dict[str, sympy.Expr]:
+    """The entries of a Jacobian that are not identically zero, by their place in C; none by what is `fixed`."""
+    slopes = jacobian(functions, [sympy.Dummy() if variable in fixed else variable for variable in variables])
     return {f"{letter}[{row}*{len(variables)} + {column}]": entry for (row, column), entry in slopes.todok().items()}
 
 

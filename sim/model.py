@@ -57,7 +57,8 @@ class Model:
 
     `rates` covers every state but the velocities of `axes`, whose rates follow from the axes. `signals` are further quantities
     that a log of the plant may carry (the speed of a rotor that has no state), by column name. `places` says where effects can act,
-    `starts` where the states that effects brought, the last of `states`, begin: at 0 or where another state is.
+    `starts` where the states that effects brought, the last of `states`, begin: at 0 or where another state is. `switches` are those of
+    the parameters that are 1, or 0 to leave out the terms that vanish with them; the equations have no slopes by them.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Model:
     signals: Mapping[str, sympy.Expr] = field(default_factory=dict)
     places: Places = field(default_factory=Places)
     starts: Mapping[sympy.Symbol, sympy.Expr] = field(default_factory=dict)
+    switches: tuple[sympy.Symbol, ...] = ()
 
     @property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:

@@ -55,6 +55,7 @@ static inline num lane_copysign(num a, num b) { return __builtin_elementwise_cop
 static inline num lane_min(num a, num b) { return select(is_less(b, a), b, a); }
 static inline num lane_max(num a, num b) { return select(is_less(a, b), b, a); }
 static inline num lane_clamp(num a, num lower, num upper) { return lane_min(lane_max(a, lower), upper); }
+static inline int64_t lane_bits(num a) { return (int64_t)lane_get(a, 0); } /* switches, alike in all lanes */
 static inline num lane_step(num a) { return select(is_less(NUM(0.0), a), NUM(1.0), NUM(0.0)); }
 static inline num lane_sign(num a) { return select(is_equal(a, NUM(0.0)), NUM(0.0), lane_copysign(NUM(1.0), a)); }
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 import sympy
@@ -10,6 +10,7 @@ import sympy
 from sim.effects import effects_for
 from sim.effects.edits import with_input
 from sim.effects.effect import Effect, Values
+from sim.effects.switch import switched
 from sim.model import Model
 from sim.paths import Array, InputStage, OutputStage
 from sim.paths_input import Memoryless
@@ -27,10 +28,14 @@ def model_with(name: str, effects: tuple[str, ...]) -> Model:
     ordered = tuple(effect for effect in library if effect in carried(nominal, effects))
     if ordered != effects:
         return model_with(name, ordered)
-    model = nominal
-    for effect in ordered:
-        model = _added(model, library[effect])
-    return model
+    return reduce(_added, (library[effect] for effect in ordered), nominal)
+
+
+def switched_model(name: str, effects: Iterable[str]) -> Model:
+    """The same with a switch for each effect, so that those that are off take no time (switch.py)."""
+    nominal = MODELS[name]()
+    chosen = carried(nominal, effects)
+    return switched(nominal, (effect for effect in effects_for(nominal).values() if effect.name in chosen))
 
 
 def carried(nominal: Model, effects: Iterable[str]) -> tuple[str, ...]:
