@@ -8,7 +8,7 @@ import sympy
 
 from sim.assignments import Constants, assignments, constant_lines, entries
 from sim.model import TIME, Model
-from sim.slopes import jacobian
+from sim.slopes import jacobian, symbols_of
 
 _ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
 
@@ -75,7 +75,7 @@ def _index_tables(model: Model) -> list[str]:
 
 
 def _pattern_tables(model: Model) -> list[str]:
-    """Which entries of A = df/dx, and of 1 + h A + h^2 A^2 / 2, are not identically zero."""
+    """Which entries of A = df/dx, and of 1 + h A + h^2 A^2 / 2, and which rows of D = df/dp and E = dy/dp are not identically zero."""
     A = np.zeros((len(model.states), len(model.states)), dtype=bool)
     for place in jacobian(model.state_rates(), model.states).todok():
         A[place] = True
@@ -83,7 +83,15 @@ def _pattern_tables(model: Model) -> list[str]:
     rows = {
         name: ", ".join(f"{{{', '.join(map(str, row))}}}" for row in has.astype(int)) for name, has in patterns.items()
     }
-    return [f"static const int {name}[N_STATES][N_STATES] = {{{text}}};" for name, text in rows.items()]
+    known = set(model.parameter_symbols) - set(model.switches)
+    moved = {"D_HAS": model.state_rates(), "E_HAS": model.outputs.values()}
+    by_row = {
+        name: [int(bool(symbols_of(sympy.sympify(row)) & known)) for row in given] for name, given in moved.items()
+    }
+    return [
+        *(f"static const int {name}[N_STATES][N_STATES] = {{{text}}};" for name, text in rows.items()),
+        *(f"static const int {name}[] = {{{', '.join(map(str, has))}}};" for name, has in by_row.items()),
+    ]
 
 
 def _bound(stop: sympy.Expr | None, absent: sympy.Expr) -> sympy.Expr:

@@ -42,7 +42,7 @@ typedef struct {
     /* By blocks of columns: slopes of the state, whitened slopes not yet multiplied, the lower half of their products, and those with
      * the innovations; what the plant's equations say of the columns. Columns beyond the request's are 0. */
     block S[BLOCKS][N], waiting[BLOCKS][PENDING], gram[BLOCKS][MAX_COLUMNS], pull[BLOCKS];
-    block E[BLOCKS], D[N][BLOCKS];
+    block E[N_OUTPUTS][BLOCKS], D[N][BLOCKS];
 } filter_state;
 
 static int blocks(const filter_request *request) { return (request->columns + BLOCK - 1) / BLOCK; }
@@ -73,7 +73,9 @@ static void start(filter_state *at, filter_request *request)
             at->waiting[b][m] = (block){0.0};
         for (int k = 0; k < MAX_COLUMNS; k++)
             at->gram[b][k] = (block){0.0};
-        at->pull[b] = at->E[b] = (block){0.0};
+        at->pull[b] = (block){0.0};
+        for (int o = 0; o < N_OUTPUTS; o++)
+            at->E[o][b] = (block){0.0};
         for (int i = 0; i < N; i++)
             at->D[i][b] = (block){0.0};
     }
@@ -112,11 +114,11 @@ static void multiply(filter_state *at)
 }
 
 /* The slopes of a measurement's innovation, and what its gain takes off those of the state; kept whitened where it has a place. */
-static void correct_slopes(filter_state *at, const double *H, const double *K, double nu, double scale, int64_t place)
+static void correct_slopes(filter_state *at, const double *H, const block *E, const double *K, double nu, double scale, int64_t place)
 {
     const filter_request *const r = at->request;
     for (int b = 0; b < blocks(r); b++) {
-        block slope = -at->E[b];
+        block slope = -E[b];
         for (int i = 0; i < N; i++)
             if (H[i] != 0.0)
                 slope -= H[i] * at->S[b][i];
@@ -136,7 +138,7 @@ static void correct_slopes(filter_state *at, const double *H, const double *K, d
 }
 
 /* One scalar measurement: innovation, gain, new mean, covariance and slopes. */
-static void correct(filter_state *at, int64_t step, int output, double predicted, const double *H, const double *E)
+static void correct(filter_state *at, int64_t step, int output, double predicted, const double *H)
 {
     filter_request *const r = at->request;
     const double variance = r->r[step * N_OUTPUTS + output];
@@ -168,8 +170,9 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
         r->w[place] = nu * scale;
         r->s[place] = s;
     }
-    gather(r, E, at->E);
-    correct_slopes(at, H, K, nu, scale, place);
+    if (E_HAS[output])
+        gather(r, at->j.E + output * N_PARAMETERS, at->E[output]);
+    correct_slopes(at, H, at->E[output], K, nu, scale, place);
 }
 
 static void measure(filter_state *at, int64_t step)
@@ -189,7 +192,7 @@ static void measure(filter_state *at, int64_t step)
             if (isnan(r->y[step * N_OUTPUTS + o]))
                 continue;
             model_outputs(r->t_s[step], at->body.x, at->c, y);
-            correct(at, step, o, y[o], at->j.H + o * N, at->j.E + o * N_PARAMETERS);
+            correct(at, step, o, y[o], at->j.H + o * N);
         }
     }
     if (row >= 0 && r->filtered)
@@ -245,8 +248,9 @@ static void move_slopes(filter_state *at, double h_s)
 {
     const filter_request *const r = at->request;
     const double *const A = at->j.A;
-    for (int i = 0; i < N; i++)
-        gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
+    UNROLLED for (int i = 0; i < N; i++)
+        if (D_HAS[i])
+            gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
     for (int b = 0; b < blocks(r); b++) {
         block *const S = at->S[b], rates[N];
         UNROLLED for (int i = 0; i < N; i++) {
