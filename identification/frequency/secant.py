@@ -23,6 +23,9 @@ Residual = Callable[[Array], Array | None]
 FIRST_STEP, LATER_STEP = 0.05, 1e-4  # of a parameter's size, for the first n + 1 points and for later ones
 MOST_STEPS = 200
 SETTLED = 1e-7  # relative gain of J by a new set of points that is none
+STALE = (
+    1e-3  # relative gain of J over as many steps as new points would cost, below which secants are turned no further
+)
 MU_MOST = 1e8
 
 
@@ -76,21 +79,26 @@ def _through_points(residual: Residual, theta: Array, F: Array, size: Array, ste
 
 
 def _descend(residual: Residual, best: Found, F: Array, S: Array, size: Array) -> tuple[Found, Array]:
-    """Steps by (1) and (2) until none is better."""
-    theta, J, count, mu, failed = best.theta, best.J, best.evaluations, 1e-3, 0
-    while mu < MU_MOST and failed < 2 * theta.size + 8:
-        s = np.linalg.solve(S.T @ S + mu * np.diag(np.diag(S.T @ S) + 1e-12), -S.T @ F)
-        other, count = residual(theta + s * size), count + 1
-        if other is None:
-            mu, failed = mu * 10.0, failed + 1
-            continue
-        predicted = F + S @ s
-        S = S + np.outer(other - predicted, s) / max(float(s @ s), 1e-300)
-        if float(other @ other) < J:
-            small = J - float(other @ other) < 1e-10 * J
-            theta, F, J, mu, failed = theta + s * size, other, float(other @ other), max(mu / 5.0, 1e-10), 0
-            if small:
+    """Steps by (1) and (2) until mu is out of range, or 2 n + 8 of them have gained little: then new points serve better."""
+    theta, J, mu = best.theta, best.J, 1e-3
+    patience, spent, J_before = 2 * theta.size + 8, 0, np.inf
+    while mu < MU_MOST:
+        if spent % patience == 0:
+            if J_before - J <= STALE * J:
                 break
-        else:
-            mu, failed = mu * 5.0, failed + 1
-    return Found(theta, J, count, False), F
+            J_before = J
+        s = np.linalg.solve(S.T @ S + mu * np.diag(np.diag(S.T @ S) + 1e-12), -S.T @ F)
+        other, spent = residual(theta + s * size), spent + 1
+        if other is None:
+            mu *= 10.0
+            continue
+        S = S + np.outer(other - F - S @ s, s) / max(float(s @ s), 1e-300)
+        J_other = float(other @ other)
+        if J_other >= J:
+            mu *= 5.0
+            continue
+        small = J - J_other < 1e-10 * J
+        theta, F, J, mu = theta + s * size, other, J_other, max(mu / 5.0, 1e-10)
+        if small:
+            break
+    return Found(theta, J, best.evaluations + spent, False), F

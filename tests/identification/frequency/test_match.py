@@ -63,6 +63,7 @@ def test_a_weak_sweep_names_the_parameters_it_cannot_tell_and_where_coherence_la
     )
     assert any("delta_ped to p_rad_s: not matched" in note for note in notes)
     assert not any(note.startswith("L_lat") for note in notes)
+    assert all(entry.evaluations < 1000 for entry in fit.searches)  # one followed L_r down a stale secant for 371393
 
 
 def test_a_record_too_short_for_the_band_is_refused_by_its_name(raptor):
