@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import sympy
@@ -74,7 +75,7 @@ class Model:
     starts: Mapping[sympy.Symbol, sympy.Expr] = field(default_factory=dict)
     switches: tuple[sympy.Symbol, ...] = ()
 
-    @property
+    @cached_property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:
         """All coefficients in the order of the parameter vector p."""
         return tuple(symbol for spec in self.parameters for symbol in spec.symbols)
