@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from identification.belief import Belief, prior, widened
 from identification.discord import Discord, discords
@@ -65,7 +65,7 @@ class Estimate:
 
 def interval_factor(dof: float) -> float:
     """Half the width of a 95 % interval in standard deviations, by Student's distribution."""
-    return float(student.ppf(0.975, max(dof, 1.0)))
+    return float(stdtrit(max(dof, 1.0), 0.975))
 
 
 def estimate(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from identification.prediction import Block
 from identification.run import Run
@@ -70,7 +70,7 @@ def _whiteness(residual: Array, rounding: Array) -> float:
     n = residual.size
     excess = n * (n + 2) * np.sum((own - expected) ** 2 / (n - np.arange(1, LAGS + 1)))
     # Two sample correlations differ by twice the variance of one.
-    return float(chi2.sf(excess / (2.0 if np.any(rounding) else 1.0), LAGS))
+    return float(chdtrc(LAGS, excess / (2.0 if np.any(rounding) else 1.0)))
 
 
 def _correlation(values: Array) -> Array:

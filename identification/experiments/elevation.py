@@ -3,7 +3,6 @@
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
-from scipy.signal import medfilt, savgol_filter
 
 from identification.experiments import models
 from identification.experiments.rig import PERIOD_S, PHI, PSI, Rig, Setup
@@ -88,6 +87,8 @@ def turning_rad_s(t_s: Array, phi_rad: Array, step_rad: float) -> Array:
     median alone would round a steady speed to whole steps of 0.15 rad/s and cut the crests off, and what rounding leaves in the square
     of the speed would pass for centrifugal torque.
     """
+    from scipy.signal import medfilt, savgol_filter  # a second, which whoever only identifies from logs is spared
+
     speed = np.diff(phi_rad, append=phi_rad[-1]) / np.diff(t_s, append=2 * t_s[-1] - t_s[-2])
     speed[-1] = speed[-2]
     middle = medfilt(speed, MEDIAN_ROWS)

@@ -69,10 +69,10 @@ def _stopped(x: State, p: dict[str, float]) -> State:
 
 def _rates(p: dict[str, float], x: State, u_1: float, u_2: float) -> State:
     """Eqs (3)-(7) without dry friction, which the identified set does not have."""
-    lag_1, w_1, lag_2, w_2, psi, psi_dot, phi_dot = (*x[:6], x[7])
-    tau_1, tau_2, tau_r = (
-        p[f"a_{j}"] * w * abs(w) + p[f"b_{j}"] * w for j, w in ((1, w_1), (2, w_2), (3, w_1))
-    )  # fmt: skip
+    lag_1, w_1, lag_2, w_2, psi, psi_dot, _, phi_dot = x
+    tau_1 = p["a_1"] * w_1 * abs(w_1) + p["b_1"] * w_1
+    tau_2 = p["a_2"] * w_2 * abs(w_2) + p["b_2"] * w_2
+    tau_r = p["a_3"] * w_1 * abs(w_1) + p["b_3"] * w_1
     ml_kgm = p["tau_G"] / p["g"]
     centrifugal = 0.5 * ml_kgm * p["cf_length"] * phi_dot**2 * math.sin(2.0 * psi)
     gyroscopic = p["k_G"] * phi_dot * w_1 * math.cos(psi)

@@ -23,7 +23,6 @@ from identification.search import METHODS, Search
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw import console, options
-from twinlaw.frequency_identifying import identify_by_frequency
 from twinlaw.identify_proof import proven
 from twinlaw.identify_report import identify_page
 from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
@@ -93,6 +92,8 @@ def run(chosen: argparse.Namespace) -> int:
     """Read everything, estimate, write, tell."""
     holdout = options.held_out(chosen, "files")
     if chosen.method == "frequency":
+        from twinlaw.frequency_identifying import identify_by_frequency  # with SciPy's signals, a second to load
+
         return identify_by_frequency(chosen, holdout)
     if chosen.band_rad_s is not None:
         raise BadInput("--band-rad-s", "command line", "given without its method", "--method frequency", "add that")
