@@ -55,22 +55,27 @@ def test_two_logs_that_contradict_each_other_are_told_once(bound, other):
     assert [entry.name for entry in found.discords] == ["J_A"]
 
 
-def closed_loop(rig, nominal, from_s):
+@pytest.fixture(scope="module")
+def table(bound):
+    """The nominal plant's controller."""
+    return design(bound, read_settings(bound))[0]
+
+
+def closed_loop(rig, table, from_s):
     """Forty seconds of the project's flight of that rig under the nominal plant's controller."""
-    table, _ = design(nominal, read_settings(nominal))
     log, rows = fly_law(rig, table, flight(rig), substeps=4), slice(100 * from_s, 100 * from_s + 4000)
     return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
 
 
-def test_closed_loops_of_two_rigs_are_told_apart_though_each_bears_the_other_s_misfit(bound, other):
+def test_closed_loops_of_two_rigs_are_told_apart_though_each_bears_the_other_s_misfit(bound, other, table):
     """J_A and 1.2 J_A, within 2 %; by the common fit's residuals alone, 25 times the sensors', they would be one."""
-    logs = {"one": closed_loop(bound, bound, 15), "another": closed_loop(other, bound, 15)}
+    logs = {"one": closed_loop(bound, table, 15), "another": closed_loop(other, table, 15)}
     found = identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE"))
     assert [entry.name for entry in found.discords] == ["J_A"]
     assert found.discords[0].own == pytest.approx(bound.parameter("J_A"), rel=0.02)
     assert found.discords[0].others == pytest.approx(1.2 * bound.parameter("J_A"), rel=0.02)
 
 
-def test_closed_loops_of_one_rig_agree(bound):
-    logs = {"early": closed_loop(bound, bound, 15), "late": closed_loop(bound, bound, 60)}
+def test_closed_loops_of_one_rig_agree(bound, table):
+    logs = {"early": closed_loop(bound, table, 15), "late": closed_loop(bound, table, 60)}
     assert identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE")).discords == ()
