@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.belief import NOTHING, Belief
+from identification.belief import NOTHING, Belief, widened
 from identification.estimate import CONTRADICTION_SD, Estimate, Range, estimate, problem_of
 from identification.locked import locked_model
 from identification.log_run import log_run
@@ -16,7 +16,7 @@ from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, coefficient_names, offset_names
 from identification.search import Search, search, started
 from identification.sizes import with_sizes
-from identification.solve import Prior, Problem, Told, by_name, solve
+from identification.solve import Point, Prior, Problem, Told, by_name, solve
 from identification.steps import followed
 from identification.subsystem import subsystem
 from records.errors import BadInput
@@ -24,6 +24,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 
+Array = NDArray[np.float64]
 COARSE_S = 0.5
 COARSE_WINDOWS = 40  # of each log: enough for a start
 COARSE_SETTLED = 10.0
@@ -63,7 +64,8 @@ def fits_of_logs(
             replace(run_of(bound, log, name, length), substeps=short.substeps)
             for short, (name, log) in zip(coarse, logs.items(), strict=True)
         ]
-        found = estimate(runs, names, closer, before, told)
+        held = _held(tuple(runs), *widened(before, names, start))
+        found = estimate(held.runs, names, closer, before, told)
         start = {name: found.belief.value(name) for name in names}
         yield found
 
@@ -97,22 +99,17 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
 
     Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
     that predicts the shortest windows clearly worse than the best does not count, nor one that leaves more than `MOST_LEFT` of what its
-    own readings do, nor one that contradicts the shortest windows by more than both intervals allow, unless it leaves no more than
-    sensors do: then the model lacks nothing, and it is the shortest windows that are in doubt. What moves in them may be little more
-    than a controller's answer to an encoder's steps, whose errors are in both input and reading.
+    own readings do, nor one that contradicts the shortest windows by more than both intervals allow.
     """
     if len(found) == 1:
         return found[0]
-    costs = [_cost(found[0].runs, entry) for entry in found]
+    costs = [_held(found[0].runs, entry.belief.names, entry.belief.mean).cost for entry in found]
     sound = [
         entry
         for entry, cost in zip(found, costs, strict=True)
         if cost <= WORSE**2 * min(costs)
         and all(test.fit > 1.0 - MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
-        and (
-            apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
-            or all(test.white and _of_the_sensor(test) for test in entry.residuals)
-        )
+        and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
     ]
     return min(sound or found[:1], key=_volume)
 
@@ -127,11 +124,13 @@ def apart_sd(one: Belief, other: Belief) -> float:
     return float(np.max(np.abs(one.mean - other.mean) / np.hypot(one.sd, other.sd), initial=0.0))
 
 
-def _cost(runs: tuple[Run, ...], entry: Estimate) -> float:
-    """Criterion (10) over these runs with the parameters held and the windows' starts fitted."""
-    names, theta = entry.belief.names, entry.belief.mean
+def _held(runs: tuple[Run, ...], names: tuple[str, ...], theta: Array) -> Point:
+    """Criterion (10) over these runs with the parameters held and the windows' starts fitted.
+
+    A fit begins from these starts: over long windows guessed ones are so far off that parameters which follow them lose their way.
+    """
     free = Prior(theta, np.zeros((theta.size, theta.size)))
-    return solve(Problem(names, theta, np.abs(theta) + 1e-12, theta, theta, runs, free)).cost
+    return solve(Problem(names, theta, np.abs(theta) + 1e-12, theta, theta, runs, free))
 
 
 def _volume(found: Estimate) -> float:

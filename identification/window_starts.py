@@ -10,7 +10,6 @@ from sim.model import Axis, Model
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 SLOPE_ROWS = 4  # on either side, for a velocity guess
-AT_REST = 1e-6  # standard deviation of a velocity that is known to be none: at rest dry friction leaves no slope by it
 # A window's start may be off by so many resolution steps, or so much of its range.
 POSITION_STEPS, POSITION_SHARE = 20.0, 0.05
 ANYWHERE = 1.0  # rad or m, a position that was never read, of an axis without stops
@@ -40,9 +39,10 @@ def window_starts(
             x0[:, place], sd[:, place] = _anywhere(bound, axis)
         if axis is not None and axis.velocity not in measured:
             place = names.index(str(axis.velocity))
-            x0[:, place] = np.where(still, 0.0, slope)
+            crawl, most = crawling(log.t_s, y, begins, step)
+            x0[:, place] = np.where(still, crawl, slope)
             loose = 3.0 * max(float(np.std(slope)), float(step / np.median(np.diff(log.t_s))))
-            sd[:, place] = np.where(still, AT_REST, loose)
+            sd[:, place] = np.where(still, most, loose)
     free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in driven)
     return x0, free, sd[:, [names.index(name) for name in free]]
 
@@ -84,3 +84,20 @@ def lines(
             slope[number], level[number] = np.polyfit(t_s[near] - t_s[row], y[near], 1)
             still[number] = np.ptp(y[near]) < 0.5 * step
     return level, slope, still, read
+
+
+def crawling(t_s: Array, y: Array, begins: Index, step: float) -> tuple[Array, Array]:
+    """Guess and bound of the velocity at the rows `begins` of what shows no motion there: it may crawl within one resolution step.
+
+    It has not left the step since the reading last changed and until it changes next, or the log ends. Where both changes go the same
+    way it has crossed the step in between; otherwise it may as well rest.
+    """
+    known = np.flatnonzero(np.isfinite(y))
+    jumps = np.diff(y[known])
+    changed = np.abs(jumps) >= 0.5 * step
+    edges_s = (0.5 * (t_s[known[1:]] + t_s[known[:-1]]))[changed]
+    ways = np.concatenate([[0.0], np.sign(jumps[changed]), [0.0]])
+    ends_s = np.concatenate([[t_s[0]], edges_s, [t_s[-1]]])
+    after = 1 + np.searchsorted(edges_s, t_s[begins], side="right")
+    most = step / np.maximum(ends_s[after] - ends_s[after - 1], np.median(np.diff(t_s)))
+    return np.where(ways[after] == ways[after - 1], ways[after], 0.0) * most, most
