@@ -1,9 +1,13 @@
 """The project's own rules: one-way imports, packages of this checkout, style, types, and a Makefile that explains itself."""
 
+import ast
 import importlib
 import re
 import subprocess
 import sys
+import tomllib
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -44,6 +48,25 @@ def test_each_package_is_the_one_of_this_checkout(package: str) -> None:
     module = importlib.import_module(package)
     assert module.__file__ is not None
     assert Path(module.__file__).resolve().parent == ROOT / package
+
+
+def _imported_at_load(module: Path) -> Iterator[str]:
+    """The first names of what a module imports as soon as it is loaded."""
+    for statement in ast.parse(module.read_text(encoding="utf-8")).body:
+        if isinstance(statement, ast.Import):
+            yield from (alias.name.split(".")[0] for alias in statement.names)
+        elif isinstance(statement, ast.ImportFrom) and statement.module and not statement.level:
+            yield statement.module.split(".")[0]
+
+
+def test_what_is_imported_at_load_is_installed_by_every_make() -> None:
+    """A package of an extra, or one that only another package brings, would end a plain install in a traceback."""
+    sources = [source for package in PACKAGES for source in (ROOT / package).rglob("*.py")]
+    asked = {name for source in sources for name in _imported_at_load(source)} - {*PACKAGES, *sys.stdlib_module_names}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = {re.split(r"[<>=\[]", requirement)[0].lower() for requirement in project["dependencies"]}
+    bringers = packages_distributions()
+    assert {name for name in asked if declared.isdisjoint(map(str.lower, bringers[name]))} == set()
 
 
 def test_stages_import_one_way_along_the_data() -> None:

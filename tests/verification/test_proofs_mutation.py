@@ -21,8 +21,6 @@ from verification.proofs.mutation_judge import stepped, stimuli_of
 from verification.proofs.mutation_twin import Truth, is_twin_noticed, table_mutants
 from verification.proofs.subject import Subject
 
-pytest.importorskip("pycparser", reason="pycparser is not installed (pip install --editable '.[proofs]')")
-
 
 @cache
 def law(arithmetic: str = "float32") -> Mapping[str, str]:

