@@ -17,11 +17,12 @@ _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 @dataclass(frozen=True)
 class Option:
-    """An option: its flags, whether a value follows, the words that value can be, or whether it is a file."""
+    """An option: its flags, whether a value follows or many do, the words that a value can be, or whether it is a file."""
 
     flags: tuple[str, ...]
     help: str
     takes: bool
+    many: bool
     words: tuple[str, ...]
     file: bool
     name: str
@@ -114,6 +115,7 @@ def _option(action: argparse.Action) -> Option:
         flags=tuple(action.option_strings),
         help=_line(text),
         takes=action.nargs != 0,
+        many=action.nargs in ("+", "*"),
         words=tuple(words),
         file=action.type is Path or action.dest == "port",
         name=metavar or action.dest.upper(),

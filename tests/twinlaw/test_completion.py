@@ -80,6 +80,8 @@ ASKED = [
     ("twinlaw blind score --r", {"--reliability"}),
     ("twinlaw diagnose --ho", {"--holdout"}),
     ("twinlaw watch --port emu", {"emulated"}),
+    ("twinlaw compare --controllers pid l", {"lqg"}),
+    ("twinlaw compare --controllers pid lqg --ef", {"--effects"}),
 ]
 
 
@@ -127,6 +129,8 @@ def test_fish_offers_what_fits(scripts: Callable[[str], Path], line: str, offere
         ("twinlaw run --arithmetic fl", "twinlaw run --arithmetic float32 "),
         ("twinlaw run --plant plan", "twinlaw run --plant plant.toml "),
         ("twinlaw watch --port emu", "twinlaw watch --port emulated "),
+        ("twinlaw compare --controllers pid lq", "twinlaw compare --controllers pid lqg "),
+        ("twinlaw compare --controllers pid lqg --eff", "twinlaw compare --controllers pid lqg --effects"),
     ],
 )
 def test_zsh_completes_what_is_typed(scripts: Callable[[str], Path], typed: str, becomes: str) -> None:
