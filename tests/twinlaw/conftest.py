@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from codegen.law import generate_law
-from diagnosis.ahead import Lookahead
 from records.log import save_log
 from records.table import table_text
 from rig.image import build_firmware
@@ -19,6 +18,7 @@ from twinlaw.stages import design_controller
 from twinlaw.verbs.watch import page_bytes
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched
+from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
 
@@ -64,7 +64,7 @@ def watch(carried: Path) -> Iterator[Open]:
 def running(asked: Watched, clock: Callable[[], float] | None) -> Iterator[Watch]:
     bound, source, locked = open_watched(asked)
     clocked = {} if clock is None else {"clock": clock}
-    session = Session(source, Lookahead(bound, locked), Events(), lost_s=PATIENT_S, **clocked)
+    session = Session(source, ready_lookahead(bound, locked), Events(), lost_s=PATIENT_S, **clocked)
     server = Server(Site(session, source.facts(), page_bytes()), 0)
     end = serve(server)
     mover = threading.Thread(target=session.run)

@@ -321,6 +321,36 @@ def test_a_tcp_port_that_is_taken_is_one_line(watch: Open, carried: Path, capsys
     assert "a free port is taken" in capsys.readouterr().err
 
 
+FLIGHT_THAT_COMPILES = """
+from pathlib import Path
+from records.log import load_log
+from sim.columns import log_columns
+from toolchain.cache import CACHE_DIR
+from twinlaw.stages import load_bound
+from twinlaw.watching.prediction import ready_lookahead
+from twinlaw.watching.replay import live_rows
+
+bound = load_bound(Path({plant!r}))
+lookahead = ready_lookahead(bound, ())
+before = set(CACHE_DIR.rglob("*.so"))
+found = lookahead.take(live_rows(load_log(Path({log!r}), log_columns(bound.model)))[:320])
+print(len(found), min(entry.t_s for entry in found), [path.name for path in set(CACHE_DIR.rglob("*.so")) - before])
+"""
+
+
+def test_nothing_is_left_to_be_compiled_when_a_flight_begins(carried: Path, tmp_path: Path) -> None:
+    # Truth: a flight whose prediction compiles after 3 s is ended by the board's wait for its host, or by the page's silence.
+    program = FLIGHT_THAT_COMPILES.format(plant=str(PLANT), log=str(carried / "hop.csv"))
+    told = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "TWINLAW_CACHE": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.split(maxsplit=2) == ["4", "3.0", "[]\n"]
+
+
 def test_a_signal_at_the_end_of_a_wait_ends_it(carried: Path) -> None:
     # Truth: `stop` from the handler of a signal ends `run`, also where the handler takes longer than what is left of a wait.
     log = Watched(str(carried / "hop.csv"), PLANT, carried / "controller.json", carried, None, "float32", False)

@@ -13,7 +13,6 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
 
-from diagnosis.ahead import Lookahead
 from records.errors import BadInput
 from records.log import demand_log_place, save_log
 from sim.bind import BoundPlant
@@ -23,6 +22,7 @@ from twinlaw.console import stage
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched
+from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
 from twinlaw.watching.source import Source
@@ -60,7 +60,7 @@ def run(chosen: argparse.Namespace) -> int:
         if chosen.record is not None and not isinstance(source, BoardSource):
             raise BadInput("--record", str(chosen.record), "a replay", "a board", "the log is recorded already")
         with stage("compiling the twin's filter"):
-            lookahead = Lookahead(bound, locked)
+            lookahead = ready_lookahead(bound, locked)
         session = Session(source, lookahead, Events())
         server = Server(Site(session, source.facts(), page_bytes()), chosen.http_port)
         end = serve(server)
