@@ -23,9 +23,8 @@ Residual = Callable[[Array], Array | None]
 FIRST_STEP, LATER_STEP = 0.05, 1e-4  # of a parameter's size, for the first n + 1 points and for later ones
 MOST_STEPS = 200
 SETTLED = 1e-7  # relative gain of J by a new set of points that is none
-STALE = (
-    1e-3  # relative gain of J over as many steps as new points would cost, below which secants are turned no further
-)
+# Relative gain of J over as many steps as new points would cost, below which secants are turned no further.
+STALE = 1e-3
 MU_MOST = 1e8
 
 
