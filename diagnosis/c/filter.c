@@ -310,12 +310,20 @@ static void resting(const filter_state *at, const double *level, const double *n
     }
 }
 
+/* The rows of the axes' speeds, of `width` numbers each, set to 0 where chosen. */
+static void empty_rows(const bool *chosen, double *rows, int width)
+{
+    for (int a = 0; a < N_AXES; a++)
+        for (int k = 0; chosen[a] && k < width; k++)
+            rows[AXIS_VELOCITY[a] * width + k] = 0.0;
+}
+
 static void advance(filter_state *at, int64_t step)
 {
     filter_request *const r = at->request;
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
     double x[N], middle[N], noise[N], level[AXES] = {0.0}, sign[AXES];
-    bool rests[AXES];
+    bool rests[AXES], held[AXES];
     matrix F;
     step_stages seen;
     plant_body before = at->body;
@@ -335,30 +343,25 @@ static void advance(filter_state *at, int64_t step)
     for (int i = 0; i < N; i++)
         middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
     resting(at, level, noise, rests);
+    for (int a = 0; a < N_AXES; a++)
+        held[a] = at->body.move[a] == 0.0;
     jacobians *const j = &at->j;
     model_state_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->A);
     if (r->columns)
         model_parameter_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->D);
-    for (int a = 0; a < N_AXES; a++)
-        if (rests[a]) {
-            const int v = AXIS_VELOCITY[a];
-            for (int k = 0; k < N; k++)
-                j->A[v * N + k] = 0.0;
-            for (int k = 0; k < N_PARAMETERS; k++)
-                j->D[v * N_PARAMETERS + k] = 0.0;
-        }
+    empty_rows(rests, j->A, N);
     transition(j->A, h_s, F);
+    empty_rows(rests, F[0], WIDTH);
+    /* The mean stays where friction holds it, however unsure its speed is: parameters move nothing there. */
+    empty_rows(held, j->A, N);
+    empty_rows(held, j->D, N_PARAMETERS);
     move_slopes(at, h_s);
-    for (int a = 0; a < N_AXES; a++)
-        if (rests[a]) {
-            const int v = AXIS_VELOCITY[a];
-            for (int k = 0; k < N; k++)
-                F[v][k] = 0.0;
-            for (int b = 0; b < blocks(r); b++)
-                at->S[b][v] = (block){0.0};
-            if (r->locked[a])
-                noise[v] = 0.0;
-        }
+    for (int a = 0; a < N_AXES; a++) {
+        for (int b = 0; held[a] && b < blocks(r); b++)
+            at->S[b][AXIS_VELOCITY[a]] = (block){0.0};
+        if (r->locked[a])
+            noise[AXIS_VELOCITY[a]] = 0.0;
+    }
     stir(at, rests, noise);
     spread(at, F, noise);
     if (r->F)
