@@ -19,7 +19,7 @@ from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 C_DIR = Path(__file__).parent / "c"
 PART = 256  # instants answered at a time: what they fill stays in the processor's cache
 # Read once, when this module is: what is compiled later and how it is called stay of one make, whatever happens to the files.
-SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c"))
+SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c", C_DIR / "respond.c"))
 HEADERS = tuple(c_text(path) for folder in (C_DIR, SIM_C) for path in sorted(folder.glob("*.h")))
 DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.h")
 # Unlike the simulation's kernels nothing must be equal to the bit here.

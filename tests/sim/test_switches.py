@@ -71,7 +71,9 @@ def compiled(model: Model):
         CText("seen.c", SEEN),
     )
     headers = [c_text(C_DIR / name) for name in ("lane.h", "sincos.h")]
-    ffi, lib = load_shared(f"{DECLARATION};", build_shared("switches", (*made, *headers), flags=("-O1", *FAST_FLAGS[1:])))
+    ffi, lib = load_shared(
+        f"{DECLARATION};", build_shared("switches", (*made, *headers), flags=("-O1", *FAST_FLAGS[1:]))
+    )
     states, parameters = len(model.states), len(model.parameter_symbols)
 
     def seen(p, t_s, x, u, sign):
