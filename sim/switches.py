@@ -8,6 +8,7 @@ run: a plant that carries fifty effects, two of them on, takes little more time 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 import sympy
 
@@ -159,21 +160,16 @@ def _levelled(always: Sequence[Line], blocks: Sequence[tuple[Switches, list[Line
         if lines[-1].adds:
             for symbol in _made(lines[-1]):
                 adding[symbol].append(index)
-    level_of: dict[object, int] = {}
 
+    @cache
     def base(symbol: object) -> int:
-        key = ("base", symbol)
-        if key not in level_of:
-            level_of[key] = max(map(complete, made[symbol].expression.free_symbols), default=0) if symbol in made else 0
-        return level_of[key]
+        return max(map(complete, made[symbol].expression.free_symbols), default=0) if symbol in made else 0
 
+    @cache
     def block(index: int) -> int:
-        key = ("block", index)
-        if key not in level_of:
-            lines = blocks[index][1]
-            taken = {symbol for line in lines for symbol in line.expression.free_symbols}
-            level_of[key] = max((*map(complete, taken), *map(base, _made(lines[-1]))), default=0)
-        return level_of[key]
+        _, lines = blocks[index]
+        taken = {symbol for line in lines for symbol in line.expression.free_symbols}
+        return max((*map(complete, taken), *map(base, _made(lines[-1]))), default=0)
 
     def complete(symbol: object) -> int:
         return max((block(index) + 1 for index in adding[symbol]), default=base(symbol))
