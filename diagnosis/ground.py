@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,12 +63,14 @@ class Ground:
 
     def scores_by(self, values: Sequence[Array], target: int) -> Scores:
         """Scores of the answers to disturbances values[flight] (steps, k) of one target, see filter.py."""
-        gram, beside = self._met(values, target, _gram, self._own())
+        gram, beside = self._met(values, target, lambda E, part: (E.T @ E, E.T @ part), self._own())
         return self.scores(gram, beside[:, :-1].T, beside[:, -1])
 
     def gains_by(self, values: Sequence[Array], target: int) -> Array:
         """Gain of the log likelihood (k,) by each of the answers to disturbances alone, in its own direction only."""
-        squares, beside = self._met(values, target, _squares, self._own())
+        squares, beside = self._met(
+            values, target, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own()
+        )
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
         own = self._pull()
@@ -82,7 +85,7 @@ class Ground:
 
     def steps_against(self, target: int, columns: Array) -> Array:
         """Products (k, m) of the answers to those unit steps with columns (rows, m)."""
-        return self._met(self._unit_steps(target), target, _squares, columns)[1]
+        return self._met(self._unit_steps(target), target, lambda E, part: (E.T @ part,), columns)[0]
 
     def answer(self, values: Sequence[Array], target: int) -> Array:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target."""
@@ -96,21 +99,16 @@ class Ground:
         )
 
     def _met(
-        self, values: Sequence[Array], target: int, product: Callable[[Array], Array], columns: Array
-    ) -> tuple[Array, Array]:
-        """Sums over all rows of a product of the answers (rows, k) with themselves, and of theirs (k, m) with columns (rows, m)."""
+        self, values: Sequence[Array], target: int, terms: Callable[[Array, Array], tuple[Array, ...]], columns: Array
+    ) -> tuple[Array, ...]:
+        """Sums over all flights and rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time."""
         place, sizes = self._place(target), [run.w.size for run in self.runs]
 
-        def over(tape: Tape, run: Pass, value: Array, part: Array) -> tuple[Array, Array]:
-            sums: tuple[Array, Array] | None = None
-            for places, E in self.filter.respond(tape, run, value[:, None, :], [place], self.case.slots):
-                found = product(E), E.T @ part[places]
-                sums = found if sums is None else (sums[0] + found[0], sums[1] + found[1])
-            assert sums is not None
-            return sums
+        def over(tape: Tape, run: Pass, value: Array, part: Array) -> tuple[Array, ...]:
+            answers = self.filter.respond(tape, run, value[:, None, :], [place], self.case.slots)
+            return reduce(_added, (terms(E, part[places]) for places, E in answers))
 
-        found = each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
-        return sum(one for one, _ in found), sum(other for _, other in found)  # type: ignore[return-value]
+        return reduce(_added, each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1])))
 
     def _pull(self) -> Array:
         """What the innovations and what is known of the coefficients say together of each (free,)."""
@@ -140,12 +138,8 @@ class Ground:
         return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
 
 
-def _gram(E: Array) -> Array:
-    return E.T @ E
-
-
-def _squares(E: Array) -> Array:
-    return np.asarray(np.einsum("ij,ij->j", E, E))
+def _added(one: tuple[Array, ...], other: tuple[Array, ...]) -> tuple[Array, ...]:
+    return tuple(a + b for a, b in zip(one, other, strict=True))
 
 
 def ground_of(case: Case, fit: Fit) -> Ground:
