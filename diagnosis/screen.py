@@ -56,7 +56,7 @@ def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | Non
     finite = [name for name in costly if not kit.effects[name].on_equations or _limited(kit.effects[name])]
     kinds, chosen = (
         (_finite, _smooth, _smooth, _first_order),
-        (finite + _holding(kit, wanted), others, stateless, costly),
+        (finite + holding(kit, wanted), others, stateless, costly),
     )
     found = each(lambda kind, names: kind(case, ground, names), kinds, chosen)
     best: dict[str, Look] = {}
@@ -102,7 +102,7 @@ def _limited(effect: Effect) -> bool:
     return effect.kind in ("saturation", "slew_limit")
 
 
-def _holding(kit: Kit, names: Sequence[str]) -> list[str]:
+def holding(kit: Kit, names: Sequence[str]) -> list[str]:
     """Dry friction of an axis that has none as stated: of how it holds the axis where it rests first order knows nothing."""
     return [
         name for name in names if kit.effects[name].kind in FRICTIONS and kit.effects[name].place in kit.frictionless

@@ -4,14 +4,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.calm import awake
 from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.hypothesis import Supposed, passes
-from diagnosis.screen import Look
+from diagnosis.screen import Look, holding
 from diagnosis.unrest import FIRST_UNREST, with_unrest
 
+Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
@@ -20,6 +22,9 @@ LESS = 0.2  # of an effect's size, from which it is fitted once more where more 
 LEAST_SLIP = 1.5  # counts
 POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
 FINELY = (1e-3, 2e-4, 4e-5)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
+LEVELS = np.geomspace(
+    0.5, 2.0, 7
+)  # of a friction that holds an axis: where it holds, slopes do not tell what more of it would do
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,8 @@ def rough(case: Case, job: Job) -> Tried | None:
     astray = start if found is None else found.supposed
     if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
         found = _likelier(found, _from_stated(case, start))
+    if found is not None and holding(case.kit, [entry.effect]):
+        found = _likelier(found, fit(case, _likeliest(case, found.supposed, entry.effect, LEVELS), rounds=4))
     return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
 
 
@@ -82,6 +89,8 @@ def refined(case: Case, tried: Tried) -> Tried | None:
     start = with_unrest(case, tried.fit.supposed)
     for name in tried.effects:
         start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
+    for name in holding(case.kit, tried.effects):
+        start = _likeliest(case, start, name, LEVELS)
     found = fit(case, start, rounds=5)
     return None if found is None else tried_as(case, found)
 
@@ -98,15 +107,20 @@ def once_more(case: Case, tried: Tried) -> Tried:
 
 def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]) -> Supposed:
     """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
-    best, value = start, -np.inf
     for reach in reaches:
-        middle = best.effects[effect]["q"]
-        for q in np.linspace(1.0 - reach, 1.0 + reach, 13) * middle:
-            tried = start.with_effects({**start.effects, effect: {"q": float(q)}})
-            runs = passes(case, tried)
-            if runs is not None and likelihood(runs) > value:
-                best, value = tried, likelihood(runs)
-    return best
+        start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
+    return start
+
+
+def _likeliest(case: Case, start: Supposed, effect: str, factors: Array) -> Supposed:
+    """The start with that of the factors on an effect's size that the logs find likeliest."""
+    symbol = case.kit.effects[effect].size.symbol
+    tried = [
+        start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: float(value)}})
+        for value in start.effects[effect][symbol] * factors
+    ]
+    values = [-np.inf if runs is None else likelihood(runs) for runs in (passes(case, entry) for entry in tried)]
+    return tried[int(np.argmax(values))] if np.max(values) > -np.inf else start
 
 
 def _lessened(case: Case, start: Supposed, effect: str) -> Supposed:

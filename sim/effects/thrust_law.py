@@ -2,6 +2,8 @@
 
 (1)  F -> F (1 + a (|u| / U - 1)),  where the model's thrust is proportional to u: a = 1 is a square law
 (2)  F -> F (1 - a + a U / |u|),    where it goes with u^2: a = 1 is a straight one;  U the largest command
+
+Beyond the bounds of a, a small command would push the other way: what falls short of a square law is a dead band's.
 """
 
 from collections.abc import Iterator
@@ -22,7 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.{law}_thrust",
             depends=f"thrust({rotor.variable})",
-            parameters=(EffectParameter("a", "-", -2.0, 2.0, 0.2, 0.0, (0.5, 1.0)),),
+            parameters=(EffectParameter("a", "-", -1.0 if rotor.linear else 0.0, 1.0, 0.2, 0.0, (0.5, 1.0)),),
             equation="F -> F (1 + a (|u|/U - 1))" if rotor.linear else "F -> F (1 - a + a U/|u|)",
             story=f"The thrust follows the command by a {law} law rather than by the {other} one of the model.",
             source="blade element theory: thrust goes with the square of the speed",

@@ -57,8 +57,9 @@ def aeroshield() -> Result:
     return diagnose(plant, Material(logs[:1], logs[1:], ["val_data", "repeated"], [None] * 3))
 
 
-def test_lag_and_dry_friction_of_the_arm_are_found(aeroshield: Result) -> None:
+def test_lag_dead_band_and_dry_friction_of_the_arm_are_found(aeroshield: Result) -> None:
     first = aeroshield.diagnosis.effects[0]
+    assert first.effect.split(" + ")[1:] == ["input.deadzone", "arm.coulomb"]
     assert set(aeroshield.diagnosis.found) == set(first.effect.split(" + "))
     (lag,) = (value.value for name, value in first.parameters.items() if name.endswith("lag.tau"))
     assert lag == pytest.approx(LAG_S, rel=NEAR)
