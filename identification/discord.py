@@ -15,9 +15,13 @@ LEAST_SHARE = 0.01  # of a cost: first order does not bear more
 
 @dataclass(frozen=True)
 class Discord:
-    """A parameter that one run tells otherwise than all others do: its value by that run, by the others, and sd between them."""
+    """A parameter that one run tells otherwise than all others do: its value by that run, by the others, and sd between them.
+
+    `against` is the other run's name where there are two, "the others" where there are more.
+    """
 
     run: str
+    against: str
     name: str
     sds: float
     own: float
@@ -39,6 +43,7 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
     costs = [sum(float(block.residual @ block.residual) for block in own) for own in point.blocks]
     found: list[Discord] = []
     told = point.runs if len(point.runs) > 2 else point.runs[:1]  # of two, each is against the other
+    against = "the others" if len(point.runs) > 2 else point.runs[1].name
     pull = prior.information @ (prior.mean - point.theta)
     for number, run in enumerate(told):
         own, own_cov = _optimum(point.theta, parts[number][0] + weak, parts[number][1], costs[number])
@@ -48,7 +53,7 @@ def discords(problem: Problem, point: Point) -> tuple[Discord, ...]:
         others, others_cov = _optimum(point.theta, H + prior.information + weak, g + pull, left)
         sds = np.abs(own - others) / np.sqrt(np.diag(own_cov) + np.diag(others_cov))
         found += [
-            Discord(run.name, name, float(sds[place]), float(own[place]), float(others[place]))
+            Discord(run.name, against, name, float(sds[place]), float(own[place]), float(others[place]))
             for place, name in enumerate(problem.names)
             if sds[place] > DISCORD_SD
         ]

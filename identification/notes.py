@@ -18,8 +18,8 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for entry in stage.contradictions[:3]
     ]
     against = [
-        f"{title}: {entry.run} contradicts the others in {entry.name}: {entry.own:.4g} by itself, {entry.others:.4g} by the others, "
-        f"{entry.sds:.0f} sd apart; find out what differs, or leave it out"
+        f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: {entry.own:.4g} by itself, "
+        f"{entry.others:.4g} by {entry.against}, {entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
         for entry in stage.discords[:3]
     ]
     coloured = [

@@ -53,6 +53,7 @@ def test_two_logs_that_contradict_each_other_are_told_once(bound, other):
     runs = [run_of(bound, 1, bound), run_of(other, 2, bound)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     assert [entry.name for entry in found.discords] == ["J_A"]
+    assert any("log 1 contradicts log 2 in J_A" in note for note in stage_notes("two logs", found))
 
 
 @pytest.fixture(scope="module")
