@@ -14,7 +14,7 @@ from identification.estimate import problem_of
 from identification.log_run import log_run
 from identification.logs import identify_logs
 from identification.ranges import ranges_of
-from identification.run import coefficient_names
+from identification.run import Run, coefficient_names
 from identification.solve import solve
 from records.log import RunLog
 from sim.bench_peers import module
@@ -91,8 +91,15 @@ def fit(work: Task) -> Array:
         name: replace(entry, start=float(value))
         for (name, entry), value in zip(ranges.items(), coarse.theta, strict=True)
     }
-    whole = (log_run(work.bound, work.log, "bench", np.inf, at_first=work.x0),)
-    return solve(problem_of(whole, NAMES, closer, NOTHING)).theta
+    whole = _from_rest(log_run(work.bound, work.log, "bench", np.inf, at_first=work.x0))
+    return solve(problem_of((whole,), NAMES, closer, NOTHING)).theta
+
+
+def _from_rest(run: Run) -> Run:
+    """The run of one window that begins at rest, as this one does for every tool here: its axes' first velocities are not free."""
+    velocities = {str(axis.velocity) for axis in run.bound.model.axes}
+    kept = [place for place, state in enumerate(run.free) if state not in velocities]
+    return replace(run, free=tuple(run.free[place] for place in kept), start_sd=run.start_sd[:, kept])
 
 
 def identified(work: Task) -> Array:
