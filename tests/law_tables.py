@@ -1,51 +1,53 @@
-"""Controller tables for tests, placed here with NumPy and SciPy so that they need no design stage."""
+"""Controller tables for tests, placed here in mpmath so that they need no design stage and have one digest on every processor."""
 
 from dataclasses import replace
 from functools import cache
 
+import mpmath
 import numpy as np
-from numpy.typing import NDArray
-from scipy.signal import cont2discrete
 
 from records.table import AxisLaw, ControllerTable, Polynomial
 
 SAMPLE_PERIOD_S = 0.01
 RESOLUTION_RAD = 2.0 * np.pi / 4096.0
-PSI_GRID_RAD = np.radians(np.arange(-40.0, 41.0, 5.0))
+PSI_GRID_RAD = tuple(np.radians(np.arange(-40.0, 41.0, 5.0)).tolist())
+DIGITS = 50
+Row = list[mpmath.mpf]
 
 
 @cache
 def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> ControllerTable:
     """Like the CE150 of facts/ce150.md C4: an integrating elevation (dom2/int) and an azimuth without (eq4/q3)."""
-    elevation_poles = np.exp(SAMPLE_PERIOD_S * np.array([-3.0, -4.0, -7.0, -12.0, -15.0, -20.0]))
-    azimuth_poles = np.exp(SAMPLE_PERIOD_S * np.full(6, -4.0))
-    elevation = [_placed(_elevation_plant(psi), elevation_poles, integral=True) for psi in PSI_GRID_RAD]
-    azimuth = [_placed(_azimuth_plant(psi), azimuth_poles, integral=False) for psi in PSI_GRID_RAD]
-    return ControllerTable(
-        plant="ce150",
-        sample_period_s=SAMPLE_PERIOD_S,
-        psi_min_rad=float(PSI_GRID_RAD[0]),
-        psi_max_rad=float(PSI_GRID_RAD[-1]),
-        elevation=_axis(elevation, degree, (5.607, 0.0, -1.53), prefilter_time_constant_s, (0.0, 10.0, 0.0), 0.7),
-        azimuth=_axis(azimuth, degree, (1.97, 0.0, -0.33), prefilter_time_constant_s, (-10.0, 10.0, 0.0), 2.27),
-        origin={"made_for": "tests"},
-    )
+    with mpmath.workdps(DIGITS):
+        elevation_poles = [mpmath.exp(SAMPLE_PERIOD_S * s) for s in (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0)]
+        azimuth_poles = [mpmath.exp(SAMPLE_PERIOD_S * -4.0)] * 6
+        elevation = [_placed(*_elevation_plant(psi), elevation_poles, integral=True) for psi in PSI_GRID_RAD]
+        azimuth = [_placed(*_azimuth_plant(psi), azimuth_poles, integral=False) for psi in PSI_GRID_RAD]
+        return ControllerTable(
+            plant="ce150",
+            sample_period_s=SAMPLE_PERIOD_S,
+            psi_min_rad=PSI_GRID_RAD[0],
+            psi_max_rad=PSI_GRID_RAD[-1],
+            elevation=_axis(elevation, degree, (5.607, 0.0, -1.53), prefilter_time_constant_s, (0.0, 10.0, 0.0), 0.7),
+            azimuth=_axis(azimuth, degree, (1.97, 0.0, -0.33), prefilter_time_constant_s, (-10.0, 10.0, 0.0), 2.27),
+            origin={"made_for": "tests"},
+        )
 
 
 def _axis(
-    placed: list[tuple[NDArray[np.float64], NDArray[np.float64]]],
+    placed: list[tuple[Row, Row]],
     degree: int,
     feedforward_V: Polynomial,
     prefilter_time_constant_s: float,
     voltages: tuple[float, float, float],
     reference_rad: float,
 ) -> AxisLaw:
-    q = np.array([_delta_form(Q) for Q, _ in placed])
-    p = np.array([_recursion_delta_form(P) for _, P in placed])
-    a = _recursion_delta_form(np.poly([0.9, 0.9, 0.9]))
+    q = zip(*(_delta_form(Q) for Q, _ in placed), strict=True)
+    p = zip(*(_recursion_delta_form(P) for _, P in placed), strict=True)
+    a = _recursion_delta_form(_with_roots([mpmath.mpf("0.9")] * 3))
     return AxisLaw(
-        q_V_rad=tuple(_fitted(column, degree) for column in q.T),
-        p=tuple(_fitted(column, degree) for column in p.T),
+        q_V_rad=tuple(_fitted(column, degree) for column in q),
+        p=tuple(_fitted(column, degree) for column in p),
         a=(float(a[0]), float(a[1]), float(a[2])),
         feedforward_V=feedforward_V,
         prefilter_time_constant_s=prefilter_time_constant_s,
@@ -58,65 +60,78 @@ def _axis(
     )
 
 
-def _fitted(values: NDArray[np.float64], degree: int) -> Polynomial:
+def _fitted(values: tuple[mpmath.mpf, ...], degree: int) -> Polynomial:
     """Least squares in Psi; what vanishes on the grid vanishes exactly."""
-    if np.abs(values).max() < 1e-9:
+    if max(map(abs, values)) < 1e-9:
         return (0.0,)
-    return tuple(float(c) for c in np.polynomial.polynomial.polyfit(PSI_GRID_RAD, values, degree))
+    powers = mpmath.matrix([[mpmath.mpf(psi) ** power for power in range(degree + 1)] for psi in PSI_GRID_RAD])
+    return tuple(float(c) for c in mpmath.lu_solve(powers.T * powers, powers.T * mpmath.matrix(values)))
 
 
-def _elevation_plant(psi_rad: float) -> NDArray[np.float64]:
-    """Rotor lag of 7 /s into a damped pendulum of -tau_gE sin(psi)/J_E; columns: numerator, denominator in s."""
-    stiffness = 0.0383 / 4.37e-3 * -np.sin(psi_rad)
-    denominator = np.polymul([1.0, 7.0], [1.0, 0.42, stiffness])
-    return np.array([np.array([0.0, 0.0, 0.0, 22.0]), denominator])
+def _elevation_plant(psi_rad: float) -> tuple[mpmath.mpf, Row]:
+    """Rotor lag of 7 /s into a damped pendulum of -tau_gE sin(psi)/J_E: numerator, and denominator behind s^3."""
+    stiffness = 0.0383 / 4.37e-3 * -mpmath.sin(psi_rad)
+    return mpmath.mpf(22), [7 + 0.42, 7 * 0.42 + stiffness, 7 * stiffness]
 
 
-def _azimuth_plant(psi_rad: float) -> NDArray[np.float64]:
+def _azimuth_plant(psi_rad: float) -> tuple[mpmath.mpf, Row]:
     """Tail rotor lag of 3.5 /s into a damped inertia J_A cos(psi)."""
-    inertia = 4.14e-3 * np.cos(psi_rad)
-    return np.array([np.array([0.0, 0.0, 0.0, 0.02 / inertia]), np.polymul([1.0, 3.5, 0.0], [1.0, 8.69e-3 / inertia])])
+    inertia = 4.14e-3 * mpmath.cos(psi_rad)
+    damping = 8.69e-3 / inertia
+    return 0.02 / inertia, [3.5 + damping, 3.5 * damping, mpmath.mpf(0)]
 
 
-def _sampled(plant: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Zero-order hold of a third-order plant: B and A in powers of z^-1."""
-    numerator, denominator, _ = cont2discrete((plant[0][-1:], plant[1]), SAMPLE_PERIOD_S)
-    B = np.asarray(numerator).ravel()
-    return np.concatenate([np.zeros(4 - len(B)), B]), np.asarray(denominator)
+def _sampled(numerator: mpmath.mpf, denominator: Row) -> tuple[Row, Row]:
+    """Zero-order hold of a third-order plant: B and A in powers of z^-1, by Faddeev and LeVerrier from the matrix exponential."""
+    s = mpmath.zeros(4)
+    s[0, 1] = s[1, 2] = mpmath.mpf(1)
+    for column, value in enumerate(reversed(denominator)):
+        s[2, column] = -value
+    s[2, 3] = numerator
+    held = mpmath.expm(s * SAMPLE_PERIOD_S, method="taylor")
+    state, drive = held[:3, :3], held[:3, 3]
+    B, A, power = [mpmath.mpf(0)], [mpmath.mpf(1)], mpmath.eye(3)
+    for order in (1, 2, 3):
+        B.append((power * drive)[0])
+        step = state * power
+        A.append(-(step[0, 0] + step[1, 1] + step[2, 2]) / order)
+        power = step + A[-1] * mpmath.eye(3)
+    return B, A
 
 
-def _placed(
-    plant: NDArray[np.float64], poles: NDArray[np.float64], *, integral: bool
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _placed(numerator: mpmath.mpf, denominator: Row, poles: Row, *, integral: bool) -> tuple[Row, Row]:
     """Q, P of third order in z^-1 with A P + B Q = product of (1 - pole z^-1); the free degree is P(1) = 0 or q_3 = 0."""
-    B, A = _sampled(plant)
-    system = np.zeros((8, 8))
+    B, A = _sampled(numerator, denominator)
+    system = mpmath.zeros(8)
     for column in range(4):
-        system[column : column + 4, column] = A
-        system[column : column + 4, 4 + column] = B[:4] / np.abs(B).max()
-    wanted = np.concatenate([np.poly(poles), [0.0]])
-    free = np.array([1.0] * 4 + [0.0] * 4) if integral else np.array([0.0] * 7 + [1.0])
-    system[7] = free
-    wanted[7] = 0.0
-    solved = np.linalg.solve(system, wanted)
-    return solved[4:] / np.abs(B).max(), solved[:4]
+        for row in range(4):
+            system[column + row, column] = A[row]
+            system[column + row, 4 + column] = B[row]
+    for column in range(8):
+        system[7, column] = float(column < 4 if integral else column == 7)
+    solved = list(mpmath.lu_solve(system, mpmath.matrix([*_with_roots(poles), 0])))
+    return solved[4:], solved[:4]
 
 
-def _delta_form(Q: NDArray[np.float64]) -> NDArray[np.float64]:
+def _with_roots(roots: Row) -> Row:
+    """Coefficients of the product of (1 - root z^-1)."""
+    product = [mpmath.mpf(1)]
+    for root in roots:
+        product = [one - root * before for one, before in zip([*product, 0], [0, *product], strict=True)]
+    return product
+
+
+def _delta_form(Q: Row) -> Row:
     """Coefficients in powers of delta = 1 - z^-1, from z^-i = (1 - delta)^i."""
-    total = np.zeros(1)
-    for index, coefficient in enumerate(Q):
-        power = np.ones(1)
-        for _ in range(index):
-            power = np.polynomial.polynomial.polymul(power, [1.0, -1.0])
-        total = np.polynomial.polynomial.polyadd(total, coefficient * power)
-    return np.pad(total, (0, len(Q) - len(total)))
+    return [
+        (-1) ** power * sum(mpmath.binomial(i, power) * Q[i] for i in range(power, len(Q))) for power in range(len(Q))
+    ]
 
 
-def _recursion_delta_form(P: NDArray[np.float64]) -> NDArray[np.float64]:
+def _recursion_delta_form(P: Row) -> Row:
     """p_0, p_1, p_2 of P = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2]."""
-    bracket = _delta_form(-np.asarray(P)[1:])
-    return np.array([1.0 - bracket[0], bracket[1], bracket[2]])
+    bracket = _delta_form([-coefficient for coefficient in P[1:]])
+    return [1 - bracket[0], bracket[1], bracket[2]]
 
 
 @cache
