@@ -72,7 +72,7 @@ def rough(case: Case, job: Job) -> Tried | None:
     if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.kit, [entry.effect]):
-        found = _likelier(found, fit(case, _likeliest(case, found.supposed, entry.effect, LEVELS), rounds=4))
+        found = _at_its_level(case, found, entry.effect)
     return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
 
 
@@ -110,6 +110,14 @@ def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]
     for reach in reaches:
         start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
     return start
+
+
+def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
+    """The fit, or a likelier one from another level of a friction that holds its axis."""
+    start = _likeliest(case, found.supposed, effect, LEVELS)
+    if start.effects[effect] == found.supposed.effects[effect]:
+        return found
+    return _likelier(found, fit(case, start, rounds=4)) or found
 
 
 def _likeliest(case: Case, start: Supposed, effect: str, factors: Array) -> Supposed:
