@@ -81,13 +81,14 @@ def entries(targets: Mapping[str, sympy.Expr], constants: Constants) -> list[str
 def _lines(targets: Mapping[str, sympy.Expr], constants: Constants) -> list[Line]:
     expressions = [_single_angles(sympy.sympify(expression)) for expression in targets.values()]
     lines: list[Line] = []
-    replaced: dict[sympy.Expr, sympy.Symbol] = {}
+    replaced: dict[sympy.Basic, sympy.Basic | None] = {}
     for index, angle in enumerate(_angles(expressions)):
         pair = sympy.Symbol(f"sin_v{index}"), sympy.Symbol(f"cos_v{index}")
         lines.append(Line(pair, sympy.Tuple(constants.lifted(angle), 1)))  # the 1 says that not both can vanish
         replaced |= dict(zip((sympy.sin(angle), sympy.cos(angle)), pair, strict=True))
-    scope = replace(constants, variables=constants.variables | set(replaced.values()))
-    lifted = [scope.lifted(expression.xreplace(replaced)) for expression in expressions]
+    pairs = {symbol for line in lines for symbol in line.sets}
+    scope = replace(constants, variables=constants.variables | pairs)
+    lifted = [scope.lifted(_with(expression, replaced)) for expression in expressions]
     shared, reduced = sympy.cse(lifted, symbols=sympy.numbered_symbols("v", real=True), order="none")
     lines += [Line((symbol,), expression) for symbol, expression in shared]
     return lines + [Line((), expression, name) for name, expression in zip(targets, reduced, strict=True)]
@@ -153,7 +154,18 @@ def _single_angles(expression: sympy.Expr) -> sympy.Expr:
         for function in _functions_of(expression)
         if function.args[0].as_coeff_Mul()[0].is_Integer and abs(function.args[0].as_coeff_Mul()[0]) > 1
     ]
-    return expression.xreplace({function: sympy.expand_trig(function) for function in multiples})
+    return _with(expression, {function: sympy.expand_trig(function) for function in multiples})
+
+
+def _with(expression: sympy.Basic, known: dict[sympy.Basic, sympy.Basic | None]) -> sympy.Basic:
+    """The expression with parts replaced as `known` says, which learns what becomes of all others, None for nothing: shared parts are
+    done once."""
+    if expression not in known:
+        changed = [_with(argument, known) for argument in expression.args]
+        same = all(one is other for one, other in zip(changed, expression.args, strict=True))
+        known[expression] = None if same else expression.func(*changed)
+    found = known[expression]
+    return expression if found is None else found
 
 
 def _angles(expressions: Iterable[sympy.Expr]) -> list[sympy.Expr]:

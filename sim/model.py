@@ -8,6 +8,7 @@ from typing import Any
 import sympy
 
 from sim.places import Places
+from sim.slopes import corners_of
 
 TIME = sympy.Symbol("t_s", real=True)
 
@@ -85,11 +86,11 @@ class Model:
         """One symbol per axis for the direction of its dry friction: sgn(velocity), or 0 where it is left out."""
         return tuple(sympy.Symbol(f"sign_{axis.name}", real=True) for axis in self.axes)
 
-    @property
+    @cached_property
     def kinks(self) -> tuple[sympy.Symbol, ...]:
         """States at whose zero the rates have a kink or a step (|w|, sgn w): the kernel ends a step there, to keep its order."""
         rates = [*self.rates.values(), *(term for axis in self.axes for term in (axis.torque, axis.inertia))]
-        bent = {f.args[0] for rate in rates for f in sympy.sympify(rate).atoms(sympy.Abs, sympy.sign, sympy.Heaviside)}
+        bent = {corner for rate in rates for corner in corners_of(sympy.sympify(rate))}
         velocities = {axis.velocity for axis in self.axes}
         return tuple(state for state in self.states if state in bent - velocities)
 

@@ -10,6 +10,7 @@ import sympy
 
 _IMPULSES = (sympy.DiracDelta, sympy.Derivative, sympy.Subs)
 _STEPS = (sympy.sign, sympy.Heaviside, sympy.floor, sympy.ceiling)
+_CORNERS = (sympy.Abs, sympy.sign, sympy.Heaviside)
 _KEPT = 1 << 16
 
 
@@ -25,6 +26,13 @@ def symbols_of(expression: sympy.Basic) -> frozenset[sympy.Symbol]:
     if expression.is_Symbol:
         return frozenset((expression,))
     return frozenset().union(*(symbols_of(argument) for argument in expression.args))
+
+
+@lru_cache(maxsize=_KEPT)
+def corners_of(expression: sympy.Basic) -> frozenset[sympy.Expr]:
+    """The arguments of |.|, sgn and steps in an expression: it has corners or jumps where they are 0."""
+    own = frozenset(expression.args[:1]) if isinstance(expression, _CORNERS) else frozenset()
+    return own.union(*(corners_of(argument) for argument in expression.args))
 
 
 @lru_cache(maxsize=_KEPT)
