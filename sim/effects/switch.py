@@ -10,10 +10,12 @@ from sim.effects.edits import with_input
 from sim.effects.effect import Effect, coefficient
 from sim.model import Model, ParameterSpec
 
+INPUTS_ON = "inputs_on"
+
 
 def switch_name(effect: Effect) -> str:
     """The parameter, 1 or 0, that turns an effect on; one turns on all that changes what arrives of the inputs."""
-    return "inputs_on" if effect.applied is not None else coefficient(effect.name, "on")
+    return INPUTS_ON if effect.applied is not None else coefficient(effect.name, "on")
 
 
 def switched(nominal: Model, effects: Iterable[Effect]) -> Model:
@@ -47,6 +49,6 @@ def _with_inputs(model: Model, effects: Iterable[Effect]) -> Model:
         assert effect.applied is not None
         before = dict(effect.applied(*effect.symbols))
         arrives = {variable: expression.xreplace(before) for variable, expression in arrives.items()}
-        on = sympy.Symbol(switch_name(effect), real=True)
+    on = sympy.Symbol(INPUTS_ON, real=True)
     changed = {u: u + on * (expression - u) for u, expression in arrives.items() if expression != u}
     return with_input(model, changed)
