@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.case import Case
 from diagnosis.fit import Fit, fit
-from diagnosis.unrest import with_unrest
+from diagnosis.unrest import unrest_of
 
 FARTHEST = 2.0  # decades that the unrest is lowered at most
 LEAST = 0.3  # and at least, for a second look to be worth its time
@@ -29,7 +29,7 @@ def calmed(case: Case, found: Fit) -> Fit | None:
 
 def awake(case: Case, found: Fit) -> Fit | None:
     """A fit found under calm air with the unrest that its innovations show."""
-    return fit(case, with_unrest(case, found.supposed, FIRST_STEP), rounds=3)
+    return fit(case, unrest_of(case, found, FIRST_STEP), rounds=3)
 
 
 def _calm(case: Case) -> list[float]:

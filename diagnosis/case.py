@@ -7,20 +7,19 @@ from functools import cached_property
 import numpy as np
 import sympy
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
+from diagnosis.filter import Noise
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, tape_of
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
-from sim.reference import reference
 
 Array = NDArray[np.float64]
 START_S = 0.1
 UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
-RUN_UP_S = 4.0
+RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
 START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
 START_SHARE = 0.6  # how far from its rest under the first inputs another state may be, as a share
@@ -162,7 +161,7 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
         slope = np.polyfit(tape.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
         positions[str(expression)] = (name, float(slope))
     speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}
-    rest = _rest(kit.bound, tape, x0)
+    rest = _rest(kit, tape, x0)
     for index, state in enumerate(kit.states):
         if state in positions:
             continue
@@ -175,13 +174,24 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
     return x0, p0
 
 
-def _rest(bound: BoundPlant, tape: Tape, x0: Array) -> Array:
-    """States after a while under the first inputs with every axis held."""
-    model = bound.model
-    held = {state for axis in model.axes for state in (axis.position, axis.velocity)}
-    moves = np.array([state not in held for state in model.states], dtype=float)
-    low, high = np.array([bound.limits(variable) for variable in model.inputs]).T
-    u = np.clip(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), low, high)
-    rates, still = reference(model).rates, np.zeros(len(model.axes))
-    run = solve_ivp(lambda t_s, x: moves * rates(t_s, x, u, bound.p, still), (0.0, RUN_UP_S), x0, method="LSODA")
-    return np.asarray(run.y[:, -1])
+def _rest(kit: Kit, tape: Tape, x0: Array) -> Array:
+    """States after a while under the first inputs with every axis held; as they are where the plant leaves all bounds."""
+    step_s = min(LONGEST_STEP_S, float(np.median(np.diff(tape.t_s))))
+    t_s = np.arange(0.0, RUN_UP_S + step_s, step_s)
+    read = np.full((len(t_s), tape.y.shape[1]), np.nan)
+    blind = replace(
+        tape,
+        t_s=t_s,
+        u=np.tile(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), (len(t_s), 1)),
+        y=read,
+        r=np.ones_like(read),
+        row=np.arange(len(t_s)),
+        place=np.full(read.shape, -1),
+        rows=len(t_s),
+        untold_s=np.zeros(len(t_s)),
+    )
+    variant, none = kit.plain, np.zeros(len(x0))
+    axes = variant.filter.axes
+    calm = Noise(none, np.zeros(max(1, len(axes))), none, none, step_s)
+    run = variant.filter.run(blind, variant.p, x0, calm, [-1] * read.shape[1], locked=axes)
+    return x0 if run is None else run.x[-1]

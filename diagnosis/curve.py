@@ -69,7 +69,7 @@ def shape_of(ground: Ground, detection: Detection, suspect: Suspect) -> Shape | 
     for s, entry, own in zip(flown, known, x, strict=True):
         factor = (entry[times] if times else np.ones(len(s.t))) * (s.h if moves else 1.0)
         values.append(_hats(own, knots) * factor[:, None])
-    scores = ground.scores_by(values, target)
+    scores = ground.scores_by([value.__getitem__ for value in values], target)
     curve, cov = _fitted(scores.gram, -scores.score)
     about = np.eye(len(knots)) - 1.0 / len(knots)
     sd = np.sqrt(np.maximum(np.diag(about @ cov @ about.T), 0.0))

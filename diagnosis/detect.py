@@ -133,5 +133,5 @@ def _form_columns(ground: Ground, found: Sequence[Form]) -> Array:
     for target in sorted({form.target for form in found}):
         chosen = [index for index, form in enumerate(found) if form.target == target]
         values = [np.stack([found[i].values[flight] for i in chosen], axis=1) for flight in range(len(ground.tapes))]
-        columns[:, chosen] = ground.answer(values, target)
+        columns[:, chosen] = ground.answer([value.__getitem__ for value in values], target)
     return columns

@@ -22,7 +22,7 @@ from diagnosis.screen import look
 from diagnosis.search import Search, search
 from diagnosis.trial import Tried, evidence
 from diagnosis.unknown import left_beside
-from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, with_unrest
+from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, unrest_of
 from diagnosis.usual import with_usual
 from diagnosis.weigh import weigh
 from diagnosis.wiring import demand_wiring
@@ -120,7 +120,7 @@ def nominal_fit(case: Case) -> Fit:
                 "a plant that can follow these logs",
                 "check units",
             )
-        calmer = with_unrest(case, found.supposed, FIRST_STEP if turn < 2 else 0.1)
+        calmer = unrest_of(case, found, FIRST_STEP if turn < 2 else 0.1)
         settled = bool(np.max(np.abs(calmer.unrest - found.supposed.unrest), initial=0.0) < SETTLED)
         found = fit(case, calmer, rounds=ROUNDS)
         if settled and found is not None:

@@ -1,6 +1,6 @@
 """The extended Kalman filter of diagnosis/c, compiled with a plant's equations: whitened innovations and their slopes."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -25,6 +25,9 @@ DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.
 # Unlike the simulation's kernels nothing must be equal to the bit here.
 FLAGS = (*FAST_FLAGS, "-ffp-contract=fast")
 Array = NDArray[np.float64]
+Disturbances = Callable[
+    [slice], Array
+]  # what is added at a slice of a tape's instants: made when it is asked for, and small then
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,17 +134,17 @@ class Filter:
         return request
 
     def respond(
-        self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]
+        self, tape: Tape, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
     ) -> Iterator[tuple[NDArray[np.int64], Array]]:
         """Change of the whitened innovations by small disturbances `values` (steps, targets, columns), some of the tape at a time.
 
-        Yields places (m,) among the run's w, taken row by row, and the changes (m, columns) there, in room that the next part takes;
-        places that no part names do not change. A target below the number of states is a state, disturbed over the step from an
-        instant; beyond, an output at that instant.
+        Yields places (m,) among the run's w, taken row by row, and the changes (m, k) there by the first k columns, in room that the next
+        part takes; the columns behind them are not disturbed yet, and k never falls. Places that no part names do not change. A target
+        below the number of states is a state, disturbed over the step from an instant; beyond, an output at that instant.
         """
         assert run.gains is not None
         F, K, H = run.gains
-        width, count, steps = max(slots) + 1, values.shape[2], len(tape.t_s)
+        width, count, steps = max(slots) + 1, columns_of(values), len(tape.t_s)
         assert count <= self.lib.MAX_COLUMNS
         counts = (tape.place >= 0) & (np.array(slots) >= 0)
         places = (tape.place * width + np.array(slots))[counts]
@@ -152,7 +155,6 @@ class Filter:
             "K": K,
             "H": H,
             "s": run.s.reshape(-1)[places],
-            "value": _double(values),
             "target": np.array(targets, dtype=np.int32),
             "place": np.where(counts, np.cumsum(counts).reshape(counts.shape) - 1, -1),
             "dw": room,
@@ -162,14 +164,18 @@ class Filter:
         request.columns, request.targets = count, len(targets)
         for part, (begin, end) in enumerate(pairwise(begins.tolist())):
             request.first, request.end, request.base = part * PART, min((part + 1) * PART, steps), begin
+            value = _double(values(slice(request.first, request.end)))
+            request.value = self.ffi.cast("void *", value.ctypes.data)
             self.lib.filter_respond(request)
-            yield places[begin:end], room[: end - begin]
+            yield places[begin:end], room[: end - begin, : request.awake]
 
-    def response(self, tape: Tape, run: Pass, values: Array, targets: Sequence[int], slots: Sequence[int]) -> Array:
+    def response(
+        self, tape: Tape, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
+    ) -> Array:
         """The whole of `respond`, shape (rows, slots, columns)."""
-        found = np.zeros((run.w.size, values.shape[2]))
+        found = np.zeros((run.w.size, columns_of(values)))
         for places, changes in self.respond(tape, run, values, targets, slots):
-            found[places] = changes
+            found[places, : changes.shape[1]] = changes
         return found.reshape(*run.w.shape, -1)
 
 
@@ -189,6 +195,11 @@ def _given(tape: Tape, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[A
         "stir": _double(np.outer(tape.untold_s**2, noise.drive)) if tape.untold_s.any() else None,
         "rub": _double(noise.rub),
     }
+
+
+def columns_of(values: Disturbances) -> int:
+    """How many disturbances there are side by side."""
+    return int(values(slice(0)).shape[-1])
 
 
 def _double(array: ArrayLike) -> Array:

@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.abreast import each
 from diagnosis.case import Case
-from diagnosis.filter import Filter, Pass
+from diagnosis.filter import Disturbances, Filter, Pass, columns_of
 from diagnosis.fit import Fit, flat_slopes, stacked
 from diagnosis.hypothesis import passes, tape_under
 from diagnosis.tape import Tape
@@ -46,35 +46,35 @@ class Ground:
     filter: Filter
     kept: dict[int, tuple[Array, Scores]] = field(default_factory=dict)
 
-    def still_to_gain(self, w: Array) -> float:
-        """What moving the plant's coefficients would add to the log likelihood of innovations w, to first order."""
-        pull = self.slopes.T @ w + self.case.pull_of(self.fit.supposed.theta)
-        return 0.5 * float(pull @ self.solve @ pull)
+    def further(self, change: Array) -> tuple[float, float]:
+        """What moving the plant's coefficients would add to the log likelihood, to first order, where the innovations changed by
+        `change` (rows,), beyond what it would add here; and the share of the change that the coefficients imitate."""
+        own = self.slopes.T @ change
+        moved = self.solve @ own
+        return float(moved @ (self._pull + 0.5 * own)), float(own @ moved / (change @ change))
 
     def scores(self, gram: Array, cross: Array, pull: Array) -> Scores:
         """Scores of columns with products gram = E'E (k, k), cross = J'E (free, k) and pull = E'w (k,)."""
         share = self.solve @ cross
-        own = self._pull()
-        return Scores(gram - cross.T @ share, -(pull - share.T @ own), np.diag(gram).copy())
+        return Scores(gram - cross.T @ share, -(pull - share.T @ self._pull), np.diag(gram).copy())
 
     def scores_of(self, columns: Array) -> Scores:
         """Scores of columns (rows, k)."""
         return self.scores(columns.T @ columns, self.slopes.T @ columns, columns.T @ self.w)
 
-    def scores_by(self, values: Sequence[Array], target: int) -> Scores:
+    def scores_by(self, values: Sequence[Disturbances], target: int) -> Scores:
         """Scores of the answers to disturbances values[flight] (steps, k) of one target, see filter.py."""
-        gram, beside = self._met(values, target, lambda E, part: (E.T @ E, E.T @ part), self._own())
+        gram, beside = self._met(values, target, lambda E, part: (E.T @ E, E.T @ part), self._own)
         return self.scores(gram, beside[:, :-1].T, beside[:, -1])
 
-    def gains_by(self, values: Sequence[Array], target: int) -> Array:
+    def gains_by(self, values: Sequence[Disturbances], target: int) -> Array:
         """Gain of the log likelihood (k,) by each of the answers to disturbances alone, in its own direction only."""
         squares, beside = self._met(
-            values, target, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own()
+            values, target, lambda E, part: (np.einsum("ij,ij->j", E, E), E.T @ part), self._own
         )
         cross, pull = beside[:, :-1].T, beside[:, -1]
         share = self.solve @ cross
-        own = self._pull()
-        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ own - pull
+        norm, score = squares - np.einsum("ij,ij->j", cross, share), share.T @ self._pull - pull
         return np.asarray(0.5 * np.maximum(score, 0.0) ** 2 / np.maximum(norm, 1e-12))
 
     def steps(self, target: int) -> tuple[Array, Scores]:
@@ -87,45 +87,57 @@ class Ground:
         """Products (k, m) of the answers to those unit steps with columns (rows, m)."""
         return self._met(self._unit_steps(target), target, lambda E, part: (E.T @ part,), columns)[0]
 
-    def answer(self, values: Sequence[Array], target: int) -> Array:
+    def answer(self, values: Sequence[Disturbances], target: int) -> Array:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target."""
         place = self._place(target)
 
-        def over(tape: Tape, run: Pass, value: Array) -> Array:
-            return self.filter.response(tape, run, value[:, None, :], [place], self.case.slots)
+        def over(tape: Tape, run: Pass, value: Disturbances) -> Array:
+            return self.filter.response(tape, run, _of_one(value), [place], self.case.slots)
 
         return np.concatenate(
             [found.reshape(-1, found.shape[2]) for found in each(over, self.tapes, self.runs, values)]
         )
 
     def _met(
-        self, values: Sequence[Array], target: int, terms: Callable[[Array, Array], tuple[Array, ...]], columns: Array
+        self,
+        values: Sequence[Disturbances],
+        target: int,
+        terms: Callable[[Array, Array], tuple[Array, ...]],
+        columns: Array,
     ) -> tuple[Array, ...]:
-        """Sums over all flights and rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time."""
+        """Sums over all flights and rows of what `terms` makes of the answers (rows, k) and of columns (rows, m), some rows at a time:
+        each a multiple of the answers, so that those not disturbed yet would add nothing."""
         place, sizes = self._place(target), [run.w.size for run in self.runs]
 
-        def over(tape: Tape, run: Pass, value: Array, part: Array) -> tuple[Array, ...]:
-            answers = self.filter.respond(tape, run, value[:, None, :], [place], self.case.slots)
-            return reduce(_added, (terms(E, part[places]) for places, E in answers))
+        def over(tape: Tape, run: Pass, value: Disturbances, part: Array) -> tuple[Array, ...]:
+            sums = terms(np.zeros((0, columns_of(value))), part[:0])
+            for places, E in self.filter.respond(tape, run, _of_one(value), [place], self.case.slots):
+                for total, term in zip(sums, terms(E, part[places]), strict=True):
+                    total[tuple(slice(size) for size in term.shape)] += term
+            return sums
 
-        return reduce(_added, each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1])))
+        parts = each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
+        return tuple(sum(flights) for flights in zip(*parts, strict=True))
 
+    @cached_property
     def _pull(self) -> Array:
         """What the innovations and what is known of the coefficients say together of each (free,)."""
         return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta))
 
+    @cached_property
     def _own(self) -> Array:
         """The slopes with the innovations behind them (rows, free + 1)."""
         return np.column_stack([self.slopes, self.w])
 
-    def _unit_steps(self, target: int) -> list[Array]:
+    def _unit_steps(self, target: int) -> list[Disturbances]:
         """Unit steps at the grid's instants by flight (steps, k)."""
-        found = []
-        for tape in self.tapes:
-            on = (tape.t_s[:, None] >= self.instants()[None, :] - 1e-9).astype(float)
-            moves = target < len(self.case.kit.states)
-            found.append(on * np.append(np.diff(tape.t_s), 0.0)[:, None] if moves else on)
-        return found
+        begins, moves = self.instants() - 1e-9, target < len(self.case.kit.states)
+
+        def steps(tape: Tape) -> Disturbances:
+            height = np.append(np.diff(tape.t_s), 0.0) if moves else np.ones(len(tape.t_s))
+            return lambda part: np.where(tape.t_s[part, None] >= begins, height[part, None], 0.0)
+
+        return [steps(tape) for tape in self.tapes]
 
     def _place(self, target: int) -> int:
         """A target of the kit's own states and outputs, counted as the filter's."""
@@ -138,8 +150,9 @@ class Ground:
         return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
 
 
-def _added(one: tuple[Array, ...], other: tuple[Array, ...]) -> tuple[Array, ...]:
-    return tuple(a + b for a, b in zip(one, other, strict=True))
+def _of_one(values: Disturbances) -> Disturbances:
+    """Disturbances (steps, k) of one target as the filter takes them."""
+    return lambda part: values(part)[:, None, :]
 
 
 def ground_of(case: Case, fit: Fit) -> Ground:

@@ -128,7 +128,7 @@ def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
     for state, gain in drives(case).values():
         values = np.zeros((len(rows), 1, APART))
         values[rows, 0, rows % APART] = h * evaluated(model, p[: case.kit.own], gain)
-        found.append(ground.filter.response(tape, run, values, [state], case.slots))
+        found.append(ground.filter.response(tape, run, values.__getitem__, [state], case.slots))
     return _unfolded(np.stack(found, axis=2))
 
 

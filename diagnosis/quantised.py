@@ -4,7 +4,9 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis.filter import Disturbances
 from diagnosis.ground import Ground
+from diagnosis.tape import Tape
 
 Array = NDArray[np.float64]
 COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike
@@ -35,13 +37,14 @@ def likely_steps(ground: Ground, place: str) -> list[float]:
 
 
 def _gains(ground: Ground, column: int, target: int, steps: Array) -> Array:
-    values = []
-    for tape in ground.tapes:
-        u = tape.u[:, column, None]
-        h = np.append(np.diff(tape.t_s), 0.0)[:, None]
-        # Errors that the rig has move the innovations as its answer says; what the model would add moves them the other way.
-        values.append((u - steps * np.round(u / steps)) * h)
-    return ground.gains_by(values, target)
+    return ground.gains_by([_errors(tape, column, steps) for tape in ground.tapes], target)
+
+
+def _errors(tape: Tape, column: int, steps: Array) -> Disturbances:
+    """Errors of an input by steps, over each of a tape's own (instants, steps): those that the rig has move the innovations as its answer
+    says; what the model would add moves them the other way."""
+    u, h = tape.u[:, column, None], np.append(np.diff(tape.t_s), 0.0)[:, None]
+    return lambda part: (u[part] - steps * np.round(u[part] / steps)) * h[part]
 
 
 def _target(ground: Ground, variable: sympy.Symbol) -> int | None:

@@ -61,7 +61,7 @@ def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) ->
         values[:, row] = rng.standard_normal((len(h), count)) * np.sqrt(noise.q[state] * h)
     for row, place in enumerate(measured, len(moving)):
         values[:, row] = _read(ground, index, place, count, rng)
-    dw = ground.filter.response(tape, run, values, targets, case.slots)
+    dw = ground.filter.response(tape, run, values.__getitem__, targets, case.slots)
     return dw.reshape(-1, count)
 
 

@@ -9,7 +9,7 @@ from diagnosis.case import Case
 from diagnosis.fit import Fit, fit
 from diagnosis.notes import moved_effects, moved_parameters
 from diagnosis.trial import Tried, evidence
-from diagnosis.unrest import with_unrest
+from diagnosis.unrest import unrest_of
 
 WIDER = 8.0
 FAR = 4.0  # standard deviations
@@ -37,7 +37,7 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     found = fit(wider, start, rounds=6)
     if found is None:
         return None
-    found = fit(wider, with_unrest(wider, found.supposed), rounds=6)
+    found = fit(wider, unrest_of(wider, found), rounds=6)
     if found is None:
         return None
     moved = moved_parameters(wider, found.supposed.theta, FAR / WIDER)

@@ -191,13 +191,11 @@ def _tried(case: Case, ground: Ground, effect: Effect, values: Values) -> Look |
     runs = passes(case, supposed.with_effects({**supposed.effects, effect.name: values}))
     if runs is None:
         return None
-    w = stacked(runs)
-    change = w - ground.w
+    change = stacked(runs) - ground.w
     size = float(change @ change)
     if size < 1e-6:
         return None
-    gain = likelihood(runs) - ground.fit.log_likelihood + ground.still_to_gain(w) - ground.still_to_gain(ground.w)
-    own = ground.slopes.T @ change
-    absorbed = float(own @ ground.solve @ own) / size
+    further, absorbed = ground.further(change)
+    gain = likelihood(runs) - ground.fit.log_likelihood + further
     power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
     return Look(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power)

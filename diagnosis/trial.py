@@ -11,7 +11,7 @@ from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import Look, holding
-from diagnosis.unrest import FIRST_UNREST, with_unrest
+from diagnosis.unrest import FIRST_UNREST, unrest_of
 
 Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
@@ -86,7 +86,7 @@ def at_its_place(case: Case, job: Job) -> Tried | None:
 
 def refined(case: Case, tried: Tried) -> Tried | None:
     """The fit with the unrest that then remains."""
-    start = with_unrest(case, tried.fit.supposed)
+    start = unrest_of(case, tried.fit)
     for name in tried.effects:
         start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
     for name in holding(case.kit, tried.effects):

@@ -5,18 +5,28 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import likelihood
+from diagnosis.fit import Fit, likelihood
 from diagnosis.hypothesis import Supposed, passes
 
 LEAST, MOST = -5.0, 1.5
 FIRST_STEP = 0.3
 FIRST_UNREST = -1.5  # before any log was seen
 MOST_STEPS = 12
+LITTLE = 0.1  # nats that the top of the parabola must promise to be looked at
 
 
 def with_unrest(case: Case, supposed: Supposed, first: float = FIRST_STEP) -> Supposed:
-    """The same with the unrest that the innovations show, axis after axis."""
-    value = _value(case, supposed)
+    """The same with the unrest that the innovations show."""
+    return _likeliest(case, supposed, _value(case, supposed), first)
+
+
+def unrest_of(case: Case, found: Fit, first: float = FIRST_STEP) -> Supposed:
+    """What was fitted with the unrest that the innovations then show."""
+    return _likeliest(case, found.supposed, found.log_likelihood, first)
+
+
+def _likeliest(case: Case, supposed: Supposed, value: float, first: float) -> Supposed:
+    """The likeliest unrest, axis after axis; `value` is the log likelihood as it is."""
     for axis in range(len(supposed.unrest)):
         supposed, value = _along(case, supposed, value, axis, first)
     return supposed
@@ -41,7 +51,7 @@ def _along(case: Case, supposed: Supposed, value: float, axis: int, step: float)
         else:
             below, middle, above = middle, above, at(above[0].unrest[axis] + step)
     bend = below[1] - 2.0 * middle[1] + above[1]
-    if not (np.isfinite(bend) and bend < 0.0):
+    if not (np.isfinite(bend) and bend < 0.0) or (below[1] - above[1]) ** 2 < -8.0 * bend * LITTLE:
         return middle
     top = at(middle[0].unrest[axis] + 0.5 * step * (below[1] - above[1]) / bend)
     return top if top[1] > middle[1] else middle

@@ -38,7 +38,7 @@ typedef struct {
     double *state;                  /* [N_STATES][MAX_COLUMNS] */
     const double *F, *K, *H;        /* as above */
     const double *s;                /* the variances of the whitened innovations, one after another */
-    const double *value;            /* [instants][targets][columns] */
+    const double *value;            /* [end - first][targets][columns] */
     const int32_t *target;          /* [targets] */
     const int64_t *place;           /* [instants][N_OUTPUTS] the whitened innovation of each reading, or -1, */
     int64_t base;                   /* and the first of this part */

@@ -55,7 +55,7 @@ int32_t filter_respond(response_request *r)
     if (r->columns > MAX_COLUMNS)
         return -1;
     for (int64_t step = r->first; step < r->end; step++) {
-        const double *const value = r->value + step * r->targets * r->columns;
+        const double *const value = r->value + (step - r->first) * r->targets * r->columns;
         const int awake = r->awake = disturbed(r, value, r->awake);
         for (int o = 0; o < N_OUTPUTS; o++) {
             const double *added = 0;

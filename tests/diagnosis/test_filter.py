@@ -126,7 +126,7 @@ def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit
     raised = 1e-3 * (np.arange(len(tape.t_s)) >= start)
     h = np.append(np.diff(tape.t_s), 0.0)
     rate = evaluated(case.kit.bound.model, coefficients(case, case.kit.plain, settled)[: case.kit.own], gain)
-    found = ground.answer([(raised * h * rate)[:, None]], state).reshape(run.w.shape)
+    found = ground.answer([(raised * h * rate)[:, None].__getitem__], state).reshape(run.w.shape)
     u = tape.u.copy()
     u[:, column] -= raised
     (other,) = passes(case.with_flights([replace(case.flights[0], tape=replace(tape, u=u))]), settled) or [None]
@@ -147,10 +147,10 @@ def test_sums_over_parts_are_those_of_the_whole_answer(
     for column, first in enumerate((0, PART - 1, 3 * PART + 7)):
         values[first : first + 2 * PART, column] = np.linspace(1.0, -2.0, len(values[first : first + 2 * PART]))
     for target in (1, len(case.kit.states)):
-        parts = ground.scores_by([values], target)
+        parts = ground.scores_by([values.__getitem__], target)
         with monkeypatch.context() as patched:
             patched.setattr("diagnosis.filter.PART", steps)
-            whole = ground.scores_of(ground.answer([values], target))
+            whole = ground.scores_of(ground.answer([values.__getitem__], target))
         for one, other in ((parts.gram, whole.gram), (parts.score, whole.score), (parts.raw, whole.raw)):
             assert np.allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())
         assert parts.raw[3] == 0.0
@@ -163,7 +163,7 @@ def test_what_was_not_read_answers_nothing(case: Case, fitted: Fit) -> None:
     y = flight.tape.y.copy()
     y[PART : PART + 100] = np.nan
     ground = ground_of(case.with_flights([replace(flight, tape=replace(flight.tape, y=y))]), fitted)
-    found = ground.answer([np.full((len(y), 1), 0.01)], 1).reshape(len(y), -1)
+    found = ground.answer([np.full((len(y), 1), 0.01).__getitem__], 1).reshape(len(y), -1)
     assert np.all(found[PART : PART + 100] == 0.0)
     assert np.all(np.abs(found[PART - 1]) + np.abs(found[PART + 101]) > 0.0)
 
