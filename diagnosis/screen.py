@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from diagnosis.abreast import each
 from diagnosis.case import Case
 from diagnosis.filter import Pass
-from diagnosis.fit import likelihood, size_scale, stacked
+from diagnosis.fit import flat_slopes, likelihood, size_scale, stacked
 from diagnosis.ground import Ground, Scores
 from diagnosis.hypothesis import passes
 from diagnosis.instants import instants, is_event
@@ -87,7 +87,7 @@ def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
         touched = {name: {**_touched(kit.effects[name]), **shapes} for name, shapes in now.items()}
         variant = kit.variant((*supposed.effects, *now))
         places = [variant.place(name, kit.effects[name].size.symbol) for name in now]
-        runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), [*case.free.tolist(), *places])
+        runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), places, slopes=True)
         if runs is not None:
             found += _judged(case, ground, touched, runs)
     return found
@@ -110,13 +110,10 @@ def holding(kit: Kit, names: Sequence[str]) -> list[str]:
 
 
 def _judged(case: Case, ground: Ground, values: Mapping[str, Values], runs: Sequence[Pass]) -> list[Look]:
-    """Looks from a pass whose columns are the plant's coefficients, then one effect's size each."""
-    count = len(case.free)
-    scale = np.concatenate([case.sd, [size_scale(case.kit.effects[name].size) for name in values]])
-    gram = np.sum([run.gram for run in runs], axis=0) * np.outer(scale, scale)
-    pull = np.sum([run.pull for run in runs], axis=0) * scale
-    scores = ground.scores(gram[count:, count:], gram[:count, count:], pull[count:])
-    return _looks(case, values, scores, scale[count:])
+    """Looks from a pass whose columns are one effect's size each."""
+    scale = np.array([size_scale(case.kit.effects[name].size) for name in values])
+    columns = np.concatenate([flat_slopes(run) for run in runs]) * scale
+    return _looks(case, values, ground.scores_of(columns), scale)
 
 
 def _looks(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[Look]:
