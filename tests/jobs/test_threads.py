@@ -1,8 +1,12 @@
 """Processes and their threads together are no more than processors."""
 
+import ctypes
 import os
+import re
+from pathlib import Path
 
 import pytest
+import scipy.linalg
 
 from jobs.threads import cores, one_thread_each, threads
 
@@ -15,3 +19,18 @@ def test_processors_are_not_asked_for_twice(monkeypatch: pytest.MonkeyPatch) -> 
         assert threads() == 1
         assert os.environ["OPENBLAS_NUM_THREADS"] == "1"
     assert "OMP_NUM_THREADS" not in os.environ
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="only here does a process tell what it has loaded")
+def test_the_linear_algebra_of_these_tests_has_one_thread_as_that_of_the_commands_has() -> None:
+    """NumPy's and SciPy's OpenBLAS in this process, unless the environment asks for more: with two, small matrices took 30 times longer."""
+    assert scipy.linalg.norm([3.0, 4.0]) == 5.0  # it is loaded
+    libraries = set(re.findall(r"/\S+openblas\S+", Path("/proc/self/maps").read_text()))
+    counts = {path: _openblas_threads(ctypes.CDLL(path)) for path in libraries}
+    assert all(count in (int(os.environ.get("OPENBLAS_NUM_THREADS", "1")), None) for count in counts.values()), counts
+
+
+def _openblas_threads(library: ctypes.CDLL) -> int | None:
+    """None where its builder gave the function another name."""
+    names = (f"{first}openblas_get_num_threads{last}" for first in ("scipy_", "") for last in ("", "64_"))
+    return next((getattr(library, name)() for name in names if hasattr(library, name)), None)
