@@ -9,7 +9,7 @@ from design.settings import read_settings
 from design.table import design
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
-from diagnosis.filter import C_DIR, FLAGS, PART
+from diagnosis.filter import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
 from diagnosis.hypothesis import Supposed, coefficients, nothing_supposed, passes
@@ -44,6 +44,16 @@ def settled(fitted: Fit) -> Supposed:
     return fitted.supposed
 
 
+@pytest.fixture(scope="module")
+def stuck(kit: Kit, fly: Fly) -> tuple[Case, Supposed]:
+    """A flight whose azimuth sticks now and then, and what fits it."""
+    sticky = {"azimuth.coulomb": {"b": 2e-3}}
+    case = make_case(kit, [fly(1, sticky)])
+    found = fit(case, nothing_supposed(case, -3.0).with_effects(sticky))
+    assert found is not None
+    return case, found.supposed
+
+
 def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed) -> None:
     # Some 2000 readings that change from row to row have unit variance: the mean square within 6 sd = 19 %, the first correlation
     # within 6/sqrt(2000) = 0.13 and a little more for the encoder's rounding. Readings that stand are trusted less than they deserve.
@@ -59,13 +69,9 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
 
 
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
-def test_further_instants_change_nothing(kit: Kit, fly: Fly, sensor: str) -> None:
+def test_further_instants_change_nothing(stuck: tuple[Case, Supposed], sensor: str) -> None:
     # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
-    sticky = {"azimuth.coulomb": {"b": 2e-3}}
-    case = make_case(kit, [fly(1, sticky)])
-    fitted = fit(case, nothing_supposed(case, -3.0).with_effects(sticky))
-    assert fitted is not None
-    supposed = fitted.supposed
+    case, supposed = stuck
     (plain,) = passes(case, supposed) or [None]
     (late,) = passes(case, supposed.with_effects({**supposed.effects, f"{sensor}.delay": {"tau": 1e-5}})) or [None]
     assert plain is not None
@@ -74,21 +80,36 @@ def test_further_instants_change_nothing(kit: Kit, fly: Fly, sensor: str) -> Non
     assert late.log_likelihood == pytest.approx(plain.log_likelihood, abs=0.5)
 
 
+def changed(case: Case, supposed: Supposed, name: str) -> tuple[Pass, np.ndarray, np.ndarray]:
+    """The pass, its slopes by a coefficient in standard deviations, and what a thousandth of one changes (rows, slots)."""
+    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
+    index = int(np.flatnonzero(case.free == names.index(name))[0])
+    theta = supposed.theta.copy()
+    theta[index] += 1e-3
+    (run,) = passes(case, supposed, case.free.tolist(), slopes=True) or [None]
+    (moved,) = passes(case, replace(supposed, theta=theta)) or [None]
+    assert run is not None
+    assert moved is not None
+    assert run.dw is not None
+    return run, run.dw[:, :, index] * case.sd[index], (moved.w - run.w) / 1e-3
+
+
 def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> None:
     # The slopes leave out how the gain and the instants of stiction move: 20 % of their size, for parameters without friction.
-    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
     for name in ("J_E", "K_M", "tau_gE", "K_T"):
-        index = int(np.flatnonzero(case.free == names.index(name))[0])
-        (run,) = passes(case, settled, case.free.tolist(), slopes=True) or [None]
-        theta = settled.theta.copy()
-        theta[index] += 1e-3
-        (moved,) = passes(case, Supposed(theta, {}, settled.unrest)) or [None]
-        assert run is not None
-        assert moved is not None
-        assert run.dw is not None
-        change = (moved.w - run.w)[100:] / 1e-3
-        slope = run.dw[100:, :, index] * case.sd[index]
-        assert np.linalg.norm(change - slope) < 0.2 * np.linalg.norm(change)
+        _, slope, change = changed(case, settled, name)
+        assert np.linalg.norm((change - slope)[100:]) < 0.2 * np.linalg.norm(change[100:])
+
+
+@pytest.mark.parametrize("name", ["J_A", "K_T"])
+def test_no_parameter_moves_what_friction_holds(stuck: tuple[Case, Supposed], name: str) -> None:
+    # Where the azimuth sticks, what its inertia and its rotor do to the readings is what they had done before: 20 % of it as above.
+    case, supposed = stuck
+    run, slope, change = changed(case, supposed, name)
+    held = run.x[:, case.kit.velocities[1]] == 0.0
+    assert 50 < held[100:].sum() < 0.2 * len(held)
+    held[:100] = False
+    assert np.linalg.norm((change - slope)[held]) < 0.2 * np.linalg.norm(change[held])
 
 
 def test_products_are_those_of_the_slopes(case: Case, settled: Supposed) -> None:
