@@ -163,15 +163,18 @@ def _levelled(always: Sequence[Line], blocks: Sequence[tuple[Switches, list[Line
 
     @cache
     def base(symbol: object) -> int:
+        """The level of a symbol without what blocks add to it: as high as whatever it takes is complete; 0 of what is given."""
         return max(map(complete, made[symbol].expression.free_symbols), default=0) if symbol in made else 0
 
     @cache
     def block(index: int) -> int:
+        """The level of a block: where all that it takes is complete, and what it adds to has been set."""
         _, lines = blocks[index]
         taken = {symbol for line in lines for symbol in line.expression.free_symbols}
         return max((*map(complete, taken), *map(base, _made(lines[-1]))), default=0)
 
     def complete(symbol: object) -> int:
+        """The first level at which nothing more is added to a symbol."""
         return max((block(index) + 1 for index in adding[symbol]), default=base(symbol))
 
     found: dict[int, Level] = defaultdict(Level)
