@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from design.discretise import SampledPlant
 from records.errors import BadInput
@@ -58,6 +57,8 @@ class _Loop:
 
 def tune(plants: Sequence[SampledPlant], axis: str) -> Tuning:
     """(C.3) for the sampled plants of one axis; raises BadInput where no gains near the start hold the bound."""
+    from scipy.optimize import minimize  # half a second, which whoever flies another controller is spared
+
     loop, bound = _loop(plants), LARGEST_SENSITIVITY[axis]
 
     def cost(x: Array) -> float:

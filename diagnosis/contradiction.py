@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from diagnosis.case import Case
 from diagnosis.filter import Pass
@@ -40,7 +39,8 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     if runs is None:
         return None
     scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
-    before = block_diag(case.known, WIDE**-2 * np.eye(len(inside)))
+    before = WIDE**-2 * np.eye(len(scale))
+    before[: len(case.free), : len(case.free)] = case.known
     names = [str(case.kit.bound.model.parameter_symbols[place]) for place in case.free]
     names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]
     parts = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]

@@ -4,9 +4,9 @@ own parameters had to leave what is stated of them."""
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import chdtrc
 
 from diagnosis.abreast import each
 from diagnosis.case import Case
@@ -53,9 +53,14 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
     first = columns[0].shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
     numbers = len(away(ground.fit.supposed, ground.fit.free))
-    strained = float(chdtrc(numbers, strain(case, ground.fit.supposed, ground.fit.free)))
+    strained = chi_squared_tail(numbers, strain(case, ground.fit.supposed, ground.fit.free))
     p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
     return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
+
+
+def chi_squared_tail(count: int, value: float) -> float:
+    """The chance that the squares of `count` standard normal numbers sum to `value` or more."""
+    return float(mpmath.gammainc(0.5 * count, 0.5 * value, regularized=True)) if count else 1.0
 
 
 def gains(scores: Scores) -> Array:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import rel_entr
 
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, with_inputs
@@ -60,6 +59,8 @@ def _arrived(tape: Tape, share: float) -> Tape:
     What the readings say of single frames counts in the likelihood less the information that it takes, sum of KL(after, before), and
     less the spread about that mean: a line that loses frames is none that delays them all.
     """
+    from scipy.special import rel_entr  # half a second, which whoever loses no frames is spared
+
     lost = lost_with(tape.lost, share)
     arrived = np.stack([_lossy(lost, tape.u[:, column]) for column in range(tape.u.shape[1])], axis=1)
     taken = lost[tape.lost != 0.0]

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, expm, solve_discrete_are
 
 from records.errors import BadInput
 from sim.bind import BoundPlant
@@ -93,6 +92,8 @@ def _gains(
     inputs: Array,
     period_s: float,
 ) -> Array | None:
+    from scipy.linalg import expm, solve_discrete_are  # half a second, which whoever needs no stand-in is spared
+
     equations, signs = reference(bound.model), np.zeros(len(bound.model.axes))
     at = (0.0, rest.x0, rest.u0, bound.p, signs)
     A, B = equations.A(*at)[np.ix_(kept, kept)], _slopes(equations, at, inputs)[kept]
@@ -109,7 +110,7 @@ def _gains(
     R = np.diag(1.0 / inputs**2)
     try:
         P = solve_discrete_are(F, G, Q, R)
-    except (LinAlgError, ValueError):
+    except (np.linalg.LinAlgError, ValueError):
         return None
     gains = np.linalg.solve(R + G.T @ P @ G, G.T @ P @ F)
     stable = np.abs(np.linalg.eigvals(F - G @ gains)).max() < 1.0
