@@ -7,7 +7,7 @@ import pytest
 
 from toolchain import host
 from toolchain.cache import CACHE_DIR, is_whole
-from toolchain.host import CText, build_shared, c_text, content_digest, load_shared
+from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, c_text, content_digest, load_shared
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def test_a_source_that_changes_while_it_is_compiled_never_lends_its_name_to_the_
 ) -> None:
     source, asked = tmp_path / "answer.c", []
     source.write_text("int answer(void) { return 1; }\n")
-    before = content_digest([source], (), ())
+    before = content_digest([source], (), STRICT_FLOAT_FLAGS)
     compile_once = host.run_zig
 
     def changed_behind_our_back(arguments: Sequence[str], what: str) -> None:
@@ -35,7 +35,7 @@ def test_a_source_that_changes_while_it_is_compiled_never_lends_its_name_to_the_
         compile_once(arguments, what)
 
     monkeypatch.setattr(host, "run_zig", changed_behind_our_back)
-    path = build_shared("answer", [source], flags=())
+    path = build_shared("answer", [source])
     assert len(asked) == 2
     assert [found.name for found in cache.iterdir()] == [path.name]
     assert before not in path.name
@@ -53,9 +53,9 @@ def test_a_text_and_the_file_that_it_was_read_from_are_one_content(tmp_path: Pat
 @pytest.mark.parametrize("left", [0, 1, 63, 64, 1000, -1])
 def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path, left: int) -> None:
     source = CText("answer.c", "int answer(void) { return 4; }\n")
-    path = build_shared("answer", [source], flags=())
+    path = build_shared("answer", [source])
     whole = path.read_bytes()
     path.write_bytes(whole[:left])
     assert not is_whole(path)
-    assert build_shared("answer", [source], flags=()) == path
+    assert build_shared("answer", [source]) == path
     assert load_shared("int answer(void);", path)[1].answer() == 4
