@@ -172,19 +172,20 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
     """What is noted of a variant with these effects, all switched on."""
     behind = [name for name in names if is_lag(name)]
     switched = [name for name in names if name not in behind]
-    stated = combined(bound, switched)
-    values = dict(zip(map(str, stated.model.parameter_symbols), stated.p.tolist(), strict=True))
-    model = switched_model(bound.plant.model, switched)
+    effects = library(bound)
+    values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
+    values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
+    model = switched_model(bound.plant.model, tuple(switched))
     for name in behind:
         model = lagged(model, name)
-        values[coefficient(name, "tau")] = library(bound)[name].size.reference
+        values[coefficient(name, "tau")] = effects[name].size.reference
     model = observed(model, bound.model)
     parameters = [str(symbol) for symbol in model.parameter_symbols]
     return {
         "library": str(build_filter(model)),
         "parameters": parameters,
         "p": [values.get(name, 1.0) for name in parameters],
-        "switches": {name: parameters.index(switch_name(library(bound)[name])) for name in switched},
+        "switches": {name: parameters.index(switch_name(effects[name])) for name in switched},
         "states": [str(state) for state in model.states],
         "sizes": {"states": len(model.states), "outputs": len(model.outputs)},
         "axes": [axis.name for axis in model.axes],

@@ -31,7 +31,8 @@ def model_with(name: str, effects: tuple[str, ...]) -> Model:
     return reduce(_added, (library[effect] for effect in ordered), nominal)
 
 
-def switched_model(name: str, effects: Iterable[str]) -> Model:
+@lru_cache(maxsize=16)
+def switched_model(name: str, effects: tuple[str, ...]) -> Model:
     """The same with a switch for each effect, so that those that are off take no time (switch.py)."""
     nominal = MODELS[name]()
     chosen = carried(nominal, effects)
