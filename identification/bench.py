@@ -103,12 +103,12 @@ def _from_rest(run: Run) -> Run:
 
 
 def identified(work: Task) -> Array:
-    """The same parameters (10,) with their intervals, weights and tests, as `twinlaw identify --window inf` finds them."""
+    """The same parameters (10,) with their intervals, weights and tests, as `twinlaw identify` finds them."""
     numbers = dict(zip(NAMES, work.start.tolist(), strict=True))
     parameters = dict(work.bound.plant.parameters)
     parameters |= {name: replace(parameters[name], value=value) for name, value in numbers.items()}
     start = bind(replace(work.bound.plant, parameters=parameters))
-    found = identify_logs(start, {"bench": work.log}, NAMES, window_s=np.inf).belief
+    found = identify_logs(start, {"bench": work.log}, NAMES).belief
     return np.array([found.value(name) for name in NAMES])
 
 
@@ -186,9 +186,7 @@ def run(bound: BoundPlant) -> tuple[FitRow, ...]:
     all_s, every = min((_timed(lambda: identified(work)) for _ in range(3)), key=lambda pair: pair[0])
     rows = [
         FitRow("twinlaw, the fit", own_s, 1.0, _worst(work, own), "exact slopes, windows first, then the whole log"),
-        FitRow(
-            "twinlaw identify --window inf", all_s, all_s / own_s, _worst(work, every), "weights, intervals, tests too"
-        ),
+        FitRow("twinlaw identify", all_s, all_s / own_s, _worst(work, every), "weights, intervals, tests too"),
     ]
     for tool, (prepare, note) in PEERS.items():
         fitted = prepare(work)

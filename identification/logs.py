@@ -1,4 +1,4 @@
-"""A plant from run logs: short windows first, which find the way from a bad start, then long ones, which hold the parameters tightly."""
+"""A plant from run logs: short windows find the way from a bad start; then the whole logs, or windows where the model lacks something."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -49,23 +49,32 @@ def fits_of_logs(
     """The coefficients `names` from all logs at once, by output errors over windows of `window_s` (inf: each log whole).
 
     What shows only in an output that no log has a reading of is to be left out (`identification.shown`): it would be read off a guess.
-    By default one fit after the other over longer and longer windows, of which `best_fit` chooses. `wanted` asks for a search over the
-    whole range first; `offsets` adds a constant to each input, the trim of a real rig, to what is estimated; `told` hears of better
-    parameters as soon as there are any. Raises BadInput for an unknown coefficient or a start outside its limits.
+    By default each log whole, where that leaves no more than the sensors do; else one fit after the other over longer and longer
+    windows, of which `best_fit` chooses. `wanted` asks for a search over the whole range first; `offsets` adds a constant to each input,
+    the trim of a real rig, to what is estimated; `told` hears of better parameters as soon as there are any. Raises BadInput for an
+    unknown coefficient or a start outside its limits.
     """
     coarse = _short_windows(bound, logs)
     ranges = _ranges(bound, logs, coarse, (*before.names, *names), limits or {}, offsets)
     names = (*names, *(offset_names(bound.model) if offsets else ()))
     start = _coarse(coarse, names, ranges, before, wanted, told)
-    period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
-    for length in [period_s * rows for rows in WINDOW_ROWS] if window_s is None else [window_s]:
+
+    def fitted(length_s: float, start: Mapping[str, float]) -> Estimate:
         closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
         runs = [
-            replace(run_of(bound, log, name, length), substeps=short.substeps)
+            replace(run_of(bound, log, name, length_s), substeps=short.substeps)
             for short, (name, log) in zip(coarse, logs.items(), strict=True)
         ]
         held = _held(tuple(runs), *widened(before, names, start))
-        found = estimate(held.runs, names, closer, before, told)
+        return estimate(held.runs, names, closer, before, told)
+
+    whole = fitted(np.inf if window_s is None else window_s, start)
+    if window_s is not None or _nothing_left(whole):
+        yield whole
+        return
+    period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
+    for rows in WINDOW_ROWS:
+        found = fitted(period_s * rows, start)
         start = {name: found.belief.value(name) for name in names}
         yield found
 
@@ -112,6 +121,11 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
         and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
     ]
     return min(sound or found[:1], key=_volume)
+
+
+def _nothing_left(whole: Estimate) -> bool:
+    """The model and one start of each log explain all readings: what is left is white, and no more than the sensors' own errors."""
+    return all(test.white and _of_the_sensor(test) for test in whole.residuals)
 
 
 def _of_the_sensor(test: ResidualTest) -> bool:

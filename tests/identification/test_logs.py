@@ -10,7 +10,7 @@ from design.settings import read_settings
 from design.table import design
 from identification.belief import Belief, stated
 from identification.estimate import interval_factor
-from identification.logs import apart_sd, identify_logs, run_of
+from identification.logs import apart_sd, best_fit, identify_logs, run_of
 from identification.search import Search
 from recordings.files import datasets_folder
 from recordings.library import import_record
@@ -147,9 +147,18 @@ def test_intervals_from_three_seconds_hold_though_the_rotors_turned_before(bound
 
 def test_an_axis_at_rest_does_not_leave_the_choice_to_the_shortest_windows(bound, flown):
     """From 46 s on the azimuth rests, and nothing of it is explained: J_E and b_vE are within 3 sd, over windows that tell more."""
-    found = identify_logs(bound, {"log": cut(flown, 46.0, 8.0)}, ("J_E", "b_vE"))
+    log = {"log": cut(flown, 46.0, 8.0)}
+    found = best_fit([identify_logs(bound, log, ("J_E", "b_vE"), window_s=length_s) for length_s in (0.4, 1.6, 6.4)])
     assert found.runs[0].begins.size < 20
     assert np.all(np.abs(found.belief.mean - [bound.parameter(name) for name in found.own]) < 3.0 * found.belief.sd)
+
+
+def test_a_log_is_taken_whole_where_the_model_explains_it_and_in_windows_where_something_is_lacking(bound, flown):
+    """The same eight seconds, identified with their own dry friction and with ten times as much."""
+    log = {"log": cut(flown, 30.0, 8.0)}
+    own, lacking = (identify_logs(plant, log, ("J_E", "b_vE")) for plant in (bound, off(bound, {"b_cE": 10.0})))
+    assert own.runs[0].begins.size == 1
+    assert lacking.runs[0].begins.size > 1
 
 
 def test_estimates_are_apart_by_so_many_sd_of_both_together():

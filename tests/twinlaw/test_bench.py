@@ -38,7 +38,7 @@ def test_json_is_one_object_with_the_same_facts(capsys):
     assert said["emulated_board"]["instructions"] > 50 * 1000
     assert {row["tool"] for row in said["fits"]} >= {
         "twinlaw, the fit",
-        "twinlaw identify --window inf",
+        "twinlaw identify",
         "SciPy least_squares",
     }
     assert said["emulated_board"]["instructions_per_s"] > 0.0

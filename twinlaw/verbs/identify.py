@@ -72,7 +72,7 @@ def _add_log_arguments(parser: argparse.ArgumentParser) -> None:
         "--window",
         type=float,
         metavar="SECONDS",
-        help="length of the windows of logs; default: the one that tells most",
+        help="length of the windows of logs; default: logs whole where the model explains them, else the one that tells most",
     )
     parser.add_argument(
         "--trim", nargs=2, type=float, metavar=("BEGIN", "END"), help="use only these seconds of the logs to fit"
