@@ -17,6 +17,7 @@ from identification.frequency.models import LinearModel, operating_point_model
 from identification.frequency.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
 from identification.logs import trimmed
+from identification.run import coefficient_names
 from identification.solve import Told
 from records.errors import BadInput
 from records.files import write_atomic
@@ -68,6 +69,14 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
 
 def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, told: Told) -> FrequencyIdentification:
     check_plant(plant)
+    if chosen.bounds is not None:
+        raise BadInput(
+            "--bounds",
+            "command line",
+            f"given with {plant.name}",
+            "nothing: its parameters have no bounds",
+            "leave it out",
+        )
     model = lateral_model(plant, _lateral_names(chosen.free, plant))
     logs, held = _read(chosen, holdout, log_columns())
     return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
@@ -100,7 +109,8 @@ def _operating_point(
         [record_of(log, name, outputs) for name, log in some.items()] for some in (inputs.logs, inputs.holdout)
     )
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
-    model = operating_point_model(bound, free_names(bound, chosen.free), means, read_limits(chosen.bounds))
+    limits = read_limits(chosen.bounds, coefficient_names(bound.model))
+    model = operating_point_model(bound, free_names(bound, chosen.free), means, limits)
     found = _matched(chosen, bound.plant, model, records, others, told)
     return replace(found, notes=(*inputs.notes, *found.notes))
 

@@ -130,12 +130,14 @@ def _files(paths: Sequence[Path]) -> list[Path]:
     return found
 
 
-def read_limits(path: Path | None) -> Limits:
-    """Bounds by coefficient from a TOML file of `NAME = [lowest, highest]`; raises BadInput."""
+def read_limits(path: Path | None, known: Sequence[str]) -> Limits:
+    """Bounds of some of the `known` coefficients from a TOML file of `NAME = [lowest, highest]`; raises BadInput."""
     if path is None:
         return {}
     found = {}
     for name, pair in read_toml(path, "bounds").items():
+        if name not in known:
+            raise BadInput(f"bounds of {name!r}", str(path), "an unknown name", f"of {', '.join(known)}", "correct it")
         lowest, highest = checks.numbers(pair, f"{path}: {name}", 2)
         if lowest >= highest:
             raise BadInput(

@@ -80,6 +80,7 @@ def test_the_same_seed_flies_the_same_flight(flown, tmp_path):
         ([*FREQUENCY, "--band-rad-s", "0.05", "5", "FILES"], "4 periods of the lowest frequency, 0.05 rad/s"),
         ([*FREQUENCY, "--free", "L_q", "FILES"], "parameter 'L_q'"),
         ([*FREQUENCY, "--prior", "FILES"], "--prior"),
+        ([*FREQUENCY, "--bounds", "bounds.toml", "FILES"], "--bounds"),
         ([*FREQUENCY, "FOLDER"], "not a run log"),
         (["identify", "--band-rad-s", "1", "5", "FILES"], "--method frequency"),
     ],

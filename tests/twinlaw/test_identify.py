@@ -234,6 +234,7 @@ def bounded(tmp_path, text):
         (lambda tmp_path: bounded(tmp_path, "K_M = [1.0, 2.0]"), "start of K_M: got 363, expected a value between its bounds 1 and 2"),
         (lambda tmp_path: bounded(tmp_path, "K_M = [2.0, 1.0]"), "bounds of K_M: got [2, 1], expected lowest < highest"),
         (lambda tmp_path: bounded(tmp_path, "K_M = 3"), "bounds.toml: K_M"),
+        (lambda tmp_path: bounded(tmp_path, "K_X = [1.0, 2.0]"), "bounds of 'K_X'"),
         (lambda tmp_path: ["--free", "K_X"], "parameter 'K_X'"),
         (lambda tmp_path: ["--window", "-1"], "--window"),
         (lambda tmp_path: ["--plant", "plants/emps.toml"], "plant: got 'ce150', expected 'emps'"),

@@ -19,6 +19,7 @@ from pathlib import Path
 
 from identification.logs import trimmed
 from identification.result import facts
+from identification.run import coefficient_names
 from identification.search import METHODS, Search
 from records.errors import BadInput
 from records.files import write_atomic
@@ -101,7 +102,7 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
-    names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds)
+    names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds, coefficient_names(bound.model))
     beside = tuple(method for method in ("gradient",) if method != chosen.search)
     search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
     only = None if chosen.free is None else names
