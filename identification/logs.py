@@ -31,6 +31,7 @@ COARSE_SETTLED = 10.0
 HOLDOUT_S = 1.0
 WORSE, MOST_LEFT = 1.5, 0.3
 SENSORS = 1.1  # times what a sensor alone leaves: as good as that
+NEARLY = 2.0  # times that from a fit that has not settled
 WINDOW_ROWS = (40, 160, 640)
 
 
@@ -57,7 +58,9 @@ def fits_of_logs(
     coarse = _short_windows(bound, logs)
     ranges = _ranges(bound, logs, coarse, (*before.names, *names), limits or {}, offsets)
     names = (*names, *(offset_names(bound.model) if offsets else ()))
-    start = _coarse(coarse, names, ranges, before, wanted, told)
+    first = _coarse(coarse, names, ranges, before, wanted, told)
+    reached = dict(zip(widened(before, names, {})[0], first.theta.tolist(), strict=True))
+    start = {name: reached[name] for name in names}
 
     def fitted(length_s: float, start: Mapping[str, float]) -> Estimate:
         closer = ranges | {name: replace(ranges[name], start=value) for name, value in start.items()}
@@ -68,8 +71,10 @@ def fits_of_logs(
         held = _held(tuple(runs), *widened(before, names, start))
         return estimate(held.runs, names, closer, before, told)
 
-    whole = fitted(np.inf if window_s is None else window_s, start)
-    if window_s is not None or _nothing_left(whole):
+    if window_s is not None:
+        yield fitted(window_s, start)
+        return
+    if _may_explain(first) and _nothing_left(whole := fitted(np.inf, start)):
         yield whole
         return
     period_s = max(float(np.median(np.diff(log.t_s))) for log in logs.values())
@@ -121,6 +126,13 @@ def best_fit(found: Sequence[Estimate]) -> Estimate:
         and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
     ]
     return min(sound or found[:1], key=_volume)
+
+
+def _may_explain(first: Point) -> bool:
+    """The model explains short windows, if not to the last bit yet; where it does not, a whole log is not worth a fit."""
+    fitted = zip(first.runs, first.blocks, strict=True)
+    tests = (test for run, blocks in fitted for test in residual_tests(run, blocks))
+    return all(test.rms <= NEARLY * test.floor for test in tests)
 
 
 def _nothing_left(whole: Estimate) -> bool:
@@ -225,13 +237,11 @@ def _coarse(
     before: Belief,
     wanted: Search | None,
     told: Told | None,
-) -> dict[str, float]:
+) -> Point:
     """A start for the fine fit."""
     problem = problem_of(runs, tuple(names), ranges, before)
     if wanted is not None:
         places = [problem.names.index(name) for name in names]
         problem = started(problem, places, search(problem, places, replace(wanted, beside=()), told)[0])
     tell = by_name(problem.names, told)
-    point = solve(problem, lambda better: tell(better.theta), COARSE_SETTLED)
-    found = dict(zip(problem.names, point.theta.tolist(), strict=True))
-    return {name: found[name] for name in names}
+    return solve(problem, lambda better: tell(better.theta), COARSE_SETTLED)
