@@ -1,10 +1,14 @@
 """What is to be told of a fit besides its numbers, a sentence each: what it cannot tell, what contradicts what, what no sensor does."""
 
+from collections.abc import Sequence
+
 from identification.estimate import Estimate
+from identification.held import Leaning
 from identification.uncertainty import Direction
 
 LEAST_CHANCE = 1e-300
 MOST_DIRECTIONS = 3
+MOST_HELD = 4
 
 
 def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
@@ -34,6 +38,20 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
         for name in stage.at_bound
     ]
     return (*blind, *bound, *pulled, *against, *coloured)
+
+
+def leaning_notes(title: str, found: Sequence[Leaning]) -> tuple[str, ...]:
+    """One sentence, of the parameter that what was held may move farthest beyond its stated sd."""
+    if not found:
+        return ()
+    worst = max(found, key=lambda entry: entry.by / entry.sd)
+    named = ", ".join(worst.held[:MOST_HELD]) + (
+        f" and {len(worst.held) - MOST_HELD} more" if len(worst.held) > MOST_HELD else ""
+    )
+    return (
+        f"{title}: the intervals take {named or 'what was held'} as exact; by the sd in the plant file {worst.name} may be off by "
+        f"{worst.by:.2g}, {worst.by / worst.sd:.2g} times the sd stated: free them too (--free), or count what the file knows (--prior)",
+    )
 
 
 def chance(p: float) -> str:

@@ -11,7 +11,9 @@ import numpy as np
 from diagnosis.integrity import LogIntegrity, demand, examine
 from identification.belief import NOTHING, stated
 from identification.estimate import Estimate
+from identification.held import leaning
 from identification.logs import best_fit, fits_of_logs, prediction_tests, without_readings
+from identification.notes import leaning_notes
 from identification.result import Identification, facts
 from identification.search import Search
 from identification.shown import hidden, unread
@@ -172,7 +174,8 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         done = _from_experiments(bound, inputs.experiments, wishes, so_far)
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
-    result = replace(so_far.finished(done), remarks=(*inputs.notes, *_untold(bound, inputs.logs, wishes, done)))
+    remarks = (*inputs.notes, *_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
+    result = replace(so_far.finished(done), remarks=remarks)
     save_result(folder, result)
     if not inputs.holdout:
         return result
@@ -235,6 +238,12 @@ def _untold(bound: BoundPlant, logs: Mapping[str, RunLog], wishes: Wishes, done:
         f"{', '.join(named)}: no data given here bear on it": named,
     }
     return tuple(f"{text}; the plant file's value is kept" for text, names in said.items() if names)
+
+
+def _held(bound: BoundPlant, done: Done) -> tuple[str, ...]:
+    """What the intervals of the last fit take as exact though the plant file does not know it so well."""
+    title, fit = done.stages[-1]
+    return leaning_notes(title, leaning(bound, fit))
 
 
 def _with_logs(done: Done, data: str, fit: Estimate) -> Done:
