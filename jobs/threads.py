@@ -1,6 +1,7 @@
 """How many threads one computation may use for itself: the numeric libraries' own variables, heeded by our threads too."""
 
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -16,6 +17,22 @@ def threads() -> int:
     """Threads for one computation: OMP_NUM_THREADS where it is set, else one a processor."""
     wanted = os.environ.get(COUNTS[0], "").split(",")[0]
     return max(1, int(wanted)) if wanted.isdigit() else cores()
+
+
+@contextmanager
+def told_late() -> Iterator[None]:
+    """The body's linear algebra heeds OPENBLAS_NUM_THREADS also where NumPy was loaded before it was set, as in a notebook.
+
+    With a thread for each processor small matrices take some 30 times longer: the threads wait for one another.
+    """
+    wanted = os.environ.get("OPENBLAS_NUM_THREADS", "")
+    if "numpy" not in sys.modules or not wanted.isdigit():
+        yield
+        return
+    from threadpoolctl import threadpool_limits  # commands of a shell have no need of it
+
+    with threadpool_limits(int(wanted), user_api="blas"):
+        yield
 
 
 @contextmanager

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
+from jobs.threads import told_late
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
 from twinlaw import console
@@ -24,7 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
     try:
-        status = _obey(words)
+        with told_late():
+            status = _obey(words)
         sys.stdout.flush()  # here, where a full disk can still be told
         return status
     except VerificationFailed as error:
