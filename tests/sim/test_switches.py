@@ -42,7 +42,7 @@ SEEN = f"""
 """
 
 
-def carried(plant: BoundPlant) -> list[str]:
+def carried(plant: BoundPlant) -> tuple[str, ...]:
     """The effects that a diagnosis has in its equations: those without states or axes of their own."""
     size = len(plant.model.states), len(plant.model.axes)
     found = []
@@ -51,7 +51,7 @@ def carried(plant: BoundPlant) -> list[str]:
             model = with_effects(plant, {name: {}}).model
             if (len(model.states), len(model.axes)) == size:
                 found.append(name)
-    return found
+    return tuple(found)
 
 
 @pytest.fixture(scope="module", params=["ce150", "aeroshield"])
