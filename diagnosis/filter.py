@@ -25,9 +25,8 @@ DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.
 # Unlike the simulation's kernels nothing must be equal to the bit here.
 FLAGS = (*FAST_FLAGS, "-ffp-contract=fast")
 Array = NDArray[np.float64]
-Disturbances = Callable[
-    [slice], Array
-]  # what is added at a slice of a tape's instants: made when it is asked for, and small then
+# What is added at a slice of a tape's instants (steps, ..., columns): made when it is asked for, so that none is ever whole.
+Disturbances = Callable[[slice], Array]
 
 
 @dataclass(frozen=True, eq=False)
