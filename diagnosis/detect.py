@@ -59,7 +59,8 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
 
 
 def chi_squared_tail(count: int, value: float) -> float:
-    """The chance that the squares of `count` standard normal numbers sum to `value` or more."""
+    """The chance that the squares of `count` standard normal numbers sum to `value` or more: Q(count / 2, value / 2), the regularised
+    upper incomplete gamma function; 1 where nothing is counted."""
     return float(mpmath.gammainc(0.5 * count, 0.5 * value, regularized=True)) if count else 1.0
 
 
