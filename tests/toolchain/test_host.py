@@ -1,10 +1,12 @@
 """The host compiler's cache: what a library is called is what it was made from, whoever asks at once and whatever changes meanwhile."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from records.errors import BadInput
 from toolchain import host
 from toolchain.cache import CACHE_DIR, is_whole
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, c_text, content_digest, load_shared
@@ -59,3 +61,16 @@ def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path
     assert not is_whole(path)
     assert build_shared("answer", [source]) == path
     assert load_shared("int answer(void);", path)[1].answer() == 4
+
+
+def test_a_library_that_calls_what_nobody_has_is_refused_when_it_is_built(cache: Path) -> None:
+    source = CText("answer.c", "int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n")
+    with pytest.raises(BadInput, match="nobody_has_this"):
+        build_shared("answer", [source])
+    assert not list(cache.iterdir())
+
+
+def test_c_calls_the_c_library_that_python_runs_with(cache: Path) -> None:
+    source = CText("answer.c", "#include <math.h>\ndouble answer(double x) { return exp(x) + tanh(x); }\n")
+    library = load_shared("double answer(double x);", build_shared("answer", [source]))[1]
+    assert library.answer(2.5) == math.exp(2.5) + math.tanh(2.5)
