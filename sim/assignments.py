@@ -8,7 +8,7 @@ import sympy
 
 from sim.printer import c_text
 from sim.slopes import symbols_of
-from sim.switches import Line, Switches, levels, vanishing
+from sim.switches import Guard, Line, Switches, levels, vanishing
 
 MOST_BLOCKS = 48  # in one loop: a double holds 53 bits
 
@@ -26,6 +26,7 @@ class Constants:
     switches: Switches = frozenset()
     places: dict[sympy.Expr, int] = field(default_factory=dict)  # of those that are not reserved
     known: dict[sympy.Expr, sympy.Expr] = field(default_factory=dict, init=False)  # parts that were lifted before
+    guards: list[Guard] = field(default_factory=list, init=False)  # of the first expressions, see zeros
 
     def index(self, expression: sympy.Expr) -> int:
         """The place of `expression` in the list, which it joins if it is new."""
@@ -59,8 +60,8 @@ class Constants:
     def zeros(self) -> dict[sympy.Symbol, Switches]:
         """For each c[i] that is 0 while some switches are off, those switches."""
         own = {switch: frozenset((switch,)) for switch in self.switches}
-        found = {_constant(index): vanishing(expression, own) for index, expression in enumerate(self.expressions)}
-        return {symbol: switches for symbol, switches in found.items() if switches is not None}
+        self.guards += [vanishing(expression, own) for expression in self.expressions[len(self.guards) :]]
+        return {_constant(index): switches for index, switches in enumerate(self.guards) if switches is not None}
 
 
 def _constant(index: int) -> sympy.Symbol:

@@ -117,10 +117,13 @@ class LanePrinter(C99CodePrinter):  # type: ignore[misc]  # SymPy has no types
         return str(first)
 
 
+_PRINTER = LanePrinter()  # to make one takes longer than most expressions
+
+
 def _is_reciprocal(factor: Any) -> bool:
     return bool(factor.is_Pow and factor.exp.is_Integer and factor.exp < 0)
 
 
 def c_text(expression: sympy.Expr) -> str:
     """One expression as C text."""
-    return str(LanePrinter().doprint(expression))
+    return str(_PRINTER.doprint(expression))

@@ -45,10 +45,10 @@ def _edited(model: Model, effect: Effect) -> Model:
 def _with_inputs(model: Model, effects: Iterable[Effect]) -> Model:
     """The model behind all these changes of its inputs: the last is the first that an input passes."""
     arrives: dict[sympy.Symbol, sympy.Expr] = {variable: variable for variable in model.inputs}
-    for effect in effects:
+    for effect in reversed(list(effects)):
         assert effect.applied is not None
-        before = dict(effect.applied(*effect.symbols))
-        arrives = {variable: expression.xreplace(before) for variable, expression in arrives.items()}
+        changed = effect.applied(*effect.symbols)
+        arrives |= {variable: expression.xreplace(arrives) for variable, expression in changed.items()}
     on = sympy.Symbol(INPUTS_ON, real=True)
-    changed = {u: u + on * (expression - u) for u, expression in arrives.items() if expression != u}
-    return with_input(model, changed)
+    switchable = {u: u + on * (expression - u) for u, expression in arrives.items() if expression != u}
+    return with_input(model, switchable)
