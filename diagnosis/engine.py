@@ -54,6 +54,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
 def _seen(bound: BoundPlant, material: Material) -> Seen:
     """Fit the plant alone, look at the library beside it, and ask whether there is a gap at all."""
     kit = make_kit(without_effects(bound) if bound.effects else bound)
+    kit.prepare()
     split = len(material.logs)
     case = make_case(kit, material.logs, material.used[:split], bound)
     checked = make_case(kit, material.holdout, material.used[split:], bound) if material.holdout else None

@@ -208,13 +208,18 @@ def _double(array: ArrayLike) -> Array:
 def compiled_filter(model: Model) -> Filter:
     """The filter of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
     sizes = {"states": len(model.states), "outputs": len(model.outputs)}
-    return open_filter(build_filter(model), sizes, tuple(axis.name for axis in model.axes))
+    return open_filter(build_filter(model.name, equations_text(model)), sizes, tuple(axis.name for axis in model.axes))
 
 
-def build_filter(model: Model) -> Path:
-    """Compile the filter of `model`; returns the library's path."""
-    made = (CText("model.h", model_header(model)), CText("sincos_coefficients.h", sincos_header()))
-    return build_shared(f"filter-{model.name}", (*made, *SOURCES, *HEADERS), flags=FLAGS)
+def equations_text(model: Model) -> CText:
+    """What the filter is compiled with of `model`."""
+    return CText("model.h", model_header(model))
+
+
+def build_filter(name: str, equations: CText) -> Path:
+    """Compile the filter of the model called `name`; returns the library's path, raises BadInput when the compiler refuses."""
+    made = (equations, CText("sincos_coefficients.h", sincos_header()))
+    return build_shared(f"filter-{name}", (*made, *SOURCES, *HEADERS), flags=FLAGS)
 
 
 def open_filter(path: Path, sizes: Mapping[str, int], axes: tuple[str, ...]) -> Filter:

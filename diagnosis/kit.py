@@ -18,7 +18,8 @@ import sympy
 from numpy.typing import NDArray
 
 import sim
-from diagnosis.filter import Filter, build_filter, open_filter
+from diagnosis.abreast import each
+from diagnosis.filter import Filter, build_filter, equations_text, open_filter
 from diagnosis.lagged import lagged
 from records.errors import BadInput
 from records.files import write_atomic
@@ -32,7 +33,8 @@ from sim.model import Model
 from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
-BUILDING = Lock()
+EQUATIONS = Lock()  # algebra is Python's, which does one thing at a time; compilers work side by side
+VARIANTS: dict[str, Lock] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +108,11 @@ class Kit:
         """All effects on the equations."""
         return _variant(self, (*self.names, *self.wide_names))
 
+    def prepare(self) -> None:
+        """Open the variants that every search asks for, those not on disk yet built side by side."""
+        lags = [name for name in self.effects if is_lag(name)]
+        each(self.variant, [(), self.names, (*self.names, *self.wide_names), *([lag] for lag in lags)])
+
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
         return name in self.names or name in self.wide_names or is_lag(name)
@@ -154,8 +161,9 @@ def _lagged_variant(kit: Kit, name: str, further: bool) -> Variant:
 def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     """Open a variant, building it where it is not on disk yet."""
     bound = kit.bound
-    with BUILDING:
-        known = _noted(bound, hashlib.sha256(repr(names).encode()).hexdigest()[:16], lambda: _build(bound, names))
+    what = hashlib.sha256(repr(names).encode()).hexdigest()[:16]
+    with VARIANTS.setdefault(f"{bound.plant.model} {what}", Lock()):
+        known = _noted(bound, what, lambda: _build(bound, names))
     p = np.array(known["p"])
     p[: len(bound.p)] = bound.p
     return Variant(
@@ -175,14 +183,16 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
     effects = library(bound)
     values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
     values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
-    model = switched_model(bound.plant.model, tuple(switched))
-    for name in behind:
-        model = lagged(model, name)
-        values[coefficient(name, "tau")] = effects[name].size.reference
-    model = observed(model, bound.model)
+    values |= {coefficient(name, "tau"): effects[name].size.reference for name in behind}
+    with EQUATIONS:
+        model = switched_model(bound.plant.model, tuple(switched))
+        for name in behind:
+            model = lagged(model, name)
+        model = observed(model, bound.model)
+        equations = equations_text(model)
     parameters = [str(symbol) for symbol in model.parameter_symbols]
     return {
-        "library": str(build_filter(model)),
+        "library": str(build_filter(model.name, equations)),
         "parameters": parameters,
         "p": [values.get(name, 1.0) for name in parameters],
         "switches": {name: parameters.index(switch_name(effects[name])) for name in switched},

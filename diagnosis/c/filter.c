@@ -14,17 +14,17 @@
 #include "filter.h"
 
 #define N N_STATES
-#define WIDTH ((N + 7) / 8 * 8)
 #define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
 
-#define BLOCK 8    /* columns of slopes worked on at a time, so that they stay in registers */
+#define BLOCK 8    /* columns worked on at a time, so that they stay in registers */
 #define BLOCKS (MAX_COLUMNS / BLOCK)
 #define PENDING 32 /* measurements whose slopes are multiplied at a time */
 
-typedef double matrix[N][WIDTH]; /* N by N, its rows filled up with zeros to whole vectors */
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
+#define WIDTH ((N + BLOCK - 1) / BLOCK * BLOCK)
+typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
 typedef struct {
@@ -204,13 +204,13 @@ static void measure(filter_state *at, int64_t step)
 ALWAYS_INLINE void product(const matrix left, const int has[N][N], const matrix right, matrix to)
 {
     UNROLLED for (int i = 0; i < N; i++) {
-        double sum[WIDTH] = {0.0};
-        UNROLLED for (int m = 0; m < N; m++)
-            if (has[i][m])
-                for (int k = 0; k < WIDTH; k++)
-                    sum[k] += left[i][m] * right[m][k];
-        for (int k = 0; k < WIDTH; k++)
-            to[i][k] = sum[k];
+        UNROLLED for (int b = 0; b < WIDTH / BLOCK; b++) {
+            block sum = {0.0};
+            UNROLLED for (int m = 0; m < N; m++)
+                if (has[i][m])
+                    sum += left[i][m] * ((const block *)right[m])[b];
+            ((block *)to[i])[b] = sum;
+        }
     }
 }
 
