@@ -1,8 +1,9 @@
 """Is there a gap at all? The largest score of all effects and forms against its law in replicas without gap, and how far the plant's
 own parameters had to leave what is stated of them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -39,23 +40,34 @@ class Detection:
 def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None = None) -> Detection:
     """Compare the gains of effects at their best starts, of lost frames, of steps in time and of all forms with replicas."""
     found = forms(ground)
-    columns = [_effect_columns(case, ground, looks), _form_columns(ground, found)]
-    stacked = np.concatenate(columns, axis=1)
-    drawn = replicas(ground)
-    scores = ground.scores_of(stacked)
-    null = _null_gains(ground, stacked, scores, drawn)
+    of_effects, of_forms, drawn = _at_once(
+        lambda: _effect_columns(case, ground, looks), lambda: _form_columns(ground, found), lambda: replicas(ground)
+    )
+    (scores, null), (events, null_events) = _at_once(
+        lambda: _gains_of(ground, np.concatenate([of_effects, of_forms], axis=1), drawn),
+        lambda: _events(case, ground, drawn),
+    )
     usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
-    events, null_events = _events(case, ground, drawn)
     outside = [entry.gain for entry in looks if not case.kit.carried(entry.effect)]
     outside += [] if lossy is None else [lossy.log_posterior - ground.fit.log_posterior]
     largest = max([*events, *outside, float(np.max(gains(scores) / usual, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
-    first = columns[0].shape[1]
+    first = of_effects.shape[1]
     part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
     numbers = len(away(ground.fit.supposed, ground.fit.free))
     strained = chi_squared_tail(numbers, strain(case, ground.fit.supposed, ground.fit.free))
     p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
     return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
+
+
+def _at_once(*pieces: Callable[[], Any]) -> list[Any]:
+    return each(lambda piece: piece(), pieces)
+
+
+def _gains_of(ground: Ground, columns: Array, drawn: Array) -> tuple[Scores, Array]:
+    """Scores of the columns (rows, k), and their gains in replicas (k, replicas)."""
+    scores = ground.scores_of(columns)
+    return scores, _null_gains(ground, columns, scores, drawn)
 
 
 def chi_squared_tail(count: int, value: float) -> float:

@@ -61,8 +61,7 @@ def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehear
     columns = [k for k, axis in enumerate(arms) if axis.name not in plan.locked]
     u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
     y, x = np.empty((len(plan.t_s), len(model.outputs))), np.empty((len(plan.t_s), own))
-    idle = np.clip(np.zeros(len(model.inputs)), law.low, law.high)
-    clipped = 0
+    idle = law.within(np.zeros(len(model.inputs)))
     for k in range(len(plan.t_s)):
         y[k], x[k] = plant.measured(), plant.x[:own]
         if plan.off[k]:
@@ -70,8 +69,7 @@ def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehear
         else:
             wanted, z = law.command(x[k], z, plan.reference[k, columns])
             wanted = wanted + plan.dither[k]
-        u[k] = np.clip(wanted, law.low, law.high)
-        clipped += bool(np.any((u[k] <= law.low) | (u[k] >= law.high)) and not plan.off.any())
+        u[k] = law.within(wanted)
         plant.advance(u[k], start_s + float(plan.t_s[k]) + law.period_s)
         if plant.lost:
             return None
@@ -88,7 +86,9 @@ def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehear
         extra=extra,
         locked=plan.locked,
     )
-    return Rehearsal(log, clipped <= MOST_CLIPPED * len(u) and _off_the_stops(case, plan, x))
+    clipped = np.any((u <= law.low) | (u >= law.high), axis=1)
+    kept = plan.off.any() or np.mean(clipped) <= MOST_CLIPPED
+    return Rehearsal(log, bool(kept and _off_the_stops(case, plan, x)))
 
 
 def _without_weights(plan: Plan, supposed: Supposed) -> Supposed:

@@ -42,9 +42,13 @@ class StandIn:
         error = x - self.rest.x0
         places = list(self.tracked)
         error[places] = x[places] - r
-        u = np.clip(self.rest.u0 - self.K @ error - self.K_i @ z, self.low, self.high)
         most = ANTI_WINDUP_S * self.size
-        return u, np.clip(z + self.period_s * error[places], -most, most)
+        u = self.within(self.rest.u0 - self.K @ error - self.K_i @ z)
+        return u, np.minimum(np.maximum(z + self.period_s * error[places], -most), most)
+
+    def within(self, u: Array) -> Array:
+        """The inputs (inputs,) that limits leave of `u`. NumPy's own clip takes five times as long for so few."""
+        return np.asarray(np.minimum(np.maximum(u, self.low), self.high))
 
 
 def stand_in(

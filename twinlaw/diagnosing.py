@@ -1,7 +1,9 @@
 """The diagnosis as the command runs it: reads plant and logs, looks at the logs themselves first, leaves its files."""
 
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 
 from diagnosis.clock import from_their_start
 from diagnosis.engine import Material, diagnose
@@ -21,10 +23,10 @@ from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.effects.api import library, without_effects
 from toolchain.memory import keep_freed_memory
-from twinlaw import diagnosis_page
 from twinlaw.console import stage
 from twinlaw.page import Page, page_text
 
+PAGE = "twinlaw.diagnosis_page"
 BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with what was found
 
 
@@ -33,10 +35,17 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
     with stage("reading the logs and looking at them"):
         bound, material = read_material(plant, logs, holdout)
     with stage("searching for what the model lacks"):
+        Thread(target=_load_ahead, daemon=True).start()
         result = diagnose(bound, material)
     for name, text in result_files(result, [path.name for path in logs]).items():
         write_atomic(out / name, text)
     return result
+
+
+def _load_ahead() -> None:
+    """What the end needs takes a second to load, and Python has time while the filter runs."""
+    for name in ("scipy.linalg", PAGE):
+        import_module(name)
 
 
 def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
@@ -95,6 +104,8 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
 
 
 def _page(result: Result, logs: Sequence[str]) -> Page:
+    from twinlaw import diagnosis_page
+
     bound = result.case.kit.bound
     outputs = list(bound.model.outputs)
     curves = [

@@ -9,6 +9,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -144,6 +145,19 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
         return _svg(figure)
 
 
+class _PlainNumbers(LogFormatter):
+    """0.01, 0.1, 1 along an axis that grows by factors: powers of ten would be set by a program for formulas, which takes longer than
+    all the rest of a picture."""
+
+    def _num_to_string(self, x: float, _vmin: float, _vmax: float) -> str:
+        return f"{x:g}"
+
+
+def _by_factors(axis: Any) -> None:
+    axis.set_major_formatter(_PlainNumbers())
+    axis.set_minor_formatter(_PlainNumbers(minor_thresholds=(1.0, 0.5)))
+
+
 def _draw_bars(axes: Axes, panel: Bars) -> None:
     colours = [panel.colours[i % len(panel.colours)] for i in range(len(panel.heights))]
     if all(isinstance(edge, str) for edge in panel.edges):
@@ -161,8 +175,10 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
     axes.grid(False, axis="x")
     if panel.log:
         axes.set_xscale("log")
+        _by_factors(axes.xaxis)
     if panel.log_height:
         axes.set_yscale("log")
+        _by_factors(axes.yaxis)
         axes.set_ylim(min(panel.heights) / 3.0, max(panel.heights) * 3.0)
 
 
