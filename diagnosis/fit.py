@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.filter import Pass
-from diagnosis.hypothesis import Supposed, nothing_supposed, passes
+from diagnosis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
 from diagnosis.inputs import LOST_FRAMES, share_slopes
+from diagnosis.kit import is_lag
 from sim.effects.effect import EffectParameter
 
 Array = NDArray[np.float64]
 ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
+WIDEST, JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 GRID_SD = 3e-4  # of a sensor's coarse step, as a share: a range of a thousand counts holds its grid to a count
 OUT_OF_REACH = 1e3  # references
 WIDE = 20.0  # sd of an effect's size before the data, in its reference
@@ -179,6 +181,10 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
     pull[own] = np.sum([run.pull for run in runs], axis=0)
     if not inside.all():
         _add_differences(case, supposed, free, runs, own, information, pull)
+    for row, entry in enumerate(free, count):
+        if is_lag(entry.effect) and supposed.effects[entry.effect]["tau"] > SHORTEST_LAG_S:
+            pull[row], further = _smoothed(case, supposed, entry, float(information[row, row]))
+            information[row, row] += further
     information *= np.outer(scale, scale)
     pull *= scale
     if not (np.isfinite(information).all() and np.isfinite(pull).all()):
@@ -242,6 +248,24 @@ def _add_differences(
     pull[outside] = columns.T @ w
 
 
+def _smoothed(case: Case, supposed: Supposed, entry: Free, known: float) -> tuple[float, float]:
+    """The slope of the negative log likelihood by a sensor's lag, and what the innovations' variances s alone tell of it:
+    sum (d ln s)^2 / 2. A lag smooths the unrest too, which slopes of the innovations under fixed gains know nothing of.
+
+    Taken over a standard deviation to both sides, by the information `known` from those slopes: closer by, an axis that comes to rest
+    a row earlier decides. Rows whose variance jumps for that have no slope.
+    """
+    lag_s = supposed.effects[entry.effect][entry.parameter.symbol]
+    reach = min(1.0 / np.sqrt(known), WIDEST * lag_s) if known > 0.0 else WIDEST * lag_s
+    sides = [passes(case, _with_number(supposed, entry, lag_s + side * reach)) for side in (-1.0, 1.0)]
+    below, above = sides
+    if below is None or above is None:
+        return np.nan, np.nan
+    change = np.concatenate([np.log(one.s / other.s).ravel() for one, other in zip(above, below, strict=True)])
+    change = np.where(np.abs(change) < JUMP, change, 0.0) / (2.0 * reach)
+    return (likelihood(below) - likelihood(above)) / (2.0 * reach), 0.5 * float(change @ change)
+
+
 def _knows_losses(case: Case) -> bool:
     """Whether the readings said which frames were lost."""
     return any(bool(flight.tape.lost.any()) for flight in case.flights)
@@ -255,10 +279,14 @@ def flat_slopes(run: Pass) -> Array:
 
 def _difference(case: Case, supposed: Supposed, entry: Free, w: Array) -> Array:
     """The slope by a number that acts on the way of a signal, from a small step away from its bound."""
-    symbol, parameter = entry.parameter.symbol, entry.parameter
-    value = supposed.effects[entry.effect][symbol]
+    value = supposed.effects[entry.effect][entry.parameter.symbol]
     step = NUDGE * entry.scale
-    step = step if value + step <= parameter.upper else -step
-    values = {**supposed.effects[entry.effect], symbol: value + step}
-    runs = passes(case, replace(supposed, effects={**supposed.effects, entry.effect: values}))
+    step = step if value + step <= entry.parameter.upper else -step
+    runs = passes(case, _with_number(supposed, entry, value + step))
     return np.zeros_like(w) if runs is None else (stacked(runs) - w) / step
+
+
+def _with_number(supposed: Supposed, entry: Free, value: float) -> Supposed:
+    """The same with another value of one number."""
+    values = {**supposed.effects[entry.effect], entry.parameter.symbol: value}
+    return supposed.with_effects({**supposed.effects, entry.effect: values})

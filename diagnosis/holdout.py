@@ -92,13 +92,23 @@ def partly(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[str, ...]
         return weighed, ()
     told = holdout.shrinkage(holdout.predicted(weighed.tried[0]))
     most = 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
-    far = max((told.rms_after[name] / max(told.rms_floor[name], 1e-300) for name in told.rms_after), default=0.0)
+    floor = _floor(holdout.case, weighed.tried[0], told)
+    far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
     if told.fraction is None or most > PARTLY or far < FAR:
         return weighed, ()
     gone = max(told.fraction, 0.0)
     share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
     note = f"{' + '.join(named)} takes {share}: something else is missing"
     return weighed.with_unknown(max(min(1.0 - gone, UNNAMED), weighed.unknown)), (note,)
+
+
+def _floor(case: Case, tried: Tried, told: Shrinkage) -> dict[str, float]:
+    """What the sensors leave of each output's error, RMS, where those are that coarse that a hypothesis takes to be."""
+    coarse = {
+        sensor.output: tried.fit.supposed.effects.get(f"{place}.quantization", {}).get("q", 0.0)
+        for place, sensor in case.kit.bound.model.places.sensors.items()
+    }
+    return {name: float(np.hypot(rms, coarse.get(name, 0.0) / np.sqrt(12.0))) for name, rms in told.rms_floor.items()}
 
 
 def _lasts(case: Case, name: str) -> bool:

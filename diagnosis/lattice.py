@@ -5,9 +5,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 OCCUPIED = 0.75  # share of the counts between the extremes that a fine encoder visits at least
+COARSE = 1.5  # encoder steps that a grid's step has at least
 ENOUGH = 8  # different readings
 ON_GRID = 0.98
-TRIALS = 4001
+ROUNDED, TINY = 0.51, 1e-3
+WITHIN = 0.55  # encoder steps: half a one is the encoder's rounding, the rest is for what is not known of the grid's own step
+ROUGHLY, FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
 
 
 def coarse_step(y: Array, step: float) -> float | None:
@@ -18,24 +21,39 @@ def coarse_step(y: Array, step: float) -> float | None:
     span = float(np.ptp(values))
     if len(values) > OCCUPIED * (span / step + 1.0):
         return None
-    typical = float(np.median(np.diff(values)))
-    tried = np.linspace(0.8, 1.2, TRIALS) * typical
-    misses = np.abs(values[:, None] - tried * np.round(values[:, None] / tried)).max(axis=0)
-    best = float(tried[np.argmin(misses)])
-    return best if on_grid(values, best, step) >= ON_GRID and best > 1.5 * step else None
+    near = _nearest(values, float(np.median(np.diff(values))) * (1.0 + ROUGHLY * AROUND))[0]
+    twin = near / max(near / step - 1.0, TINY)  # meets the same counts, but for rounding
+    fine = [_nearest(values, grid * (1.0 + FINELY * AROUND)) for grid in (near, twin) if grid > COARSE * step]
+    if not fine:
+        return None
+    best = max((grid for grid, miss in fine if miss <= ROUNDED * step), default=min(fine, key=lambda one: one[1])[0])
+    lies = on_grid(values, best, step) >= ON_GRID and on_grid(_counts(values, step), best, step) <= OCCUPIED
+    return best if lies else None
+
+
+def _nearest(values: Array, grids: Array) -> tuple[float, float]:
+    """The one of the grids' steps from whose points the values stay least far, and how far."""
+    misses = np.abs(values[:, None] - grids * np.round(values[:, None] / grids)).max(axis=0)
+    return float(grids[np.argmin(misses)]), float(misses.min())
 
 
 def on_grid(values: Array, grid: float, step: float) -> float:
-    """Share of the values that lie within an encoder step of a grid's points."""
-    return float(np.mean(np.abs(values - grid * np.round(values / grid)) <= 0.75 * step))
+    """Share of the values that lie on a grid's points, as an encoder rounds them."""
+    return float(np.mean(np.abs(values - grid * np.round(values / grid)) <= WITHIN * step))
 
 
 def grid_evidence(y: Array, grid: float, step: float) -> float:
-    """Log likelihood that readings gain from lying on a grid instead of anywhere: for each change of the reading ln(grid / step)."""
+    """Log likelihood that readings gain from lying on a grid instead of anywhere: for each change of the reading -ln of the share of the
+    encoder's counts that lie on it. That share is counted: a grid of 5/3 steps, say, is near every count, and tells nothing."""
     values = y[np.isfinite(y)]
-    if grid <= 1.5 * step or len(values) < 2:
+    if grid <= COARSE * step or len(values) < 2:
         return 0.0
     changes = values[1:][np.diff(values) != 0.0]
     if len(changes) == 0 or on_grid(changes, grid, step) < ON_GRID:
         return 0.0
-    return float(len(changes) * np.log(grid / (1.5 * step)))
+    return float(-len(changes) * np.log(on_grid(_counts(changes, step), grid, step)))
+
+
+def _counts(values: Array, step: float) -> Array:
+    """All that an encoder of this step can read between the extremes of the values."""
+    return step * np.arange(np.round(values.min() / step), np.round(values.max() / step) + 1.0)

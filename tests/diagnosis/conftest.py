@@ -31,7 +31,7 @@ def fly(plant: BoundPlant) -> Fly:
     """fly(seed, effects): a run of 30 s about level under lively references, with turbulence and parameters of `seed`.
 
     With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
-    `jumps_rad` make the references jump so far every 50 ms.
+    `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes.
     """
     table, _ = design(plant, read_settings(plant))
 
@@ -43,6 +43,7 @@ def fly(plant: BoundPlant) -> Fly:
         rig_seed: int | None = None,
         air: bool = True,
         jumps_rad: float = 0.0,
+        gusts: float = 1.0,
     ) -> RunLog:
         rng = np.random.default_rng(seed)
         t_s = np.arange(0.0, seconds, 0.01)
@@ -64,7 +65,7 @@ def fly(plant: BoundPlant) -> Fly:
         for name, factor in (factors or {}).items():
             p[names.index(name)] = factor * plant.p[names.index(name)]
         x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
-        noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3]) if air else None
+        noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3 * gusts, 0.0, 0.0, 1e-3 * gusts]) if air else None
         run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy")
         manoeuvre = _Flown(t_s, reference)
         return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={})  # type: ignore[arg-type]

@@ -54,6 +54,23 @@ def test_a_fine_encoder_has_no_coarse_grid() -> None:
     assert coarse_step(STEP * np.round(angle / STEP), STEP) is None
 
 
+@pytest.mark.parametrize("steps", [1.7, 1.956, 2.046, 2.3])
+def test_a_grid_of_about_two_steps_is_not_taken_for_its_twin(steps: float) -> None:
+    # Grids of g and g / (g - 1) steps meet the same counts, but for rounding.
+    angle = 1.2 * np.sin(np.linspace(0.0, 30.0, 4000)) ** 3
+    coarse = steps * STEP * np.round(angle / (steps * STEP))
+    assert coarse_step(STEP * np.round(coarse / STEP), STEP) == pytest.approx(steps * STEP, rel=1e-3)
+
+
+@pytest.mark.parametrize("share", [3 / 4, 3 / 5])
+def test_counts_that_a_conversion_leaves_out_are_no_coarse_grid_of_five_thirds(share: float) -> None:
+    # A board that turns counts of another sensor into its own leaves out one in four; and any count is within 2/3 of a step of such a grid.
+    swing = np.random.default_rng(5).uniform(-0.9, 0.9, 400)
+    read = STEP * np.floor(np.round(share * swing / STEP) / share)
+    assert coarse_step(read, STEP) is None
+    assert grid_evidence(read, 5 / 3 * STEP, STEP) == 0.0
+
+
 def test_readings_that_turn_are_unsure_behind_play() -> None:
     # Up, still, down: between the last step up and the first step down the axis crosses the play.
     up, still, down = np.arange(50) * STEP, np.full(30, 49 * STEP), (49 - np.arange(1, 50)) * STEP

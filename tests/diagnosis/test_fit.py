@@ -1,0 +1,47 @@
+"""The fit ends where the likelihood is largest, whatever the air."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.case import make_case
+from diagnosis.fit import fit, likelihood
+from diagnosis.hypothesis import nothing_supposed, passes
+from diagnosis.kit import make_kit
+from records.log import RunLog
+from sim.bind import BoundPlant
+from tests.diagnosis.conftest import Fly
+
+LAG, LAG_S = "phi_sensor.lag", 0.1
+GUSTS = 300.0  # times the usual: most of what the readings show is the air's
+
+
+def lagging(log: RunLog) -> RunLog:
+    """The run with its azimuth read behind a lag, each reading a straight way from the one before."""
+    y = log.y.copy()
+    true, h = y[:, 1].copy(), log.sample_period_s
+    keep = np.exp(-h / LAG_S)
+    behind = LAG_S * (1.0 - keep) / h  # share of a straight way's change that has not arrived at its end
+    for k in range(1, len(y)):
+        y[k, 1] = true[k] - (true[k] - true[k - 1]) * behind + keep * (y[k - 1, 1] - true[k - 1])
+    return replace(log, y=y)
+
+
+@pytest.mark.parametrize("start_s", [0.04, 0.2])
+def test_a_lag_that_smooths_the_air_is_fitted_by_what_it_does_to_the_air_too(
+    plant: BoundPlant, fly: Fly, start_s: float
+) -> None:
+    case = make_case(make_kit(plant), [lagging(fly(7, seconds=20.0, gusts=GUSTS))])
+    start = nothing_supposed(case, np.log10(1e-3 * GUSTS)).with_effects({LAG: {"tau": start_s}})
+    found = fit(case, start, rounds=20)
+    assert found is not None
+
+    def at(tau_s: float) -> float:
+        runs = passes(case, replace(found.supposed, effects={LAG: {"tau": tau_s}}))
+        return -np.inf if runs is None else likelihood(runs)
+
+    tau_s = found.supposed.effects[LAG]["tau"]
+    assert found.log_likelihood == pytest.approx(at(tau_s), abs=1e-6)
+    # Truth: the top of the likelihood itself, the plant held. Tolerance: what ends a fit, a tenth of a nat.
+    assert max(at(tau) for tau in np.geomspace(0.5, 2.0, 41) * tau_s) < found.log_likelihood + 0.1
