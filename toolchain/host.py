@@ -103,7 +103,13 @@ def build_shared(
         includes = [f"-I{folder}" for folder in (*include_dirs, Path(work))]
         built = Path(work) / "out.so"
         compiled = [str(path) for path in files if path.suffix == ".c"]
-        run_zig(["cc", *_LIBRARY_FLAGS, *flags, *includes, *compiled, "-o", str(built), *_linked()], name)
+        command = ["cc", *_LIBRARY_FLAGS, *flags, *includes, *compiled, "-o", str(built)]
+        try:
+            run_zig([*command, *_linked()], name)
+        except (
+            BadInput
+        ):  # a processor may lack what another has: zig's own runtime holds that, or tells the error in full
+            run_zig([*command, "-Wl,-z,defs", "-lm"], name)
         if content_digest(sources, include_dirs, flags) == digest:
             built.replace(target)
             return target
@@ -120,8 +126,8 @@ def _linked() -> Sequence[str]:
         maps = Path("/proc/self/maps").read_text(encoding="utf-8")
     except OSError:
         return ("-lm",)
-    loaded = {line.split(maxsplit=5)[5] for line in maps.splitlines() if "/" in line}
-    found = [path for name in _C_LIBRARY for path in sorted(loaded) if Path(path).name.startswith(name)]
+    loaded = {Path(line.split(maxsplit=5)[5]) for line in maps.splitlines() if "/" in line}
+    found = [str(path) for name in _C_LIBRARY for path in loaded if path.name.startswith(name) and path.is_file()]
     return ("-nostdlib", "-Wl,-z,defs", *found) if len(found) == len(_C_LIBRARY) else ("-lm",)
 
 

@@ -5,20 +5,28 @@
 #include "peripherals.h"
 #include "reset.h"
 
-#define PS_PER_S 1000000000000ull
+#define MILLION 1000000u /* picoseconds a microsecond, microseconds a second: in such steps 64 bits hold every product */
 #define FAR (1ull << 62) /* the distance to the deadline is a signed number */
 
 uint64_t time_of_cycle_ps(const machine *m, uint64_t cycle) {
     const clock_state *clock = &m->device.clock;
-    return clock->base_ps + (uint64_t)((unsigned __int128)(cycle - clock->base_cycle) * PS_PER_S / clock->hz);
+    uint64_t left = cycle - clock->base_cycle, time = left / clock->hz;
+    for (int step = 0; step < 2; step++) {
+        left = left % clock->hz * MILLION;
+        time = time * MILLION + left / clock->hz;
+    }
+    return clock->base_ps + time;
 }
 
 uint64_t cycle_of_time(const machine *m, uint64_t time_ps) {
     const clock_state *clock = &m->device.clock;
     if (time_ps == NEVER) return NEVER;
     if (time_ps <= clock->base_ps) return clock->base_cycle;
-    unsigned __int128 product = (unsigned __int128)(time_ps - clock->base_ps) * clock->hz;
-    return clock->base_cycle + (uint64_t)((product + PS_PER_S - 1) / PS_PER_S);
+    const uint64_t after_us = (time_ps - clock->base_ps) / MILLION;
+    const uint64_t low = (time_ps - clock->base_ps) % MILLION * clock->hz;
+    const uint64_t middle = after_us % MILLION * clock->hz + low / MILLION;
+    const bool begun = low % MILLION || middle % MILLION;
+    return clock->base_cycle + after_us / MILLION * clock->hz + middle / MILLION + begun;
 }
 
 void schedule(machine *m, enum device device, uint64_t cycle) {

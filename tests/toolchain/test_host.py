@@ -74,3 +74,11 @@ def test_c_calls_the_c_library_that_python_runs_with(cache: Path) -> None:
     source = CText("answer.c", "#include <math.h>\ndouble answer(double x) { return exp(x) + tanh(x); }\n")
     library = load_shared("double answer(double x);", build_shared("answer", [source]))[1]
     assert library.answer(2.5) == math.exp(2.5) + math.tanh(2.5)
+
+
+def test_what_a_processor_lacks_comes_from_the_compilers_runtime(cache: Path) -> None:
+    text = "unsigned long long third(unsigned long long x) { return (unsigned __int128)x * x / 3 / x; }\n"
+    library = load_shared(
+        "unsigned long long third(unsigned long long);", build_shared("third", [CText("third.c", text)])
+    )
+    assert library[1].third(2**63) == 2**63 // 3
