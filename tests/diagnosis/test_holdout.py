@@ -57,3 +57,12 @@ def test_an_effect_that_leaves_most_of_the_hold_outs_error_is_not_the_whole(
     assert "azimuth.cable_spring" in told[0]
     assert found.unknown.probability > 0.8  # at most 22 % of the error goes
     assert found.found == ()
+
+
+def test_a_coarse_sensor_is_not_blamed_for_what_its_steps_leave(plant: BoundPlant, fly: Fly) -> None:
+    coarse = {"psi_sensor.quantization": {"q": 0.02}}  # 13 counts: what they leave is most of the error, found or not
+    logs = [fly(seed, coarse, rig_seed=55, air=False) for seed in (55, 56)]
+    found = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None])).diagnosis
+    assert found.effects[0].effect == "psi_sensor.quantization"
+    assert found.effects[0].probability > 0.8
+    assert not [note for note in found.notes if "something else is missing" in note]
