@@ -6,6 +6,7 @@ an object on stdout).
 
 import gc
 import json
+import logging
 import os
 import signal
 import sys
@@ -25,6 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)  # nor tell that it looks for them
     try:
         with told_late():
             status = _obey(words)
