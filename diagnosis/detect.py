@@ -61,6 +61,7 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
 
 
 def _at_once(*pieces: Callable[[], Any]) -> list[Any]:
+    """What the pieces return, in their order."""
     return each(lambda piece: piece(), pieces)
 
 

@@ -182,7 +182,7 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
     if not inside.all():
         _add_differences(case, supposed, free, runs, own, information, pull)
     for row, entry in enumerate(free, count):
-        if is_lag(entry.effect) and supposed.effects[entry.effect]["tau"] > SHORTEST_LAG_S:
+        if is_lag(entry.effect) and supposed.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
             pull[row], further = _smoothed(case, supposed, entry, float(information[row, row]))
             information[row, row] += further
     information *= np.outer(scale, scale)
@@ -253,12 +253,11 @@ def _smoothed(case: Case, supposed: Supposed, entry: Free, known: float) -> tupl
     sum (d ln s)^2 / 2. A lag smooths the unrest too, which slopes of the innovations under fixed gains know nothing of.
 
     Taken over a standard deviation to both sides, by the information `known` from those slopes: closer by, an axis that comes to rest
-    a row earlier decides. Rows whose variance jumps for that have no slope.
+    a row earlier decides. Rows whose variance jumps for that have no slope. NaN where the filter fails on a side.
     """
     lag_s = supposed.effects[entry.effect][entry.parameter.symbol]
     reach = min(1.0 / np.sqrt(known), WIDEST * lag_s) if known > 0.0 else WIDEST * lag_s
-    sides = [passes(case, _with_number(supposed, entry, lag_s + side * reach)) for side in (-1.0, 1.0)]
-    below, above = sides
+    below, above = (passes(case, _with_number(supposed, entry, lag_s + side * reach)) for side in (-1.0, 1.0))
     if below is None or above is None:
         return np.nan, np.nan
     change = np.concatenate([np.log(one.s / other.s).ravel() for one, other in zip(above, below, strict=True)])

@@ -103,7 +103,7 @@ def partly(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[str, ...]
 
 
 def _floor(case: Case, tried: Tried, told: Shrinkage) -> dict[str, float]:
-    """What the sensors leave of each output's error, RMS, where those are that coarse that a hypothesis takes to be."""
+    """What the sensors leave of each output's error (RMS, in its unit), with the steps of those that a hypothesis takes to be coarse."""
     coarse = {
         sensor.output: tried.fit.supposed.effects.get(f"{place}.quantization", {}).get("q", 0.0)
         for place, sensor in case.kit.bound.model.places.sensors.items()

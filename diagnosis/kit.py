@@ -34,7 +34,7 @@ from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
 EQUATIONS = Lock()  # algebra is Python's, which does one thing at a time; compilers work side by side
-VARIANTS: dict[str, Lock] = {}
+VARIANTS: dict[str, Lock] = {}  # by plant and effects: one builds a variant, others wait for it
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ OCCUPIED = 0.75  # share of the counts between the extremes that a fine encoder 
 COARSE = 1.5  # encoder steps that a grid's step has at least
 ENOUGH = 8  # different readings
 ON_GRID = 0.98
-ROUNDED, TINY = 0.51, 1e-3
+ROUNDED, TINY = 0.51, 1e-3  # encoder steps that rounding leaves at most; grids of no more than a step have no twin
 WITHIN = 0.55  # encoder steps: half a one is the encoder's rounding, the rest is for what is not known of the grid's own step
 ROUGHLY, FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
 

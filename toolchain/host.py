@@ -106,9 +106,8 @@ def build_shared(
         command = ["cc", *_LIBRARY_FLAGS, *flags, *includes, *compiled, "-o", str(built)]
         try:
             run_zig([*command, *_linked()], name)
-        except (
-            BadInput
-        ):  # a processor may lack what another has: zig's own runtime holds that, or tells the error in full
+        except BadInput:
+            # A processor may lack what another has: zig's own runtime holds that, or tells the error in full.
             run_zig([*command, "-Wl,-z,defs", "-lm"], name)
         if content_digest(sources, include_dirs, flags) == digest:
             built.replace(target)
@@ -120,7 +119,7 @@ def build_shared(
 def _linked() -> Sequence[str]:
     """How to link the C library: the files of it that this process runs with, where it is a glibc.
 
-    Left to itself zig makes a stub of every glibc there was and a runtime that nothing here calls: seven seconds on a fresh machine.
+    Left to itself zig makes a stub of every glibc there was and a runtime that hardly anything here calls: seven seconds, once.
     """
     try:
         maps = Path("/proc/self/maps").read_text(encoding="utf-8")

@@ -4,7 +4,6 @@ Exit status: 0 done, 1 a verification failed, 2 bad input (one line on stderr: w
 an object on stdout).
 """
 
-import gc
 import json
 import logging
 import os
@@ -55,7 +54,6 @@ def _obey(words: Sequence[str]) -> int:
     """Run the verb; what cannot be used is told in one line, and to a program as an object too."""
     try:
         options = build_parser(words[:1]).parse_args(words)
-        gc.freeze()  # all that was imported stays: no need to look through it for what nobody uses any more
         return int(options.run(options))
     except WrongCommandLine as error:
         _tell_program(words, {"error": error.line})
