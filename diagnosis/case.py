@@ -17,7 +17,7 @@ from sim.effects.effect import Values
 
 Array = NDArray[np.float64]
 START_S = 0.1
-UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
+UNTOLD_S, UNTOLD_SHARE = 2.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
 RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off

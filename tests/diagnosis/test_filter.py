@@ -7,7 +7,7 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.case import Case, make_case
+from diagnosis.case import UNTOLD_S, Case, make_case
 from diagnosis.engine import nominal_fit
 from diagnosis.filter import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit import Fit, fit
@@ -22,6 +22,8 @@ from sim.columns import log_columns
 from sim.simulate import Noise, simulate
 from tests.diagnosis.conftest import Fly
 from toolchain.host import CText, build_shared, c_text, load_shared
+
+TOLD = round(UNTOLD_S / 0.01)  # the first row that counts
 
 
 @pytest.fixture(scope="module")
@@ -60,8 +62,8 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
     (run,) = passes(case, settled) or [None]
     assert run is not None
     (flight,) = case.flights
-    for place, w in enumerate(run.w[200:].T):
-        moving = flight.tape.r[200:, place] < 1.01 * flight.tape.single[place]
+    for place, w in enumerate(run.w[TOLD:].T):
+        moving = flight.tape.r[TOLD:, place] < 1.01 * flight.tape.single[place]
         assert moving.sum() > 1500
         assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25
@@ -98,7 +100,7 @@ def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> Non
     # The slopes leave out how the gain and the instants of stiction move: 20 % of their size, for parameters without friction.
     for name in ("J_E", "K_M", "tau_gE", "K_T"):
         _, slope, change = changed(case, settled, name)
-        assert np.linalg.norm((change - slope)[100:]) < 0.2 * np.linalg.norm(change[100:])
+        assert np.linalg.norm((change - slope)[TOLD:]) < 0.2 * np.linalg.norm(change[TOLD:])
 
 
 @pytest.mark.parametrize("name", ["J_A", "K_T"])
@@ -107,8 +109,8 @@ def test_no_parameter_moves_what_friction_holds(stuck: tuple[Case, Supposed], na
     case, supposed = stuck
     run, slope, change = changed(case, supposed, name)
     held = run.x[:, case.kit.velocities[1]] == 0.0
-    assert 50 < held[100:].sum() < 0.2 * len(held)
-    held[:100] = False
+    held[:TOLD] = False
+    assert 50 < held.sum() < 0.2 * len(held)
     assert np.linalg.norm((change - slope)[held]) < 0.2 * np.linalg.norm(change[held])
 
 
