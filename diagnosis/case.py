@@ -8,21 +8,16 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.filter import Noise
 from diagnosis.kit import Kit
+from diagnosis.start import start_of
 from diagnosis.tape import Tape, tape_of
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
 
 Array = NDArray[np.float64]
-START_S = 0.1
-UNTOLD_S, UNTOLD_SHARE = 2.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
+UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
-RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
-START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
-START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
-START_SHARE = 0.6  # how far from its rest under the first inputs another state may be, as a share
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,55 +138,3 @@ def _found_its_state(tape: Tape) -> Tape:
     place, usual = tape.place.copy(), tape.usual.copy()
     place[untold], usual[untold] = -1, 0.0
     return replace(tape, place=place, usual=usual)
-
-
-def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Array]:
-    """Where a flight starts: angles as first read, speeds as they then change, other states at rest under the first inputs."""
-    model = kit.bound.model
-    positions, x0 = {}, np.zeros(len(kit.states))
-    p0 = np.full(len(kit.states), 1e-12)
-    early = tape.t_s - tape.t_s[0] <= START_S
-    for place, (name, expression) in enumerate(model.outputs.items()):
-        y = tape.y[early, place]
-        good = np.isfinite(y)
-        if str(expression) not in kit.states or not good.any():
-            continue
-        index = kit.states.index(str(expression))
-        x0[index], p0[index] = y[good][0], START_ANGLE**2
-        slope = np.polyfit(tape.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
-        positions[str(expression)] = (name, float(slope))
-    speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}
-    rest = _rest(kit, tape, x0)
-    for index, state in enumerate(kit.states):
-        if state in positions:
-            continue
-        if state in speeds:
-            x0[index] = positions.get(speeds[state], ("", 0.0))[1]
-            p0[index] = START_SPEED**2
-        else:
-            x0[index] = rest[index]
-            p0[index] = (START_SHARE * max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)) ** 2
-    return x0, p0
-
-
-def _rest(kit: Kit, tape: Tape, x0: Array) -> Array:
-    """States after a while under the first inputs with every axis held; as they are where the plant leaves all bounds."""
-    step_s = min(LONGEST_STEP_S, float(np.median(np.diff(tape.t_s))))
-    t_s = np.arange(0.0, RUN_UP_S + step_s, step_s)
-    read = np.full((len(t_s), tape.y.shape[1]), np.nan)
-    blind = replace(
-        tape,
-        t_s=t_s,
-        u=np.tile(tape.u[tape.t_s - tape.t_s[0] <= START_S].mean(axis=0), (len(t_s), 1)),
-        y=read,
-        r=np.ones_like(read),
-        row=np.arange(len(t_s)),
-        place=np.full(read.shape, -1),
-        rows=len(t_s),
-        untold_s=np.zeros(len(t_s)),
-    )
-    variant, none = kit.plain, np.zeros(len(x0))
-    axes = variant.filter.axes
-    calm = Noise(none, np.zeros(max(1, len(axes))), none, none, step_s)
-    run = variant.filter.run(blind, variant.p, x0, calm, [-1] * read.shape[1], locked=axes)
-    return x0 if run is None else run.x[-1]

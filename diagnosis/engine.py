@@ -20,9 +20,10 @@ from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.retune import Retune, retune
 from diagnosis.screen import look
 from diagnosis.search import Search, search
+from diagnosis.start import FIRST_UNREST
 from diagnosis.trial import Tried, evidence
 from diagnosis.unknown import left_beside
-from diagnosis.unrest import FIRST_STEP, FIRST_UNREST, unrest_of
+from diagnosis.unrest import FIRST_STEP, unrest_of
 from diagnosis.usual import with_usual
 from diagnosis.weigh import weigh
 from diagnosis.wiring import demand_wiring

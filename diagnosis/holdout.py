@@ -12,8 +12,8 @@ from diagnosis.inputs import LOST_FRAMES
 from diagnosis.instants import is_event
 from diagnosis.retune import Retune
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.start import FIRST_UNREST
 from diagnosis.trial import Tried, evidence
-from diagnosis.unrest import FIRST_UNREST
 from diagnosis.weigh import UNNAMED, Weighed
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable

@@ -13,6 +13,7 @@ from diagnosis.filter import Noise, Pass
 from diagnosis.inputs import commanded
 from diagnosis.kit import Kit, Variant, is_lag
 from diagnosis.sensors import sensed
+from diagnosis.start import RUB_S
 from diagnosis.tape import Tape
 from sim.effects.effect import Values
 
@@ -71,13 +72,13 @@ def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, f
     return sensed(kit, commanded(kit, flight.tape, given), given)
 
 
-def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed, rub_s: float) -> Noise:
+def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed) -> Noise:
     """The filter's noise: on each axis' speed its unrest, next to none elsewhere."""
     x0, p0 = start_under(variant, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     q[list(case.kit.velocities)] = 10.0 ** (2.0 * supposed.unrest)
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    return Noise(q, np.full(max(1, len(variant.filter.axes)), rub_s), p0, drive, flight.step_s)
+    return Noise(q, np.full(max(1, len(variant.filter.axes)), RUB_S), p0, drive, flight.step_s)
 
 
 def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:
@@ -102,7 +103,6 @@ def passes(
     *,
     slopes: bool = False,
     gains: bool = False,
-    rub_s: float = 0.02,
 ) -> list[Pass] | None:
     """The filter over all flights; None where it left all bounds on one."""
     variant = case.kit.variant(supposed.effects)
@@ -110,7 +110,7 @@ def passes(
 
     def over(flight: Flight) -> Pass | None:
         tape = tape_under(case, variant, flight, supposed.effects)
-        x0, noise = start_under(variant, flight)[0], noise_of(case, variant, flight, supposed, rub_s)
+        x0, noise = start_under(variant, flight)[0], noise_of(case, variant, flight, supposed)
         run = variant.filter.run(
             tape,
             p,

@@ -29,9 +29,7 @@ class Span:
     last: int
 
 
-def predictions(
-    case: Case, flight: Flight, supposed: Supposed, rub_s: float = 0.02, spans: Sequence[Span] | None = None
-) -> Array:
+def predictions(case: Case, flight: Flight, supposed: Supposed, spans: Sequence[Span] | None = None) -> Array:
     """Predicted readings (rows, outputs) of a log by free runs over `spans`, by default its windows of a second.
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
@@ -40,7 +38,7 @@ def predictions(
     variant = kit.variant(supposed.effects)
     tape = tape_under(case, variant, flight, supposed.effects)
     ahead_tape = tape_under(case, variant, _unforeseen(flight), supposed.effects)
-    given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed, rub_s)
+    given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed)
     chosen = variant.filter
     places = np.tile(np.arange(len(tape.t_s))[:, None], (1, tape.y.shape[1]))
     whole = replace(tape, row=np.arange(len(tape.t_s)), place=places, rows=len(tape.t_s))

@@ -50,7 +50,7 @@ def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) ->
     case, tape, run = ground.case, ground.tapes[index], ground.runs[index]
     kit, flight = case.kit, case.flights[index]
     variant = kit.variant(ground.fit.supposed.effects)
-    noise = noise_of(case, variant, flight, ground.fit.supposed, 0.0)
+    noise = noise_of(case, variant, flight, ground.fit.supposed)
     states = ground.filter.states
     moving = [kit.states.index(str(axis.velocity)) for axis in kit.bound.model.axes if axis.name not in flight.locked]
     measured = [place for place, slot in enumerate(case.slots) if slot >= 0]

@@ -124,6 +124,15 @@ def _variance(y: Array, step: float, noise: float) -> float:
     return min(seen, 100.0 * stated) if seen > CLEARLY * stated else stated
 
 
+def beginning(tape: Tape, seconds: float) -> Tape:
+    """The first `seconds` of a tape."""
+    kept = tape.t_s - tape.t_s[0] <= seconds
+    arrays = {
+        name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "loss_power", "untold_s", *READINGS)
+    }
+    return replace(tape, rows=int(kept.sum()), **arrays)
+
+
 def with_inputs(tape: Tape, stages: Sequence[InputStage]) -> Tape:
     """The tape with its inputs sent through stages: delays and ramps bring instants of their own."""
     if not stages:

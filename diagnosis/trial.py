@@ -11,7 +11,8 @@ from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import Look, holding
-from diagnosis.unrest import FIRST_UNREST, unrest_of
+from diagnosis.start import FIRST_UNREST
+from diagnosis.unrest import unrest_of
 
 Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand

@@ -10,7 +10,6 @@ from diagnosis.hypothesis import Supposed, passes
 
 LEAST, MOST = -5.0, 1.5
 FIRST_STEP = 0.3
-FIRST_UNREST = -1.5  # before any log was seen
 MOST_STEPS = 12
 LITTLE = 0.1  # nats that the top of the parabola, (below - above)^2 / (8 |bend|) higher, must promise to be looked at
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from diagnosis.abreast import each
-from diagnosis.case import Case, Flight, start_of
+from diagnosis.case import Case, Flight
 from diagnosis.fit import Fit
-from diagnosis.tape import READINGS
+from diagnosis.start import start_of
+from diagnosis.tape import beginning
 from records.errors import BadInput
 
 LOOKED_AT_S = 20.0  # of each log
@@ -50,7 +51,7 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit]) -> No
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
     """Another reading of the columns, with what it gains in nats, under which the plant follows the logs without strain."""
-    short = case.with_flights([_begin(flight) for flight in case.flights])
+    short = case.with_flights([replace(flight, tape=beginning(flight.tape, LOOKED_AT_S)) for flight in case.flights])
     usual = _fitted(short, fitted)
     slips = list(wirings(case))
     fits = each(lambda wiring: _fitted(_rewired(short, wiring), fitted), slips)
@@ -111,16 +112,6 @@ def _alike(names: Sequence[str]) -> list[tuple[int, int]]:
     """Pairs of columns of one unit."""
     units = [name.rsplit("_", 1)[-1] for name in names]
     return [(one, other) for one, other in combinations(range(len(names)), 2) if units[one] == units[other]]
-
-
-def _begin(flight: Flight) -> Flight:
-    """The first LOOKED_AT_S of a flight."""
-    tape = flight.tape
-    kept = tape.t_s - tape.t_s[0] <= LOOKED_AT_S
-    arrays = {
-        name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "loss_power", "untold_s", *READINGS)
-    }
-    return replace(flight, tape=replace(tape, rows=int(kept.sum()), **arrays))
 
 
 def _rewired(case: Case, wiring: Wiring) -> Case:

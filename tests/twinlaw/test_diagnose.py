@@ -98,7 +98,7 @@ def test_an_input_with_the_wrong_sign_is_refused_by_name(
 
 
 def test_the_stated_plants_whole_flight_has_no_gap(tmp_path: Path, whole: RunLog) -> None:
-    # It begins with rotors at rest in still air: a filter that soon believes too much of its state sees a push there.
+    # It begins with rotors at rest, in still air: a filter that takes them to run sees a push there.
     assert diagnosed(tmp_path, whole) == 0
     assert load_diagnosis(tmp_path / "out" / "diagnosis.json").verdict == "no gap"
 

@@ -1,0 +1,56 @@
+"""Where a flight starts: rotors that nobody reads may have run up before the log begins, or not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from diagnosis.kit import Kit, make_kit
+from diagnosis.start import start_of
+from diagnosis.tape import tape_of
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.loop import fly_law
+from sim.manoeuvres import flight
+
+AT_REST_RAD_S, LEVEL_RAD_S = 0.0, 415.0  # of the main rotor, switched off and in level flight
+
+
+@pytest.fixture(scope="module")
+def kit(plant: BoundPlant) -> Kit:
+    return make_kit(plant)
+
+
+@pytest.fixture(scope="module")
+def flown(plant: BoundPlant) -> RunLog:
+    """The default flight, which starts at the stop with both rotors at rest."""
+    table, _ = design(plant, read_settings(plant))
+    return fly_law(plant, table, flight(plant))
+
+
+def begun(kit: Kit, log: RunLog, first: int) -> float:
+    """The main rotor's speed from which the filter begins the log's rows from `first` on."""
+    part = replace(log, t_s=log.t_s[first:], u=log.u[first:], y=log.y[first:], extra={})
+    x0, _ = start_of(kit, tape_of(part, kit.bound.plant, kit.outputs), ())
+    return float(x0[kit.states.index("omega_M_rad_s")])
+
+
+def test_rotors_at_rest_begin_there(kit: Kit, flown: RunLog) -> None:
+    # The flight's own inputs would hold 413 rad/s from its first row on.
+    assert begun(kit, flown, 0) == pytest.approx(AT_REST_RAD_S, abs=1.0)
+
+
+@pytest.mark.parametrize("first", [2000, 3500, 5000, 8000])
+def test_rotors_that_run_begin_near_their_speed(kit: Kit, flown: RunLog, first: int) -> None:
+    # Flight needs 396 rad/s at the stop and 415 rad/s level: within 20 % of that, as half of it would let the helicopter fall.
+    assert begun(kit, flown, first) == pytest.approx(LEVEL_RAD_S, rel=0.2)
+
+
+def test_what_the_plant_cannot_follow_begins_at_the_first_guess(kit: Kit, flown: RunLog) -> None:
+    # Readings that are no number at all judge nothing.
+    blind = replace(flown, y=np.full_like(flown.y, np.nan), extra={})
+    x0, p0 = start_of(kit, tape_of(blind, kit.bound.plant, kit.outputs), ())
+    assert np.isfinite(x0).all()
+    assert (p0 > 0.0).all()
