@@ -22,14 +22,8 @@ from sim.effects.effect import Effect, Values
 Array = NDArray[np.float64]
 MOST_STARTS = 8
 SMALL = 0.05
-PEAK_SHARES = (
-    0.6,
-    0.75,
-    0.87,
-    0.96,
-    1.05,
-    1.2,
-)  # of the largest input, at which a limit may lie, its corner reaching further down
+# Of the largest input, at which a limit may lie; beyond it the corner alone is reached.
+PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05, 1.2)
 FRICTIONS = ("coulomb", "load_friction")
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 

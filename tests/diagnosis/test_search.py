@@ -2,13 +2,17 @@
 
 from collections.abc import Mapping
 
+import numpy as np
 import pytest
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
 from diagnosis.exchange import exchange
 from diagnosis.fit import Fit, fit
+from diagnosis.ground import ground_of
 from diagnosis.kit import make_kit
+from diagnosis.screen import look
+from diagnosis.search import LEAST_GAIN
 from diagnosis.trial import Tried, evidence, refined
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
@@ -51,3 +55,13 @@ def test_an_effect_is_exchanged_for_its_like(plant: BoundPlant, fly: Fly) -> Non
     assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
     assert best.fit.supposed.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
     assert best.evidence > wrong.evidence + 20.0
+
+
+def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: Fly) -> None:
+    # Commands stay well under the limit of 8.5 V, whose corner is rounded from 6.8 V on: a limit that they reach is far from the truth.
+    truth = {"main_input.saturation": {"limit": 8.5, "w": 0.2}}
+    case = make_case(make_kit(plant), [fly(seed, truth, rig_seed=43, air=False, seconds=60.0) for seed in (45, 46)])
+    assert 6.8 < max(np.max(flight.tape.u[:, 0]) for flight in case.flights) < 0.9 * 8.5
+    looks = look(case, ground_of(case, nominal_fit(case)), case.kit.candidates)
+    gains = {entry.effect: entry.gain for entry in looks}
+    assert gains["main_input.saturation"] > LEAST_GAIN
