@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.curve import shape_of
-from diagnosis.detect import Detection
+from diagnosis.detect import FormScores
 from diagnosis.holdout import Holdout
 from diagnosis.hypothesis import passes
 from diagnosis.improved import estimates, improved_plant
@@ -26,7 +26,7 @@ from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
 def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     """The answer where something is missing."""
     case, found, weighed = seen.case, judged.search, judged.weighed
-    blamed = suspects(seen.detection)
+    blamed = suspects(seen.detection.by_form)
     before, after = _innovations(case, found.nominal), _innovations(case, found.tried[0])
     energy = removed_energy(before, after)
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
@@ -44,13 +44,13 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
             _hypothesis(case, weighed, tried, probability)
             for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True)
         ),
-        unknown=_unknown(found, seen.detection, weighed, blamed[0] if blamed else None),
+        unknown=_unknown(found, seen.detection.by_form, weighed, blamed[0] if blamed else None),
         found=judged.chosen.effects,
         shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
         next_experiment=next_experiment(case, weighed),
         notes=(*judged.notes, *notes_of(case, seen.looks, judged.chosen, weighed)),
     )
-    shape = shape_of(found.ground, seen.detection, blamed[0]) if blamed and weighed.nameless else None
+    shape = shape_of(found.ground, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
     return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape)
 
 
@@ -60,7 +60,7 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
-    blamed, blind = suspects(seen.detection), cannot_tell(case, seen.looks)
+    blamed, blind = suspects(seen.detection.by_form), cannot_tell(case, seen.looks)
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,
@@ -73,11 +73,11 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
     return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted)
 
 
-def _unknown(found: Search, detection: Detection, weighed: Weighed, first: Suspect | None) -> Unknown:
+def _unknown(found: Search, by_form: FormScores, weighed: Weighed, first: Suspect | None) -> Unknown:
     """The effect that no candidate explains; its form is asked for where nothing else is likelier."""
     if first is None:
         return Unknown(weighed.unknown)
-    form = suggestion(found.ground, detection, first.place) if weighed.nameless else None
+    form = suggestion(found.ground, by_form, first.place) if weighed.nameless else None
     return Unknown(weighed.unknown, first.place, first.class_text, form)
 
 

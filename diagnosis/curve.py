@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import Detection, gains
+from diagnosis.detect import FormScores, gains
 from diagnosis.generic import Form
 from diagnosis.ground import Ground
 from diagnosis.signals import Signals, angle_names, rotor_name, signals
@@ -44,7 +44,7 @@ class Shape:
     times: Axis | None
 
 
-def shape_of(ground: Ground, detection: Detection, suspect: Suspect) -> Shape | None:
+def shape_of(ground: Ground, by_form: FormScores, suspect: Suspect) -> Shape | None:
     """The curve f of a suspected class, as hat functions on knots of its first signal, times its second one:
 
     (1)  (G + l D'D) c = -s,  cov c = (G + l D'D)^-1
@@ -52,7 +52,7 @@ def shape_of(ground: Ground, detection: Detection, suspect: Suspect) -> Shape | 
     with G and s the scores of the hats, what the plant's parameters imitate taken out, D second differences and l by the largest
     evidence. None for a class that names no signal of the plant.
     """
-    target = form_of(detection, suspect).target
+    target = form_of(by_form, suspect).target
     names = _signals_of(suspect.class_text)[:2]
     flown = [signals(ground, flight, {}) for flight in range(len(ground.tapes))]
     known = [_known(ground, s) for s in flown]
@@ -76,11 +76,11 @@ def shape_of(ground: Ground, detection: Detection, suspect: Suspect) -> Shape | 
     return Shape(axes[names[0]], knots, about @ curve, sd, target_of(ground, target), axes[times] if times else None)
 
 
-def form_of(detection: Detection, suspect: Suspect) -> Form:
+def form_of(by_form: FormScores, suspect: Suspect) -> Form:
     """The form of a class that gains most."""
-    found = gains(detection.scores)
-    own = [i for i, f in enumerate(detection.forms) if (f.place, f.class_text) == (suspect.place, suspect.class_text)]
-    return detection.forms[max(own, key=lambda index: float(found[index]))]
+    found = gains(by_form.scores)
+    own = [i for i, f in enumerate(by_form.forms) if (f.place, f.class_text) == (suspect.place, suspect.class_text)]
+    return by_form.forms[max(own, key=lambda index: float(found[index]))]
 
 
 def target_of(ground: Ground, target: int) -> Axis:

@@ -26,15 +26,22 @@ LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must lea
 
 
 @dataclass(frozen=True, eq=False)
+class FormScores:
+    """Every form beside a fit: its scores, and what it gains in the mean of replicas without gap (forms,)."""
+
+    forms: tuple[Form, ...]
+    scores: Scores
+    null_gain: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Detection:
-    """`p` the chance of so large a gap without one, the law it comes from, and every form's gain (forms,) with its law's mean and sd."""
+    """`p` the chance of so large a gap without one, the law it comes from, the largest gain, and what each form gains."""
 
     p: float
     tail: Tail
     largest: float
-    forms: tuple[Form, ...]
-    scores: Scores
-    null_gain: Array
+    by_form: FormScores
 
 
 def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None = None) -> Detection:
@@ -43,21 +50,30 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
     of_effects, of_forms, drawn = _at_once(
         lambda: _effect_columns(case, ground, looks), lambda: _form_columns(ground, found), lambda: replicas(ground)
     )
-    (scores, null), (events, null_events) = _at_once(
-        lambda: _gains_of(ground, np.concatenate([of_effects, of_forms], axis=1), drawn),
+    (by_form, null_forms), (effects, null_effects), (events, null_events) = _at_once(
+        lambda: _gains_of(ground, of_forms, drawn),
+        lambda: _gains_of(ground, of_effects, drawn),
         lambda: _events(case, ground, drawn),
     )
+    null = np.concatenate([null_forms, null_effects])
     usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
+    seen = np.concatenate([gains(by_form), gains(effects)]) / usual
     outside = [entry.gain for entry in looks if not case.kit.carried(entry.effect)]
     outside += [] if lossy is None else [lossy.log_posterior - ground.fit.log_posterior]
-    largest = max([*events, *outside, float(np.max(gains(scores) / usual, initial=0.0))])
+    largest = max([*events, *outside, float(np.max(seen, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
-    first = of_effects.shape[1]
-    part = Scores(scores.gram[first:, first:], scores.score[first:], scores.raw[first:])
     numbers = len(away(ground.fit.supposed, ground.fit.free))
     strained = chi_squared_tail(numbers, strain(case, ground.fit.supposed, ground.fit.free))
     p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
-    return Detection(p, tail, largest, tuple(found), part, null[first:].mean(axis=1))
+    return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)))
+
+
+def form_scores(ground: Ground) -> FormScores:
+    """What every form gains beside a fit."""
+    found = forms(ground)
+    columns, drawn = _at_once(lambda: _form_columns(ground, found), lambda: replicas(ground))
+    scores, null = _gains_of(ground, columns, drawn)
+    return FormScores(tuple(found), scores, null.mean(axis=1))
 
 
 def _at_once(*pieces: Callable[[], Any]) -> list[Any]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.answer import gap, no_gap
 from diagnosis.case import Case, make_case
-from diagnosis.detect import Detection, detect
+from diagnosis.detect import Detection, detect, form_scores
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
@@ -73,7 +73,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     """Weigh what was found, and check it on the hold-out."""
     case, retuned = seen.case, seen.retuned
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
-    left = left_beside(detect(case, ground_of(case, best.fit), []), best.effects)
+    left = left_beside(form_scores(ground_of(case, best.fit)), best.effects)
     weighed = weigh(found.tried, retuned, left, None if beyond is None else beyond.score)
     holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
     told: tuple[str, ...] = ()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.curve import target_of
-from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection
+from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, FormScores
 from diagnosis.generic import Form
 from diagnosis.ground import Ground
 
@@ -28,7 +28,7 @@ class Term:
     sd: float
 
 
-def sparse_form(detection: Detection, place: str) -> tuple[Term, ...]:
+def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     """The terms at a place, by orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993) on the whitened innovations.
 
     In each turn the form joins that gains most beside those chosen, and all coefficients are solved anew:
@@ -41,29 +41,29 @@ def sparse_form(detection: Detection, place: str) -> tuple[Term, ...]:
     chosen: list[int] = []
     total = 0.0
     while len(chosen) < MOST_TERMS:
-        members = _members(detection, place, chosen)
-        gains = _gains(detection, chosen, members)
+        members = _members(by_form, place, chosen)
+        gains = _gains(by_form, chosen, members)
         if not len(gains) or np.max(gains) < max(NATS_PER_TERM, CLEARLY * total):
             break
         total += float(np.max(gains))
         chosen.append(members[int(np.argmax(gains))])
     if not chosen:
         return ()
-    gram = detection.scores.gram[np.ix_(chosen, chosen)]
+    gram = by_form.scores.gram[np.ix_(chosen, chosen)]
     cov = np.linalg.inv(gram)
     values = (
-        -cov @ detection.scores.score[chosen]
+        -cov @ by_form.scores.score[chosen]
     )  # a score is minus the product with w, which what the rig has moves as answered
-    forms = [detection.forms[index] for index in chosen]
+    forms = [by_form.forms[index] for index in chosen]
     return tuple(
         Term(form.shape, form.target, float(value), float(np.sqrt(variance)))
         for form, value, variance in zip(forms, values, np.diag(cov), strict=True)
     )
 
 
-def suggestion(ground: Ground, detection: Detection, place: str) -> str | None:
+def suggestion(ground: Ground, by_form: FormScores, place: str) -> str | None:
     """What sparse regression suggests for a place, as a sentence ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"); None for no form."""
-    terms = sparse_form(detection, place)
+    terms = sparse_form(by_form, place)
     if not terms:
         return None
     target = target_of(ground, terms[0].target)
@@ -80,27 +80,27 @@ def form_text(terms: Sequence[Term]) -> str:
     return found
 
 
-def _members(detection: Detection, place: str, chosen: Sequence[int]) -> list[int]:
+def _members(by_form: FormScores, place: str, chosen: Sequence[int]) -> list[int]:
     """Forms that may join: of this place and target, and with a signature that the plant's parameters do not imitate."""
-    norm, raw = np.diag(detection.scores.gram), detection.scores.raw
+    norm, raw = np.diag(by_form.scores.gram), by_form.scores.raw
 
     def may(index: int, form: Form) -> bool:
-        alike = not chosen or form.target == detection.forms[chosen[0]].target
+        alike = not chosen or form.target == by_form.forms[chosen[0]].target
         return (
             form.place == place and alike and norm[index] > LEAST_LEFT * max(raw[index], 1e-12) and index not in chosen
         )
 
-    return [index for index, form in enumerate(detection.forms) if may(index, form)]
+    return [index for index, form in enumerate(by_form.forms) if may(index, form)]
 
 
-def _gains(detection: Detection, chosen: Sequence[int], members: Sequence[int]) -> Array:
+def _gains(by_form: FormScores, chosen: Sequence[int], members: Sequence[int]) -> Array:
     """What each member adds to the log likelihood beside those chosen, in units of what it usually gains without a gap."""
-    gram, score = detection.scores.gram, detection.scores.score
+    gram, score = by_form.scores.gram, by_form.scores.score
     norm = np.diag(gram)[list(members)]
     left, pull = norm.copy(), score[list(members)].copy()
     if chosen:
         cross = gram[np.ix_(chosen, members)]
         share = np.linalg.solve(gram[np.ix_(chosen, chosen)], cross)
         left, pull = norm - np.sum(cross * share, axis=0), pull - share.T @ score[list(chosen)]
-    usual = np.maximum(1.0, detection.null_gain[list(members)] / MEAN_GAIN)
+    usual = np.maximum(1.0, by_form.null_gain[list(members)] / MEAN_GAIN)
     return np.where(left > OWN * norm, 0.5 * pull**2 / np.maximum(left, OWN * norm), 0.0) / usual

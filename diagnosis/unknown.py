@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, Detection, gains
+from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, FormScores, gains
 from diagnosis.generic import Form
 
 Array = NDArray[np.float64]
@@ -26,16 +26,16 @@ class Suspect:
     gain: float
 
 
-def suspects(detection: Detection) -> list[Suspect]:
+def suspects(by_form: FormScores) -> list[Suspect]:
     """Classes of forms, best first: each by the joint gain of the forms that it takes one after another."""
     groups: dict[tuple[str, str], list[int]] = {}
-    for index, form in enumerate(detection.forms):
+    for index, form in enumerate(by_form.forms):
         groups.setdefault((form.place, form.class_text), []).append(index)
-    found = [Suspect(place, text, class_gain(detection, members)) for (place, text), members in groups.items()]
+    found = [Suspect(place, text, class_gain(by_form, members)) for (place, text), members in groups.items()]
     return sorted(found, key=lambda suspect: -suspect.gain)
 
 
-def left_beside(detection: Detection, effects: Sequence[str]) -> float:
+def left_beside(by_form: FormScores, effects: Sequence[str]) -> float:
     """Nats that the best class of forms still gains beside effects; what acts where they do is rather their own form, a little other."""
     own = {_side(name.split(".")[0]) for name in effects}
     limited = {_side(name.split(".")[0]) for name in effects if name.endswith(LIMITS)}
@@ -45,10 +45,10 @@ def left_beside(detection: Detection, effects: Sequence[str]) -> float:
             return OTHER_KNEE
         return SAME_PLACE if _side(place) in own else 1.0
 
-    usual = np.maximum(1.0, detection.null_gain / MEAN_GAIN)
-    alone = gains(detection.scores) / usual
-    found = [suspect.gain * weight(suspect.place, suspect.class_text) for suspect in suspects(detection)]
-    found += [float(g) * weight(form.place, form.class_text) for form, g in zip(detection.forms, alone, strict=True)]
+    usual = np.maximum(1.0, by_form.null_gain / MEAN_GAIN)
+    alone = gains(by_form.scores) / usual
+    found = [suspect.gain * weight(suspect.place, suspect.class_text) for suspect in suspects(by_form)]
+    found += [float(g) * weight(form.place, form.class_text) for form, g in zip(by_form.forms, alone, strict=True)]
     return max(found, default=0.0)
 
 
@@ -57,15 +57,15 @@ def _side(place: str) -> str:
     return place.removesuffix("_rotor").removesuffix("_input")
 
 
-def class_gain(detection: Detection, members: Sequence[int]) -> float:
+def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     """What the forms of a class take away: the best, then what the best of the others adds to it, each less the cost of choosing it."""
-    scores = detection.scores
+    scores = by_form.scores
     norm = np.diag(scores.gram)
     chosen = [i for i in members if norm[i] > LEAST_LEFT * max(scores.raw[i], 1e-12)]
     unit = 1.0 / np.sqrt(norm[chosen])
     gram = scores.gram[np.ix_(chosen, chosen)] * np.outer(unit, unit)
     score = scores.score[chosen] * unit
-    usual = np.maximum(1.0, detection.null_gain[chosen] / MEAN_GAIN)
+    usual = np.maximum(1.0, by_form.null_gain[chosen] / MEAN_GAIN)
     cost, total = NATS_PER_FORM + float(np.log(len(members))), 0.0
     for _ in range(min(MOST_FORMS, len(chosen))):
         left = np.diag(gram)

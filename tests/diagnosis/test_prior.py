@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.detect import Detection
+from diagnosis.detect import Detection, FormScores
 from diagnosis.engine import confirmed_by
 from diagnosis.fit import Fit
 from diagnosis.ground import Scores
@@ -55,7 +55,7 @@ def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure:
     # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6, but for an effect whose
     # size may be zero they say nothing.
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
-    detection = Detection(1e-6, Tail(5.0, 1.0), largest, (), empty, np.zeros(0))
+    detection = Detection(1e-6, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
     nothing = tried()
     ground = object()
     found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, ground, ())  # type: ignore[arg-type]
