@@ -149,8 +149,8 @@ class _PlainNumbers(LogFormatter):
     """0.01, 0.1, 1 along an axis that grows by factors: powers of ten would be set by a program for formulas, which takes longer than
     all the rest of a picture."""
 
-    def _num_to_string(self, x: float, _vmin: float, _vmax: float) -> str:
-        return f"{x:g}"
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
 
 
 def _by_factors(axis: Any) -> None:
