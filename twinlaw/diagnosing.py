@@ -1,6 +1,7 @@
 """The diagnosis as the command runs it: reads plant and logs, looks at the logs themselves first, leaves its files."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -43,9 +44,10 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
 
 
 def _load_ahead() -> None:
-    """What the end needs takes a second to load, and Python has time while the filter runs."""
-    for name in ("scipy.linalg", PAGE):
-        import_module(name)
+    """What the end needs takes a second to load, and Python has time while the filter runs; what fails to load is told where it is used."""
+    with suppress(ImportError):
+        for name in ("scipy.linalg", PAGE):
+            import_module(name)
 
 
 def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
