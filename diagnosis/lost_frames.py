@@ -9,7 +9,7 @@ and under a loss with probability p in every frame the log evidence of all is th
 with probability q, the mean of what may have arrived is supposed, and the log likelihood counts less by a'a q (1 - q) / 2.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from diagnosis.abreast import each
 from diagnosis.case import Case, Flight
-from diagnosis.fit import Fit, fit
+from diagnosis.fit import Fit, fit, unfitted
 from diagnosis.ground import Ground, ground_of
 from diagnosis.hypothesis import Supposed, coefficients
 from diagnosis.inputs import LOST_FRAMES, lost_with
@@ -34,9 +34,10 @@ Array = NDArray[np.float64]
 NEAR = range(-2, 4)  # rows about one behind which others are missing
 APART = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 12, 0.1
-LITTLE = 0.02  # of what losses gain, below which another round is not worth its time
-ROUNDS = 5  # with what was found supposed the air is calmer, and shows more
+LITTLE = 0.005  # of what losses gain, below which another round is not worth its time
+ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
+FAR = 1.0  # mean square of the parameters' steps, in standard deviations, beyond which losses are looked for from the stated ones too
 WORTH = 10.0  # nats below which no frame counts as lost
 
 
@@ -47,18 +48,25 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         return case, None
     if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
         return case, None
-    flights = range(len(case.flights))
-    answers = each(partial(_unit_answers, case, ground), flights)
+    answers = _all_answers(case, ground)
     alone = _with_ratios(case, ground, answers, 0)
     if evidence(alone, likely_share(alone)) < WORTH:
         return alone, None
+    found, fitted = _settled(case, ground, answers)
+    theta = ground.fit.supposed.theta
+    if fitted is not None and theta @ theta > FAR * len(theta):
+        found, fitted = _likelier((found, fitted), _from_stated(case, ground))
+    return found, fitted
+
+
+def _settled(case: Case, ground: Ground, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+    """What the innovations say of every frame, found again with what was found supposed until nothing is gained."""
     found, fitted = _fitted(case, ground, answers)
     if fitted is None or fitted.log_posterior < ground.fit.log_posterior + WORTH:
         return found, None
     for _ in range(ROUNDS):
         calmer = ground_of(found, fitted)
-        answers = each(partial(_unit_answers, found, calmer), flights)
-        again, better = _fitted(found, calmer, answers)
+        again, better = _fitted(found, calmer, _all_answers(found, calmer))
         if better is None or better.log_posterior < fitted.log_posterior + WORTH:
             break
         more = better.log_posterior - fitted.log_posterior
@@ -66,6 +74,23 @@ def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
         if more < LITTLE * (fitted.log_posterior - ground.fit.log_posterior):
             break
     return found, fitted
+
+
+def _from_stated(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
+    """The same from the parameters as stated: those of a plant fitted without losses bend to take their part."""
+    start = unfitted(case, ground.fit.supposed.unrest)
+    if start is None:
+        return case, None
+    stated = ground_of(case, start)
+    return _settled(case, stated, _all_answers(case, stated))
+
+
+def _likelier(one: tuple[Case, Fit | None], other: tuple[Case, Fit | None]) -> tuple[Case, Fit | None]:
+    return max(one, other, key=lambda entry: -np.inf if entry[1] is None else entry[1].log_posterior)
+
+
+def _all_answers(case: Case, ground: Ground) -> list[Array]:
+    return each(partial(_unit_answers, case, ground), range(len(case.flights)))
 
 
 def _fitted(case: Case, ground: Ground, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
@@ -158,9 +183,27 @@ def _judged(tape: Tape) -> NDArray[np.uint8]:
 def _ratios(
     u: Array, columns: Sequence[int], answers: Array, w: Array, before: Array, judged: NDArray[np.uint8], sweeps: int
 ) -> tuple[Array, Array]:
-    """L and a'a of every frame from innovations with losses supposed `before`: each for itself, then in `sweeps` with what is supposed of
-    all others taken out. Frames that are not `judged` count as arrived."""
-    ffi, lib = _library()
+    """L and a'a of every frame from innovations with losses supposed `before`: each for itself, or in `sweeps` with what is supposed of
+    all others taken out, begun from none or from the likeliest losses of all frames together, whichever explains more. Frames that are
+    not `judged` count as arrived."""
+    _, lib = _library()
+    ways = (lib.loss_ratios, lib.loss_ratios_together) if sweeps else (lib.loss_ratios,)
+    found = each(lambda way: _judged_by(way, u, columns, answers, w, before, judged, sweeps), ways)
+    return max(found, key=lambda entry: entry[0])[1:]
+
+
+def _judged_by(
+    way: Callable[..., float],
+    u: Array,
+    columns: Sequence[int],
+    answers: Array,
+    w: Array,
+    before: Array,
+    judged: NDArray[np.uint8],
+    sweeps: int,
+) -> tuple[float, Array, Array]:
+    """A bound of the log evidence, L and a'a by one of the ways of c/lost_frames.h."""
+    ffi, _ = _library()
     arrays: dict[str, NDArray[Any]] = {
         "u": np.ascontiguousarray(u),
         "answers": np.ascontiguousarray(answers),
@@ -179,8 +222,7 @@ def _ratios(
     request.rows, request.inputs, request.drives = len(u), u.shape[1], len(columns)
     request.slots, request.apart, request.sweeps = w.shape[1], APART, sweeps
     request.fresh, request.first_share = not before.any(), FIRST_SHARE
-    lib.loss_ratios(request)
-    return arrays["found"], arrays["power"]
+    return way(request), arrays["found"], arrays["power"]
 
 
 @cache
@@ -188,5 +230,6 @@ def _library() -> tuple[Any, Any]:
     folder = Path(__file__).parent / "c"
     header = (folder / "lost_frames.h").read_text(encoding="utf-8")
     declarations = "\n".join(line for line in header.splitlines() if not line.startswith("#"))
-    path = build_shared("lost-frames", [folder / "lost_frames.c", folder / "lost_frames.h"])
+    names = ("lost_frames.c", "lost_beam.c", "lost_frames.h", "lost_answer.h")
+    path = build_shared("lost-frames", [folder / name for name in names])
     return load_shared(declarations, path)

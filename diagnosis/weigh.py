@@ -18,8 +18,8 @@ LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
 FARTHEST = 3e4  # nats beyond which a gap only says that the nominal plant had lost its way
 RETUNE_COST = 10.0
 UNNAMED = 0.95  # probability of an unknown effect where what would be named is refuted
-# Of 445 first answers that stated 0.8 and more on the 900 cases of seeds 900008, 900010 and 900011, 0.91 came true: a further effect too small to
-# see, or one outside the library that looks like one in it, is always possible.
+# Of 445 first answers that stated 0.8 and more on the 900 cases of seeds 900008, 900010 and 900011, 0.91 came true: a further effect
+# too small to see, or one outside the library that looks like one in it, is always possible.
 CANDOUR = 0.91
 SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
 KEPT = 12
