@@ -1,4 +1,4 @@
-"""Which commands were lost on the line: frame by frame, by what the readings say right after it.
+"""Which commands were lost on the line, by what the readings say right after each.
 
 A frame's loss leaves the inputs at what they were. Its answer a in the whitened innovations w is known from the filter; where the
 innovations were found with a share pi of the loss supposed already, the log of the likelihood ratio of loss to none is
@@ -7,6 +7,8 @@ innovations were found with a share pi of the loss supposed already, the log of 
 
 and under a loss with probability p in every frame the log evidence of all is the sum of log(1 - p + p exp L). Where a loss stays in doubt,
 with probability q, the mean of what may have arrived is supposed, and the log likelihood counts less by a'a q (1 - q) / 2.
+
+Answers of neighbouring frames overlap, so which were lost is asked of all together (c/lost_beam.c), then of each beside the others.
 """
 
 from collections.abc import Callable, Sequence
