@@ -41,7 +41,7 @@ NOT_TRIED = {
 # What is smaller here than on the page, so that it takes seconds.
 SMALLER = {
     "--repetitions 100": "--repetitions 1",
-    "--seed 900010 --cases 300": "--seed 3 --cases 1 --kinds nominal",
+    r"--seed \d+ --cases 300": "--seed 3 --cases 1 --kinds nominal",
     "--cases 2 --workers": "--cases 1 --workers",
 }
 HELD = {"docs/tutorial.md": "tests/docs/test_tutorial.py", "docs/new-plant.md": "tests/docs/test_new_plant.py"}
@@ -55,7 +55,7 @@ def reason(command: str) -> str | None:
 
 def smaller(command: str) -> str:
     for large, small in SMALLER.items():
-        command = command.replace(large, small)
+        command = re.sub(large, small, command)
     return command
 
 
@@ -127,4 +127,4 @@ def test_no_reason_and_no_smaller_number_has_outlived_its_command() -> None:
     for pattern in NOT_TRIED:
         assert any(re.match(pattern, command) for command in shown), pattern
     for large in SMALLER:
-        assert any(large in command for command in shown), large
+        assert any(re.search(large, command) for command in shown), large
