@@ -141,7 +141,7 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
             xlabel="stated probability of the first answer",
             ylabel="share right",
         )
-        axes.legend(loc="upper left")
+        axes.legend(loc="lower right")
         return _svg(figure)
 
 
