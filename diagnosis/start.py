@@ -16,7 +16,7 @@ FIRST_UNREST = -1.5  # before any log was seen
 START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
 START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
 START_SHARE = 0.6  # how far from where it is begun another state may be, as a share of its rest under the first inputs
-RUN_UP = (0.0, 0.5)  # shares of that rest from which such a state is begun too: logs often start before the rotors do,
+REST_SHARES = (0.0, 0.5)  # of that rest, from which such a state is begun too: logs often start before the rotors do,
 JUDGED_S = 3.0  # and so long what is read tells
 RUB_S = 0.02  # how long friction about rest is in doubt
 
@@ -29,7 +29,7 @@ def start_of(kit: Kit, tape: Tape, locked: tuple[str, ...]) -> tuple[Array, Arra
     early = replace(early, place=np.where(np.isfinite(early.y), np.arange(early.rows)[:, None], -1))
     value = _likelihood(kit, early, x0, p0, locked)
     for index in unread:
-        for share in RUN_UP:
+        for share in REST_SHARES:
             other = x0.copy()
             other[index] = share * unread[index]
             tried = _likelihood(kit, early, other, p0, locked)
@@ -69,7 +69,7 @@ def _first_guess(kit: Kit, tape: Tape) -> tuple[Array, Array, dict[int, float]]:
 
 
 def _likelihood(kit: Kit, tape: Tape, x0: Array, p0: Array, locked: tuple[str, ...]) -> float:
-    """How well the plant as stated follows a tape from a start, in air as restless as before any log was seen."""
+    """How well the plant without effects follows a tape from a start, in air as restless as before any log was seen."""
     q, none = np.zeros(len(x0)), np.zeros(len(x0))
     q[list(kit.velocities)] = 10.0 ** (2.0 * FIRST_UNREST)
     rub = np.full(max(1, len(kit.plain.filter.axes)), RUB_S)

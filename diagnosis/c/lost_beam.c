@@ -1,7 +1,7 @@
 /* Which frames were lost, all together: the likeliest histories of losses side by side, row after row, a beam of them kept.
  *
  * Answers of neighbouring frames overlap and look alike, so that frames judged one after another, each beside what is supposed of the
- * others, settle where a third of all losses stands at a neighbour's place. A history that is wrong there shows it within some rows.
+ * others, settle where many a loss stands at a neighbour's place. A history that is wrong there shows it within some rows.
  */
 #include <math.h>
 #include <stdlib.h>

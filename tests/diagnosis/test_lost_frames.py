@@ -1,6 +1,7 @@
 """Commands lost on the line: their share from flights whose truth is known, nothing where none was lost."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
@@ -14,6 +15,7 @@ from sim.paths_input import uniform
 from tests.diagnosis.conftest import Fly
 
 SHARE = 0.3
+Array = NDArray[np.float64]
 
 
 def losses(plant: BoundPlant, log: RunLog) -> tuple[Case, Fit | None]:
@@ -75,6 +77,17 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
         np.testing.assert_allclose(power[row], np.sum(a * a) if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
 
 
+def answered(u: Array, lost: Array, answers: Array) -> tuple[Array, Array]:
+    """What arrives (rows, 1) of the commands u where frames are lost, and what that makes of the innovations (rows, 1)."""
+    arrived, w = u.copy(), np.zeros_like(u)
+    for row in range(1, len(u)):
+        held = lost[row] * (arrived[row - 1] - u[row])
+        arrived[row] += held
+        end = min(len(u), row + APART)
+        w[row:end, 0] += answers[row, : end - row, 0, 0] * held
+    return arrived, w
+
+
 def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
     """Losses whose answers overlap are all found where together they explain the innovations without rest."""
     rng = np.random.default_rng(6)
@@ -83,12 +96,7 @@ def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
     lost[[20, 22, 23, 90, 91, 150]] = 1.0
     answers = np.zeros((rows, APART, 1, 1))
     answers[:, :, 0, 0] = 10.0 * np.exp(-np.arange(APART) / 5.0)
-    arrived, w = u.copy(), np.zeros((rows, 1))
-    for row in range(1, rows):
-        held = lost[row] * (arrived[row - 1] - u[row])
-        arrived[row] += held
-        end = min(rows, row + APART)
-        w[row:end, 0] += answers[row, : end - row, 0, 0] * held
+    arrived, w = answered(u, lost, answers)
     ratios, _ = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
     clear = np.append(False, np.abs(arrived[:-1, 0] - u[1:, 0]) > 0.2)
     np.testing.assert_array_equal(ratios[clear] > 0.0, lost[clear] > 0.5)
@@ -104,12 +112,7 @@ def test_losses_side_by_side_are_told_apart() -> None:
     lags = np.arange(APART)
     answers = np.zeros((rows, APART, 1, 1))
     answers[:, :, 0, 0] = 5.0 * lags / 3.0 * np.exp(1.0 - lags / 3.0)
-    arrived, w = u.copy(), rng.standard_normal((rows, 1))
-    for row in range(1, rows):
-        held = lost[row] * (arrived[row - 1] - u[row])
-        arrived[row] += held
-        end = min(rows, row + APART)
-        w[row:end, 0] += answers[row, : end - row, 0, 0] * held
+    w = rng.standard_normal((rows, 1)) + answered(u, lost.astype(float), answers)[1]
     ratios, power = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), SWEEPS)
     clear = power > 100.0
     wrong = (ratios > 0.0) != lost

@@ -48,8 +48,7 @@ def test_rotors_that_run_begin_near_their_speed(kit: Kit, flown: RunLog, first: 
     assert begun(kit, flown, first) == pytest.approx(LEVEL_RAD_S, rel=0.2)
 
 
-def test_what_the_plant_cannot_follow_begins_at_the_first_guess(kit: Kit, flown: RunLog) -> None:
-    # Readings that are no number at all judge nothing.
+def test_readings_that_are_no_numbers_leave_a_start(kit: Kit, flown: RunLog) -> None:
     blind = replace(flown, y=np.full_like(flown.y, np.nan), extra={})
     x0, p0 = start_of(kit, tape_of(blind, kit.bound.plant, kit.outputs), ())
     assert np.isfinite(x0).all()
