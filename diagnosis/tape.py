@@ -113,15 +113,22 @@ def _standing(y: Array) -> Array:
 def _variance(y: Array, step: float, noise: float) -> float:
     """Variance of a measurement: its encoder's step and noise, or what its second differences show where that is clearly more.
 
-    Rounding alone leaves second differences of 6 step^2 / 12 and motion next to nothing; what is far beyond the usual is left out.
+    Rounding alone leaves second differences of 6 step^2 / 12 and motion next to nothing; what is far beyond the usual is left out. Where
+    no step is stated the readings' own counts: a speed that is logged in whole counts mostly stands still, but is not exact for that.
     """
     second = np.abs(np.diff(y[np.isfinite(y)], 2))
     stated = step**2 / 12.0 + noise**2
     usual = max(1.4826 * float(np.median(second)), step) if second.size else 0.0
     seen = float(np.mean(np.minimum(second, BEYOND_USUAL * usual) ** 2)) / 6.0 if second.size else 0.0
     if not step:
-        return max(stated, usual**2 / 6.0, 1e-18)
+        return max(stated + _finest(y) ** 2 / 12.0, usual**2 / 6.0, 1e-18)
     return min(seen, 100.0 * stated) if seen > CLEARLY * stated else stated
+
+
+def _finest(y: Array) -> float:
+    """The smallest difference between any two readings that differ, 0 where none do."""
+    gaps = np.diff(np.unique(y[np.isfinite(y)]))
+    return float(gaps.min()) if gaps.size else 0.0
 
 
 def beginning(tape: Tape, seconds: float) -> Tape:
