@@ -7,6 +7,7 @@ import numpy as np
 
 from diagnosis.answer import gap, no_gap
 from diagnosis.case import Case, make_case
+from diagnosis.creep import creeping
 from diagnosis.detect import Detection, detect, form_scores
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
@@ -35,6 +36,7 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
+ASKED = 4  # hypotheses beside which axes may creep
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -42,10 +44,11 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = _seen(bound, material)
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
-    case, nominal = seen.case, seen.retuned.fit
-    demand_wiring(case, nominal, nominal_fit)
-    found = search(case, nominal, case.kit.candidates, seen.ground, seen.looks, seen.lossy)
-    beyond = retune(case, nominal)
+    demand_wiring(seen.case, seen.retuned.fit, nominal_fit)
+    seen, found = _crept(*_searched(seen))
+    if found is None:
+        return no_gap(seen, material, _holdout(seen, material))
+    beyond = retune(seen.case, seen.retuned.fit)
     seen = replace(seen, detection=confirmed_by(seen.detection, found, beyond))
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
@@ -53,20 +56,41 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
 
 
 def _seen(bound: BoundPlant, material: Material) -> Seen:
-    """Fit the plant alone, look at the library beside it, and ask whether there is a gap at all."""
+    """Ask whether there is a gap at all."""
     kit = make_kit(without_effects(bound) if bound.effects else bound)
     kit.prepare()
     split = len(material.logs)
     case = make_case(kit, material.logs, material.used[:split], bound)
     checked = make_case(kit, material.holdout, material.used[split:], bound) if material.holdout else None
+    return _looked_at(case, checked)
+
+
+def _looked_at(case: Case, checked: Case | None) -> Seen:
+    """Fit the plant alone, and look at the library beside it."""
     nominal = nominal_fit(case)
     case = with_usual(case, nominal.supposed)
     ground = ground_of(case, nominal)
     case, lossy = with_losses(case, ground)
     ground = replace(ground, case=case)
-    looks = look(case, ground, kit.candidates)
+    looks = look(case, ground, case.kit.candidates)
     retuned = Tried((), nominal, evidence(nominal))
     return Seen(case, checked, retuned, ground, tuple(looks), lossy, detect(case, ground, looks, lossy))
+
+
+def _searched(seen: Seen) -> tuple[Seen, Search]:
+    return seen, search(seen.case, seen.retuned.fit, seen.case.kit.candidates, seen.ground, seen.looks, seen.lossy)
+
+
+def _crept(seen: Seen, found: Search) -> tuple[Seen, Search | None]:
+    """The same, or all anew with axes that creep where that explains the logs better; nothing is searched where no gap is left then."""
+    case = creeping(seen.case, (*found.tried[:ASKED], seen.retuned))
+    if case is seen.case:
+        return seen, found
+    again = _looked_at(case, seen.checked)
+    if again.detection.p > ALARM:
+        return (again, None) if again.retuned.evidence > found.tried[0].evidence else (seen, found)
+    again, further = _searched(again)
+    return (again, further) if further.tried[0].evidence > found.tried[0].evidence else (seen, found)
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> Judged:

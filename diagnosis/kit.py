@@ -69,8 +69,9 @@ class Kit:
 
     @cached_property
     def candidates(self) -> tuple[str, ...]:
-        """Effects that are more than another value of one of the plant's own coefficients."""
-        return tuple(name for name, effect in self.effects.items() if not redundant(self.bound, effect))
+        """Effects that name a gap and are more than another value of one of the plant's own coefficients."""
+        gaps = (name for name, effect in self.effects.items() if effect.names_a_gap)
+        return tuple(name for name in gaps if not redundant(self.bound, self.effects[name]))
 
     @cached_property
     def states(self) -> tuple[str, ...]:

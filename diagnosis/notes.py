@@ -22,7 +22,13 @@ IMITATION = "a re-tune of the plant's own parameters imitates these, so these da
 
 def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed | None) -> tuple[str, ...]:
     """All sentences."""
-    return (*_moved(case, chosen), *_twins(case, weighed), *_imitated(looks, chosen), *_unseen(case, looks, chosen))
+    return (
+        *_crept(case, chosen),
+        *_moved(case, chosen),
+        *_twins(case, weighed),
+        *_imitated(looks, chosen),
+        *_unseen(case, looks, chosen),
+    )
 
 
 def cannot_tell(case: Case, looks: Sequence[Look]) -> bool:
@@ -40,6 +46,18 @@ def moved_effects(fit: Fit, far: float = FAR) -> list[Free]:
     numbers = [entry for entry in fit.free if entry.stated is not None]
     distances = away(fit.supposed, fit.free)[len(fit.supposed.theta) :]
     return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]
+
+
+def _crept(case: Case, chosen: Tried) -> Iterator[str]:
+    """What is supposed of friction near rest, where the plant file does not state it."""
+    for name, values in chosen.fit.supposed.effects.items():
+        effect = case.kit.effects[name]
+        if not effect.names_a_gap and case.stated_sd[name] == dict.fromkeys(values, 0.0):
+            size = effect.size
+            yield (
+                f"the {effect.place}'s friction builds up over {values[size.symbol]:.2g} {size.unit}: it creeps where "
+                "it would stick, which a plant file leaves open and is no gap"
+            )
 
 
 def _moved(case: Case, chosen: Tried) -> Iterator[str]:

@@ -1,0 +1,43 @@
+"""Dry friction that needs speed to build up: what stands for a grease that creeps, and for a simulation that rounds the jump at rest.
+
+(1)  level b_c (1 - 2 s e / (1 + e)) with e = exp(-2 |v| / v_c), which is b_c tanh(|v| / v_c) with s = 1; s = 0 where v_c = 0
+
+A hundredth of the level is left at rest, s = 0.99: an axis without any there would count as one without friction.
+It takes the axis' own level alone: rounded off like that, a larger one would be too stiff for the step of a sample.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import sympy
+
+from sim.effects.edits import NOTHING, axis_of, short, with_axis
+from sim.effects.effect import Effect, EffectParameter
+from sim.model import Model
+
+GIVEN_WAY = 0.99  # of the level, at rest
+
+
+def effects(model: Model) -> Iterator[Effect]:
+    """Eq (1) on each axis that has friction as stated."""
+    for axis, entry in model.places.axes.items():
+        if axis_of(model, axis).coulomb == 0:
+            continue
+        speed, angle = entry.speed_size, short(entry.angle)
+        yield Effect(
+            name=f"{axis}.creep",
+            depends=f"torque({angle}_dot)",
+            parameters=(EffectParameter("v_c", f"{entry.length_unit} s^-1", 0.0, 0.05 * speed, 0.005 * speed, 0.0),),
+            equation=f"- b_c tanh({angle}'/v_c)",
+            story="A pushed axis does not stick: it creeps, the faster the harder it is pushed, until it slides.",
+            source="Coulomb friction with its jump at rest rounded off",
+            edit=lambda model, v_c, axis=axis: _edit(model, v_c, axis),
+            names_a_gap=False,
+        )
+
+
+def _edit(model: Model, v_c: sympy.Symbol, name: str) -> Model:
+    present = GIVEN_WAY * v_c / (v_c + NOTHING)
+    e = sympy.exp(-2 * sympy.Abs(axis_of(model, name).velocity) / (v_c + NOTHING))
+    share = 1 - 2 * present * e / (1 + e)
+    return with_axis(model, name, lambda axis: replace(axis, coulomb=axis.coulomb * share))

@@ -1,0 +1,84 @@
+"""Friction near rest, which a plant file leaves open: axes that creep are no gap; and speeds that a log has in whole counts."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from diagnosis.case import make_case
+from diagnosis.creep import creeping
+from diagnosis.engine import Material, diagnose, nominal_fit
+from diagnosis.kit import make_kit
+from diagnosis.tape import tape_of
+from diagnosis.trial import Tried, evidence
+from records.log import RunLog
+from sim.bind import BoundPlant, bind
+from sim.effects.api import with_effects
+from sim.loop import fly_law
+from sim.manoeuvres import flight
+from sim.model import Model
+from tests.diagnosis.conftest import Fly
+
+V_C_RAD_S = 0.005
+LEVEL_N_M = 3e-4
+CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD_S}}
+
+
+def default_flight(plant: BoundPlant, effects: Mapping[str, Mapping[str, float]]) -> RunLog:
+    """The default flight in still air, with holds in which an axis that sticks stays where it is."""
+    table, _ = design(plant, read_settings(plant))
+    return replace(fly_law(with_effects(plant, effects), table, flight(plant)), extra={})
+
+
+def friction_N_m(model: Model, speed_rad_s: float, v_c_rad_s: float) -> float:
+    """The azimuth's level of friction where its own is LEVEL_N_M."""
+    level = next(axis for axis in model.axes if axis.name == "azimuth").coulomb
+    known = {"b_cA": LEVEL_N_M, "phi_dot_rad_s": speed_rad_s, "azimuth_creep_v_c": v_c_rad_s}
+    return float(level.xreplace({symbol: known[str(symbol)] for symbol in level.free_symbols}))
+
+
+@pytest.fixture(scope="module")
+def creeps(plant: BoundPlant) -> Model:
+    return with_effects(plant, {"azimuth.creep": {"v_c": V_C_RAD_S}}).model
+
+
+def test_friction_builds_up_with_speed_as_a_hyperbolic_tangent(creeps: Model) -> None:
+    # A hundredth of the level stays at rest.
+    for speed in (-0.3, -0.004, 0.001, 0.005, 0.02, 2.0):
+        truth = LEVEL_N_M * np.tanh(abs(speed) / V_C_RAD_S)
+        assert friction_N_m(creeps, speed, V_C_RAD_S) == pytest.approx(truth, abs=0.01 * LEVEL_N_M)
+
+
+def test_without_a_speed_friction_is_dry(creeps: Model) -> None:
+    for speed in (-0.3, 0.0, 1e-9):
+        assert friction_N_m(creeps, speed, 0.0) == LEVEL_N_M
+
+
+def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
+    # Truth: the plant as stated, the jump of its friction rounded off over 5 mrad/s.
+    result = diagnose(plant, Material([default_flight(plant, CREEP)], [], [], []))
+    assert result.diagnosis.verdict == "no gap"
+    found = bind(result.plant).effects
+    assert set(found) == set(CREEP)
+    for name in CREEP:
+        assert found[name]["v_c"].values[0] == pytest.approx(V_C_RAD_S, rel=0.5)
+    assert sum("creeps" in note for note in result.diagnosis.notes) == 2
+
+
+def test_axes_that_stick_are_not_taken_to_creep(plant: BoundPlant) -> None:
+    case = make_case(make_kit(plant), [default_flight(plant, {})])
+    nominal = nominal_fit(case)
+    assert creeping(case, [Tried((), nominal, evidence(nominal))]) is case
+
+
+def test_a_speed_in_whole_counts_is_known_to_a_count(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: readings of 0.5 rad/s that stand still in most rows are off by 0.5 / sqrt(12), not by nothing.
+    log = fly(34, rig_seed=3)
+    speed = np.round(np.linspace(400.0, 410.0, len(log.t_s)) / 0.5) * 0.5
+    kit = make_kit(plant)
+    tape = tape_of(replace(log, extra={"omega_M_rad_s": speed}), plant.plant, kit.outputs)
+    single = tape.single[kit.outputs.index("omega_M_rad_s")]
+    assert np.sqrt(single) == pytest.approx(0.5 / np.sqrt(12.0), rel=0.01)
