@@ -22,6 +22,10 @@ from diagnosis.screen import Look
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
 ALLOWED = 10.0  # nats that friction and stops a little other than the model's may gain
+TOLERATED = (
+    1.0  # standard deviations that laws of friction and thrust a little other than the model's may move a parameter
+)
+LEAST_TOLD = 0.05  # of a number's stated variance, that logs must take away for it to have moved for a reason
 LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must leave for it to count
 
 
@@ -64,7 +68,7 @@ def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None 
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
     numbers = len(away(ground.fit.supposed, ground.fit.free))
     strained = chi_squared_tail(numbers, strain(case, ground.fit.supposed, ground.fit.free))
-    p = min(1.0, 2.0 * min(tail.probability(largest - ALLOWED), strained))
+    p = min(1.0, 3.0 * min(tail.probability(largest - ALLOWED), strained, moved_tail(case, ground.fit)))
     return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)))
 
 
@@ -91,6 +95,21 @@ def chi_squared_tail(count: int, value: float) -> float:
     """The chance that the squares of `count` standard normal numbers sum to `value` or more: Q(count / 2, value / 2), the regularised
     upper incomplete gamma function; 1 where nothing is counted."""
     return float(mpmath.gammainc(0.5 * count, 0.5 * value, regularized=True)) if count else 1.0
+
+
+def moved_tail(case: Case, found: Fit) -> float:
+    """The chance that the number that left what is stated furthest went so far, of all that are stated, less TOLERATED deviations.
+
+    A number that logs tell exactly moves by one standard deviation of its stated spread, one of which they tell nothing does not move.
+    """
+    moved = away(found.supposed, found.free)
+    stated = [
+        *range(len(case.free)),
+        *(len(case.free) + k for k, entry in enumerate(found.free) if entry.stated is not None),
+    ]
+    known = np.diag(np.linalg.pinv(found.information))[stated]
+    furthest = float(np.max(np.abs(moved) / np.sqrt(np.maximum(1.0 - known, LEAST_TOLD)), initial=0.0)) - TOLERATED
+    return min(1.0, len(moved) * float(mpmath.erfc(furthest / np.sqrt(2.0))))
 
 
 def gains(scores: Scores) -> Array:

@@ -102,7 +102,7 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
     told: tuple[str, ...] = ()
     if holdout is not None:
-        weighed, told = partly(holdout, overruled(holdout, weighed, retuned, left))
+        weighed, told = partly(holdout, overruled(holdout, weighed, retuned, left), left)
     doubts = doubt(case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.sentences, *told)
     chosen = likeliest(weighed, retuned, beyond)

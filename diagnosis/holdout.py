@@ -1,6 +1,6 @@
 """What logs that were not fitted say: whether a re-tune, an unknown effect and what is named hold there."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,11 +10,12 @@ from diagnosis.fit import unfitted
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.instants import is_event
+from diagnosis.predict import WINDOW_S
 from diagnosis.retune import Retune
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
 from diagnosis.start import FIRST_UNREST
 from diagnosis.trial import Tried, evidence
-from diagnosis.weigh import UNNAMED, Weighed
+from diagnosis.weigh import LEFT_NATS, UNNAMED, Weighed
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
@@ -82,9 +83,10 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
     return weighed if gone is None or gone < NEARLY_ALL else weighed.with_unknown(min(1.0 - gone, weighed.unknown))
 
 
-def partly(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[str, ...]]:
+def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
     """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown.
 
+    Where forms see next to nothing beside it, `left` nats, air as restless as it takes it to be may be all that is left.
     Effects that happen at an instant, which is another one in each log, and frames that are lost at random are not asked.
     """
     named = () if weighed.nameless or not weighed.tried else weighed.tried[0].effects
@@ -93,6 +95,7 @@ def partly(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[str, ...]
     told = holdout.shrinkage(holdout.predicted(weighed.tried[0]))
     most = 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
     floor = _floor(holdout.case, weighed.tried[0], told)
+    floor = floor if left > LEFT_NATS else _in_air(holdout.case, weighed.tried[0], floor)
     far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
     if told.fraction is None or most > PARTLY or far < FAR:
         return weighed, ()
@@ -109,6 +112,16 @@ def _floor(case: Case, tried: Tried, told: Shrinkage) -> dict[str, float]:
         for place, sensor in case.kit.bound.model.places.sensors.items()
     }
     return {name: float(np.hypot(rms, coarse.get(name, 0.0) / np.sqrt(12.0))) for name, rms in told.rms_floor.items()}
+
+
+def _in_air(case: Case, tried: Tried, floor: Mapping[str, float]) -> dict[str, float]:
+    """The floor with what the hypothesis' unrest q makes of a free axis within a predicted second: its variance grows with q t^3 / 3."""
+    model, unrest = case.kit.bound.model, tried.fit.supposed.unrest.tolist()
+    moved = {
+        str(axis.position): 10.0**own * np.sqrt(WINDOW_S**3 / 12.0)
+        for axis, own in zip(model.axes, unrest, strict=True)
+    }
+    return {name: float(np.hypot(rms, moved.get(str(model.outputs[name]), 0.0))) for name, rms in floor.items()}
 
 
 def _lasts(case: Case, name: str) -> bool:

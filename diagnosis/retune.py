@@ -1,9 +1,11 @@
 """A gap that other parameter values explain, beyond their stated spread: then parameters are named, and no effect."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy
+from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.fit import Fit, fit
@@ -11,6 +13,7 @@ from diagnosis.notes import moved_effects, moved_parameters
 from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import unrest_of
 
+Array = NDArray[np.float64]
 WIDER = 8.0
 FAR = 4.0  # standard deviations
 PULLED = 2.5  # by which the fit within the spread must have moved something
@@ -20,7 +23,7 @@ MOST = 4
 
 @dataclass(frozen=True, eq=False)
 class Retune:
-    """The fit with spreads taken WIDER times as wide, its parameters that left their spread, and its evidence."""
+    """The fit where the spreads of what had moved are taken WIDER times as wide, its parameters that left them, and its evidence."""
 
     tried: Tried
     parameters: tuple[str, ...]
@@ -29,49 +32,60 @@ class Retune:
 
 
 def retune(case: Case, nominal: Fit) -> Retune | None:
-    """The re-tune beyond the stated spread; None where no parameter leaves it, or too many do."""
-    if not moved_parameters(case, nominal.supposed.theta, PULLED) and not moved_effects(nominal, PULLED):
+    """The re-tune beyond the stated spread; None where no parameter leaves it.
+
+    Only what the fit within the spread had moved is set free: each spread that is taken wider costs evidence.
+    """
+    moved = moved_parameters(case, nominal.supposed.theta, PULLED)[:MOST]
+    own = {entry.effect for entry in moved_effects(nominal, PULLED)}
+    if not moved and not own:
         return None
-    wider = _wider(case)
-    start = replace(nominal.supposed, theta=nominal.supposed.theta / WIDER)
+    factor = np.ones(len(case.free))
+    factor[moved] = WIDER
+    wider = _wider(case, factor, own)
+    start = replace(nominal.supposed, theta=nominal.supposed.theta / factor)
     found = fit(wider, start, rounds=6)
     if found is None:
         return None
     found = fit(wider, unrest_of(wider, found), rounds=6)
     if found is None:
         return None
-    moved = moved_parameters(wider, found.supposed.theta, FAR / WIDER)
-    own = moved_effects(found, FAR / WIDER)
-    if not 0 < len(moved) + len(own) <= MOST:
+    stated = _as_stated(found, factor, own)
+    far = [index for index in moved_parameters(case, stated.supposed.theta, FAR) if index in moved]
+    numbers = [entry for entry in moved_effects(stated, FAR) if entry.effect in own]
+    if not 0 < len(far) + len(numbers) <= MOST:
         return None
     names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
-    parameters = tuple(names[int(case.free[index])] for index in moved)
+    parameters = tuple(names[int(case.free[index])] for index in far)
     places = [place for name in parameters for place in places_of(case, name)]
-    places += [entry.effect.split(".")[0] for entry in own]
-    told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in own))
+    places += [entry.effect.split(".")[0] for entry in numbers]
+    told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
     score = evidence(found) - NATS_PER_PARAMETER * len(told)
-    return Retune(Tried((), _as_stated(found), evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
+    return Retune(Tried((), stated, evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
 
 
-def _as_stated(found: Fit) -> Fit:
+def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
     """The fit of a wider case counted in the stated standard deviations."""
-    stated = np.array([entry.stated is not None for entry in found.free], dtype=bool)
-    units = np.where(np.append(np.ones(len(found.supposed.theta), dtype=bool), stated), WIDER, 1.0)
-    free = [replace(e, scale=e.scale / WIDER) if own else e for e, own in zip(found.free, stated, strict=True)]
+    numbers = np.array([WIDER if entry.effect in own else 1.0 for entry in found.free])
+    units = np.append(factor, numbers)
+    free = [replace(entry, scale=entry.scale / unit) for entry, unit in zip(found.free, numbers, strict=True)]
     return replace(
         found,
-        supposed=replace(found.supposed, theta=WIDER * found.supposed.theta),
+        supposed=replace(found.supposed, theta=factor * found.supposed.theta),
         free=tuple(free),
         information=found.information / np.outer(units, units),
         pull=found.pull / units,
     )
 
 
-def _wider(case: Case) -> Case:
-    """The case with everything that its plant file states WIDER times as uncertain."""
-    bound = replace(case.kit.bound, sd=case.kit.bound.sd * WIDER)
-    stated_sd = {name: {s: WIDER * sd for s, sd in own.items()} for name, own in case.stated_sd.items()}
-    return replace(case, kit=replace(case.kit, bound=bound), stated_sd=stated_sd)
+def _wider(case: Case, factor: Array, own: Collection[str]) -> Case:
+    """The case with the coefficients' spreads times `factor` (free,), and those of the effects in `own` WIDER times as wide."""
+    sd = case.kit.bound.sd.copy()
+    sd[case.free] *= factor
+    stated_sd = {
+        name: {s: WIDER * v if name in own else v for s, v in of.items()} for name, of in case.stated_sd.items()
+    }
+    return replace(case, kit=replace(case.kit, bound=replace(case.kit.bound, sd=sd)), stated_sd=stated_sd)
 
 
 def places_of(case: Case, coefficient: str) -> list[str]:
