@@ -22,9 +22,7 @@ from diagnosis.screen import Look
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
 ALLOWED = 10.0  # nats that friction and stops a little other than the model's may gain
-TOLERATED = (
-    1.0  # standard deviations that laws of friction and thrust a little other than the model's may move a parameter
-)
+TOLERATED = 1.0  # standard deviations that laws a little other than the model's may move a parameter
 LEAST_TOLD = 0.05  # of a number's stated variance, that logs must take away for it to have moved for a reason
 LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must leave for it to count
 

@@ -56,7 +56,7 @@ def _crept(case: Case, chosen: Tried) -> Iterator[str]:
             size = effect.size
             yield (
                 f"the {effect.place}'s friction builds up over {values[size.symbol]:.2g} {size.unit}: it creeps where "
-                "it would stick, which a plant file leaves open and is no gap"
+                "it would stick, which is no gap"
             )
 
 

@@ -2,8 +2,8 @@
 
 (1)  level b_c (1 - 2 s e / (1 + e)) with e = exp(-2 |v| / v_c), which is b_c tanh(|v| / v_c) with s = 1; s = 0 where v_c = 0
 
-A hundredth of the level is left at rest, s = 0.99: an axis without any there would count as one without friction.
-It takes the axis' own level alone: rounded off like that, a larger one would be too stiff for the step of a sample.
+b_c is all dry friction of the axis, its own and what effects add. A hundredth of it is left at rest, s = 0.99: an axis without any there
+would count as one without friction.
 """
 
 from collections.abc import Iterator
