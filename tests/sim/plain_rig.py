@@ -6,7 +6,7 @@ Rates by hand, RK4 with steps of half a millisecond, inputs as functions of cont
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, exp, floor, pi, sin
+from math import cos, exp, floor, pi, sin, tanh
 from types import SimpleNamespace
 from typing import Any
 
@@ -28,6 +28,7 @@ class Case:
 
 BEGIN_S = 5.0
 TAIL_BACKWARDS = (430.0, -0.45, 0.5, -250.0, 0.6, -0.7)
+SLOW = (430.0, -0.45, 0.1, 250.0, 0.6, -0.1)
 NEAR_STOPS = (430.0, 0.55, 0.2, 250.0, 2.02, 0.3)
 NEAR_LOWER_STOP = (430.0, 0.55, 0.2, 250.0, -2.02, -0.3)
 
@@ -65,6 +66,11 @@ def grip(v: float, v_s: float, e: float) -> float:
     return exp(-((v / v_s) ** 2) / (1 + e * abs(v) / v_s))
 
 
+def creeps(v: float, v_c: float) -> float:
+    """What friction of level 1 lacks where its jump is rounded off: 0.99 (1 - tanh(|v| / v_c)), against its direction."""
+    return 0.99 * (sgn(v) - tanh(v / v_c))
+
+
 # What each effect does, by where it enters: s holds t, the states, the inputs, the rotors' accelerations and the effect's values.
 INPUT_M: dict[str, Callable[[Any], float]] = {
     "main_input.deadzone": lambda s: dead(s.u_M, s.d, s.w),
@@ -94,6 +100,7 @@ THRUST_T = {
 }
 TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.coulomb": lambda s: -s.b * sgn(s.v_psi),
+    "elevation.creep": lambda s: s.b_cE * creeps(s.v_psi, s.v_c),
     "elevation.stribeck": lambda s: -s.b_s * grip(s.v_psi, s.v_s, s.e) * sgn(s.v_psi),
     "elevation.load_friction": lambda s: -s.c * abs(s.w_M) * sgn(s.v_psi),
     "elevation.friction_asymmetry": lambda s: -s.difference / 2,
@@ -116,6 +123,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
 }
 TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.coulomb": lambda s: -s.b * sgn(s.v_phi),
+    "azimuth.creep": lambda s: s.b_cA * creeps(s.v_phi, s.v_c),
     "azimuth.stribeck": lambda s: -s.b_s * grip(s.v_phi, s.v_s, s.e) * sgn(s.v_phi),
     "azimuth.load_friction": lambda s: -s.c * abs(s.w_T) * sgn(s.v_phi),
     "azimuth.friction_asymmetry": lambda s: -s.difference / 2,
@@ -234,6 +242,7 @@ class PlainRig:
         p, name = self.p, self.name
         values = self.case.values if name else {}
         s = SimpleNamespace(t=t, u_M=u[0], u_T=u[1], tau_g=p["tau_gE"], J_A=p["J_A"], Phi_lim=p["Phi_lim"], **values)
+        s.b_cE, s.b_cA = p["b_cE"], p["b_cA"]
         s.w_M, s.psi, s.v_psi, s.w_T, s.phi, s.v_phi, s.z = x[:7]
         u_M, u_T = INPUT_M.get(name, lambda s: s.u_M)(s), INPUT_T.get(name, lambda s: s.u_T)(s)
         if name in LAGS:

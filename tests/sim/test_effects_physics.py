@@ -12,7 +12,17 @@ from sim.effects.effect import coefficient
 from sim.sensitivities import sensitivities
 from sim.simulate import simulate
 from tests.sim.conftest import PLANTS
-from tests.sim.plain_rig import BEGIN_S, NEAR_LOWER_STOP, NEAR_STOPS, SAMPLE_S, TAIL_BACKWARDS, Case, PlainRig, commands
+from tests.sim.plain_rig import (
+    BEGIN_S,
+    NEAR_LOWER_STOP,
+    NEAR_STOPS,
+    SAMPLE_S,
+    SLOW,
+    TAIL_BACKWARDS,
+    Case,
+    PlainRig,
+    commands,
+)
 
 BOUND = bind(load_plant(PLANTS / "ce150.toml"))
 LIBRARY = library(BOUND)
@@ -30,6 +40,8 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "tail_input.deadzone": {"w": 0.8},
     "elevation.stribeck": {"v_s": 0.4},
     "azimuth.stribeck": {"v_s": 0.4, "e": 3.0},
+    "elevation.creep": {"v_c": 0.04},
+    "azimuth.creep": {"v_c": 0.04},
     "elevation.upper_stop": {"a": 0.3},
     "elevation.lower_stop": {"a": 1.2},
     "azimuth.upper_stop": {"a": 0.3},
@@ -48,6 +60,8 @@ VALUES: Mapping[str, Mapping[str, float]] = {
 }
 STARTS = {
     "tail_rotor.reverse_asymmetry": TAIL_BACKWARDS,
+    "elevation.creep": SLOW,
+    "azimuth.creep": SLOW,
     "elevation.upper_stop": NEAR_STOPS,
     "azimuth.upper_stop": NEAR_STOPS,
     "azimuth.lower_stop": NEAR_LOWER_STOP,
@@ -168,6 +182,8 @@ def test_all_effects_at_next_to_no_size_have_derivatives_by_their_sizes() -> Non
     assert set(names) - seen == {
         "psi_sensor.count_slip",
         "phi_sensor.count_slip",
+        "elevation.creep",
+        "azimuth.creep",
         "elevation.weight_shift",
         "elevation.disturbance",
         "azimuth.disturbance",
