@@ -54,7 +54,7 @@ def _unstated(case: Case) -> Iterator[Effect]:
 
 
 def _likeliest(case: Case, supposed: Supposed, effect: Effect) -> tuple[Supposed, float]:
-    """The likeliest speed over which the friction builds up, from its reference by folds up or down, in air as calm as it then is."""
+    """The likeliest speed over which the friction builds up, from its reference by folds up, else down, in air as calm as it then is."""
 
     def at(speed: float) -> tuple[Supposed, float]:
         effects = {**supposed.effects, effect.name: {effect.size.symbol: speed}}
@@ -71,4 +71,6 @@ def _likeliest(case: Case, supposed: Supposed, effect: Effect) -> tuple[Supposed
             if further[1] <= best[1]:
                 break
             speed, best, step = step, further, step * fold
+        if speed != effect.size.reference:
+            break
     return best

@@ -49,7 +49,7 @@ def moved_effects(fit: Fit, far: float = FAR) -> list[Free]:
 
 
 def _crept(case: Case, chosen: Tried) -> Iterator[str]:
-    """What is supposed of friction near rest, where the plant file does not state it."""
+    """What is supposed of friction near rest: found in these logs, or stated in the plant file as known exactly."""
     for name, values in chosen.fit.supposed.effects.items():
         effect = case.kit.effects[name]
         if not effect.names_a_gap and case.stated_sd[name] == dict.fromkeys(values, 0.0):
