@@ -19,7 +19,7 @@ from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
 from design.settings import AXES
-from design.table import LIMITS
+from design.table import LIMITS, plain
 from records.law_table import LawTable
 
 N = TypeVar("N")
@@ -87,13 +87,15 @@ def design(points: Points) -> LawTable[PidGains]:
     """Both axes tuned on the plant's operating points; raises BadInput where no gains hold the sensitivity."""
     tunings = {axis: tune(points.sampled(axis), axis) for axis in AXES}
     axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
-    origin = {
-        axis: {**vars(tuning), "rule": RULE, "Ms_max": LARGEST_SENSITIVITY[axis]} for axis, tuning in tunings.items()
-    }
-    return law_table("pid", points, axes, origin)
+    return law_table("pid", points, axes, {axis: _origin(axis, tuning) for axis, tuning in tunings.items()})
 
 
 RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point and Ti >= 4 Td"
+
+
+def _origin(axis: str, tuning: Tuning) -> dict[str, Any]:
+    found = {name: plain([value])[0] for name, value in vars(tuning).items()}
+    return {**found, "rule": RULE, "Ms_max": LARGEST_SENSITIVITY[axis]}
 
 
 def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:

@@ -14,12 +14,12 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, DirectForm, to_delta, to_direct
-from design.discretise import transfer_from_polynomials
 from design.loop import PlantPolynomials, Poles, closed_loop_polynomial, open_loop, polynomial_roots, to_rad_s
 from design.operating_points import exact_delta
 from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z
 from design.schedule import Schedule, evaluate, fit
 from design.settings import AxisSettings
+from design.transfer import transfer_from_polynomials
 
 Array = NDArray[np.float64]
 Store = Callable[[float], float]
@@ -87,9 +87,9 @@ def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -
     """The controller that eq (26) gives for `plant` itself, without fit."""
     transfer = transfer_from_polynomials(plant.b, plant.a)
     wanted = characteristic(poles_z(axis.wishes.poles_rad_s, plant.sample_period_s))
-    free = axis.wishes.free_degree
     where = f"{axis.name} at psi = {math.degrees(psi_rad):.1f} deg"
-    return exact_delta(place(transfer.b, transfer.a, wanted, FREE_DEGREES[free], where), free)
+    placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[axis.wishes.free_degree], where)
+    return exact_delta(plant, placement, axis.wishes)
 
 
 def pole_map(plants: Sequence[PlantPolynomials], controllers: Sequence[DeltaForm]) -> Poles:

@@ -7,10 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, to_delta
-from design.discretise import TransferFunction, transfer_function
+from design.discretise import sample
 from design.linearise import linearise, subsystem
+from design.loop import PlantPolynomials, plant_polynomials
 from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
+from design.refine import refined
 from design.settings import AXES, AxisSettings, DesignSettings
+from design.transfer import TransferFunction, transfer_function
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 
@@ -66,15 +69,19 @@ def design_point(
 ) -> PointDesign:
     """The controller of `axis` at `point`; raises BadInput naming axis and angle when eq (26) cannot be used there."""
     where = f"{axis} at psi = {math.degrees(point.psi_rad):.1f} deg"
-    transfer = transfer_function(subsystem(bound, linearise(bound, point), axis), sample_period_s, where)
+    linear = subsystem(bound, linearise(bound, point), axis)
+    transfer = transfer_function(linear, sample_period_s, where)
     wanted = characteristic(poles_z(wishes.poles_rad_s, sample_period_s))
     placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
-    return PointDesign(transfer, placement, exact_delta(placement, wishes.free_degree))
+    return PointDesign(
+        transfer, placement, exact_delta(plant_polynomials(sample(linear, sample_period_s)), placement, wishes)
+    )
 
 
-def exact_delta(placement: Placement, free_degree: str) -> DeltaForm:
-    """The delta form, in which the coefficient that the free degree makes zero is zero to the last bit."""
-    delta = to_delta(placement.controller)
+def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSettings) -> DeltaForm:
+    """The delta form to rounding, in which the coefficient that the free degree makes zero is zero to the last bit."""
+    free_degree = wishes.free_degree
+    delta = refined(plant, to_delta(placement.controller), wishes.poles_rad_s, FREE_DEGREES[free_degree])
     if free_degree == "integral":
         return DeltaForm(delta.q, np.array([0.0, delta.p[1], delta.p[2]]))
     if free_degree == "q3_zero":

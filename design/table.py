@@ -125,7 +125,7 @@ def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -
         "coefficient_degree": settings.coefficient_degree,
         "feedforward_degree": settings.feedforward_degree,
         "operating_points": [
-            {"psi_rad": point.psi_rad, "x0": _plain(point.x0), "u0_V": _plain(point.u0)} for point in points.equilibria
+            {"psi_rad": point.psi_rad, "x0": plain(point.x0), "u0_V": plain(point.u0)} for point in points.equilibria
         ],
         **{axis: _axis_origin(settings, points, axis) for axis in AXES},
     }
@@ -140,16 +140,16 @@ def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> d
         "free_degree": wishes.free_degree,
         "observer_pole": wishes.observer_pole,
         "fit_error": {
-            name: _plain([value])[0] for name, value in asdict(fit_error(points.psi_rad, deltas, schedule)).items()
+            name: plain([value])[0] for name, value in asdict(fit_error(points.psi_rad, deltas, schedule)).items()
         },
-        "b": [_plain(design.transfer.b) for design in designs],
-        "a": [_plain(design.transfer.a) for design in designs],
-        "q_V_rad": [_plain(delta.q) for delta in deltas],
-        "p": [_plain(delta.p) for delta in deltas],
+        "b": [plain(design.transfer.b) for design in designs],
+        "a": [plain(design.transfer.a) for design in designs],
+        "q_V_rad": [plain(delta.q) for delta in deltas],
+        "p": [plain(delta.p) for delta in deltas],
     }
 
 
-def _plain(values: Iterable[float]) -> list[float]:
+def plain(values: Iterable[float]) -> list[float]:
     """The numbers to DIGITS digits each, 0 for what is rounding beside the largest: the same on every processor, as the table's own are."""
     found = [float(value) for value in values]
     least = NOISE * max(map(abs, found), default=0.0)

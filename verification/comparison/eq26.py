@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from controllers.frame import numbers_of
 from controllers.instantaneous import EQUATIONS
 from design.direct_form import DeltaForm, DirectForm, to_delta
-from design.discretise import TransferFunction, sample
+from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import closed_loop_poles, open_loop, plant_polynomials
 from design.operating_points import design_point
 from design.pole_placement import FREE_DEGREES, ORDER, characteristic, poles_z, sylvester
 from design.settings import AxisSettings, DesignSettings
+from design.transfer import TransferFunction
 from records.law_table import LawTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium

@@ -1,0 +1,57 @@
+"""Eq (26) once more in powers of gamma = z - 1, where nothing cancels.
+
+Solved in powers of z^-1 as in the paper, Q(1) = d_0 is the sum of numbers 3e4 times larger and keeps eight digits; those beyond depend
+on the processor. What is left of eq (26) then is small, and in gamma it is known to rounding:
+
+    A dP + B dQ = (gamma - gamma_1) ... (gamma - gamma_6) - (A P + B Q),    row . (d unknowns) = value - row . unknowns
+
+One such step takes what is left of both to 1e-13 of the coefficients.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.direct_form import DeltaForm, to_direct
+from design.loop import PlantPolynomials, closed_loop_polynomial, open_loop
+from design.pole_placement import FreeDegree
+
+Array = NDArray[np.float64]
+UNKNOWNS = 7  # d_0 .. d_3, c_0 .. c_2
+
+
+def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[complex], free: FreeDegree) -> DeltaForm:
+    """The controller `found` [V/rad] after that step; b (4,) and a (4,) of `plant` ascend in gamma, poles (6,) in rad/s."""
+    origin = _at(plant, free, np.zeros(UNKNOWNS))
+    columns = np.stack([_at(plant, free, unit) - origin for unit in np.eye(UNKNOWNS)], axis=1)
+    missing = np.append(wanted(poles_rad_s, plant.sample_period_s)[:-1], free.value) - _at(
+        plant, free, _unknowns(found)
+    )
+    rows = np.max(np.abs(columns), axis=1)
+    system = columns / rows[:, np.newaxis]
+    sizes = np.max(np.abs(system), axis=0)
+    step = np.linalg.solve(system / sizes, missing / rows) / sizes
+    return _form(_unknowns(found) + step)
+
+
+def wanted(poles_rad_s: Sequence[complex], sample_period_s: float) -> Array:
+    """Eq (25) in gamma, ascending powers, shape (7,): gamma_i = exp(s_i Ts) - 1."""
+    gamma = np.expm1(np.asarray(poles_rad_s, dtype=complex) * sample_period_s)
+    return np.asarray(np.poly(gamma).real[::-1])
+
+
+def _at(plant: PlantPolynomials, free: FreeDegree, unknowns: Array) -> Array:
+    """What the controller of these unknowns makes of gamma^0 .. gamma^5 in A P + B Q, and of the free condition's left side."""
+    form = _form(unknowns)
+    direct = to_direct(form)
+    closed = closed_loop_polynomial(open_loop(plant, form))
+    return np.append(closed[:-1], np.dot(free.row, np.append(direct.p[1:], direct.q)))
+
+
+def _unknowns(form: DeltaForm) -> Array:
+    return np.append(form.q, form.p)
+
+
+def _form(unknowns: Array) -> DeltaForm:
+    return DeltaForm(q=unknowns[:4], p=unknowns[4:])

@@ -1,0 +1,91 @@
+"""The transfer functions (20) and (21) of a sampled plant, from its polynomials in gamma = z - 1.
+
+Poles of a few rad/s sampled at 10 ms crowd around z = 1, where polynomials in z cancel: what python-control's conversion gives of B keeps
+nine digits. In gamma they spread around 0 and nothing cancels.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.discretise import SampledPlant, sample
+from design.linearise import LinearPlant
+from design.loop import plant_polynomials
+from records.errors import VerificationFailed
+
+Array = NDArray[np.float64]
+
+# Largest relative difference between the first impulse response samples of python-control's transfer function and of the
+# matrix exponential; 6e-11 is what the conversion of a well-posed helicopter loses.
+MAX_DISAGREEMENT = 1e-7
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """B(z)/A(z) of eq (20) in ascending powers of z^-1: b (4,) with b[0] = 0, a (4,) with a[0] = 1."""
+
+    b: Array
+    a: Array
+
+
+def transfer_function(linear: LinearPlant, sample_period_s: float, where: str) -> TransferFunction:
+    """The paper's c2d and ss2tf, for one input and one output, by way of gamma.
+
+    Raises VerificationFailed naming `where` when python-control's conversion of the same plant is another one.
+    """
+    sampled = sample(linear, sample_period_s)
+    polynomials = plant_polynomials(sampled)
+    _check(_by_python_control(linear, sample_period_s), sampled, where)
+    return transfer_from_polynomials(polynomials.b, polynomials.a)
+
+
+def _by_python_control(linear: LinearPlant, sample_period_s: float) -> TransferFunction:
+    import control  # half a second, which whoever only reads a table is spared
+
+    continuous = control.ss(linear.A, linear.B, linear.C, np.zeros((1, 1)))
+    discrete = control.ss2tf(control.sample_system(continuous, sample_period_s, method="zoh"))
+    a = np.asarray(discrete.den[0][0], dtype=float)
+    b = np.asarray(discrete.num[0][0], dtype=float)
+    return TransferFunction(b=np.append(np.zeros(len(a) - len(b)), b) / a[0], a=a / a[0])
+
+
+def transfer_from_polynomials(b_gamma: Array, a_gamma: Array) -> TransferFunction:
+    """The same transfer function from polynomials in gamma = z - 1, ascending powers, shapes (4,)."""
+    shifts = [np.atleast_1d(np.poly(np.ones(power))) for power in range(len(a_gamma))]
+
+    def in_z(ascending: Array) -> Array:
+        total = np.zeros(len(ascending))
+        for coefficient, shift in zip(ascending, shifts, strict=True):
+            total[len(total) - len(shift) :] += coefficient * shift
+        return total
+
+    return TransferFunction(b=in_z(b_gamma), a=in_z(a_gamma))
+
+
+def _check(found: TransferFunction, sampled: SampledPlant, where: str) -> None:
+    count = 2 * len(found.a)
+    wanted = _markov(sampled, count)
+    difference = float(np.max(np.abs(_impulse_response(found, count) - wanted)) / np.max(np.abs(wanted)))
+    if not difference < MAX_DISAGREEMENT:
+        raise VerificationFailed(
+            f"{where}: the sampled transfer function differs from the matrix exponential by {difference:.1e} "
+            f"of its largest impulse response sample (limit {MAX_DISAGREEMENT:g})"
+        )
+
+
+def _markov(sampled: SampledPlant, count: int) -> Array:
+    """C (I + N)^(k-1) B for k = 1 .. count, after a 0 for k = 0."""
+    state, response = sampled.B[:, 0], [0.0]
+    for _ in range(count):
+        response.append(float(sampled.C[0] @ state))
+        state = state + sampled.N @ state
+    return np.array(response)
+
+
+def _impulse_response(transfer: TransferFunction, count: int) -> Array:
+    response: list[float] = []
+    for k in range(count + 1):
+        past = sum(transfer.a[i] * response[k - i] for i in range(1, min(k, len(transfer.a) - 1) + 1))
+        response.append(float((transfer.b[k] if k < len(transfer.b) else 0.0) - past))
+    return np.array(response)
