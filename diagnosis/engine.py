@@ -7,7 +7,6 @@ import numpy as np
 
 from diagnosis.answer import gap, no_gap
 from diagnosis.case import Case, make_case
-from diagnosis.creep import creeping
 from diagnosis.detect import Detection, detect, form_scores
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
@@ -17,6 +16,7 @@ from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.kit import make_kit
 from diagnosis.lost_frames import with_losses
+from diagnosis.near_rest import yielding
 from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.retune import Retune, retune
 from diagnosis.screen import look
@@ -36,7 +36,7 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
-ASKED = 4  # hypotheses beside which axes may creep
+ASKED = 4  # hypotheses beside which axes may yield
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -45,7 +45,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
     demand_wiring(seen.case, seen.retuned.fit, nominal_fit)
-    seen, found = _crept(*_searched(seen))
+    seen, found = _yielded(*_searched(seen))
     if found is None:
         return no_gap(seen, material, _holdout(seen, material))
     beyond = retune(seen.case, seen.retuned.fit)
@@ -81,9 +81,9 @@ def _searched(seen: Seen) -> tuple[Seen, Search]:
     return seen, search(seen.case, seen.retuned.fit, seen.case.kit.candidates, seen.ground, seen.looks, seen.lossy)
 
 
-def _crept(seen: Seen, found: Search) -> tuple[Seen, Search | None]:
-    """The same, or all anew with axes that creep where that explains the logs better; nothing is searched where no gap is left then."""
-    case = creeping(seen.case, (*found.tried[:ASKED], seen.retuned))
+def _yielded(seen: Seen, found: Search) -> tuple[Seen, Search | None]:
+    """The same, or all anew with axes that yield near rest where that explains the logs better; no search where no gap is left then."""
+    case = yielding(seen.case, (*found.tried[:ASKED], seen.retuned))
     if case is seen.case:
         return seen, found
     again = _looked_at(case, seen.checked)

@@ -23,7 +23,7 @@ IMITATION = "a re-tune of the plant's own parameters imitates these, so these da
 def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed | None) -> tuple[str, ...]:
     """All sentences."""
     return (
-        *_crept(case, chosen),
+        *_near_rest(case, chosen),
         *_moved(case, chosen),
         *_twins(case, weighed),
         *_imitated(looks, chosen),
@@ -48,16 +48,14 @@ def moved_effects(fit: Fit, far: float = FAR) -> list[Free]:
     return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]
 
 
-def _crept(case: Case, chosen: Tried) -> Iterator[str]:
+def _near_rest(case: Case, chosen: Tried) -> Iterator[str]:
     """What is supposed of friction near rest: found in these logs, or stated in the plant file as known exactly."""
     for name, values in chosen.fit.supposed.effects.items():
         effect = case.kit.effects[name]
         if not effect.names_a_gap and case.stated_sd[name] == dict.fromkeys(values, 0.0):
             size = effect.size
-            yield (
-                f"the {effect.place}'s friction builds up over {values[size.symbol]:.2g} {size.unit}: it creeps where "
-                "it would stick, which is no gap"
-            )
+            how = effect.story[0].lower() + effect.story[1:-1]
+            yield f"{effect.place}, no gap: {how} ({size.symbol} {values[size.symbol]:.2g} {size.unit})"
 
 
 def _moved(case: Case, chosen: Tried) -> Iterator[str]:

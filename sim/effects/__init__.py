@@ -12,6 +12,7 @@ from functools import lru_cache
 from sim.effects import (
     axial_inflow,
     backlash,
+    bristles,
     cable_spring,
     coulomb,
     creep,
@@ -57,6 +58,7 @@ FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
     load_friction.effects,
     friction_asymmetry.effects,
     creep.effects,
+    bristles.effects,
     hysteresis.effects,
     quadratic_drag.effects,
     cable_spring.effects,

@@ -62,7 +62,11 @@ def effects(model: Model) -> Iterator[Effect]:
 
 def _edit(model: Model, stiffness: sympy.Expr, z_0: sympy.Symbol, axis: str, what: str) -> Model:
     z = symbol(f"{what}_{axis}_{model.places.axes[axis].length_unit}")
-    velocity = axis_of(model, axis).velocity
-    rate = sympy.Abs(velocity) / z_0
-    model = with_state(model, z, (velocity - rate * z) / sympy.sqrt(1 + (SETTLING_S * rate) ** 2))
+    model = with_state(model, z, strain_rate(axis_of(model, axis).velocity, z, z_0))
     return with_torque(model, axis, -stiffness * z)
+
+
+def strain_rate(velocity: sympy.Expr, z: sympy.Symbol, z_0: sympy.Expr) -> sympy.Expr:
+    """z' of eq (3)."""
+    rate = sympy.Abs(velocity) / z_0
+    return (velocity - rate * z) / sympy.sqrt(1 + (SETTLING_S * rate) ** 2)

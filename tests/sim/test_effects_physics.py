@@ -42,6 +42,8 @@ VALUES: Mapping[str, Mapping[str, float]] = {
     "azimuth.stribeck": {"v_s": 0.4, "e": 3.0},
     "elevation.creep": {"v_c": 0.04},
     "azimuth.creep": {"v_c": 0.04},
+    "elevation.bristles": {"z_0": 0.009},
+    "azimuth.bristles": {"z_0": 0.009},
     "elevation.upper_stop": {"a": 0.3},
     "elevation.lower_stop": {"a": 1.2},
     "azimuth.upper_stop": {"a": 0.3},
