@@ -1,6 +1,6 @@
 """One case: a rig, its hidden effects, three runs, and the truth about them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,18 +8,14 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from blind.effects import Effect, Visited
-from blind.effects.effect import Shape
-from blind.manoeuvre import Style, draw_style, make_flight
-from blind.pilot import make_pilot, start_state
-from blind.rig import Rig, draw_rig
+from blind.bench import Bench, Logging, Plan, RigKind
+from blind.effect import Effect, Shape, Visited
+from blind.record import Loss, Model, Record
+from blind.rig import Rig
 from blind.sealed import Hold, TrueEffect, Truth
-from blind.severity import STEP_S, THIN, floor_rad, moved_rig, retune, rms, sensitivity, severity, severity_left
-from blind.truth import Flight, Model, Record, fly, predict
+from blind.severity import STEP_S, floor_rad, moved_rig, retune, rms, sensitivity, severity, severity_left
 
 Array = NDArray[np.float64]
-RUN_S = 60.0
-TRIAL_S = 20.0
 TRIALS = 5
 STOP_SHARE = 0.1
 ATTEMPTS = 20
@@ -37,72 +33,36 @@ class Injected:
     trial_severity: float
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What a case is to hold: its effects with a wanted severity each."""
-
-    kind: str
-    effects: tuple[Effect, ...]
-    targets: tuple[float, ...]
-    excited: bool
-    rotor_speeds: bool
-
-
-@dataclass(frozen=True, eq=False)
-class Bench:
-    """The rig as stated, the rig as it is (without effects), the controller and the way to fly; `absent` is stated as 0."""
-
-    nominal: Rig
-    true: Rig
-    pilot: Any
-    style: Style
-    absent: tuple[str, ...]
-
-
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Three runs (training twice, hold-out), what the plant file states as absent, and the truth."""
+    """Runs (training, hold-out last), how they are logged, what the plant file states otherwise, and the truth."""
 
     records: tuple[Record, ...]
-    absent: tuple[str, ...]
-    style: Style
+    logging: Logging
+    restated: Mapping[tuple[str, str], str]
     truth: Truth
 
 
-def build_case(nominal: Rig, plan: Plan, seed: Sequence[int]) -> Case:
+def build_case(kind: RigKind, nominal: Rig, plan: Plan, seed: Sequence[int]) -> Case:
     """Draw until the rig stays off its stops and each effect has about its wanted severity; the same seed gives the same case."""
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng([*seed, attempt])
         if attempt == LIVELY_FROM and plan.effects:
             plan = replace(plan, excited=True)
-        bench = _draw_bench(nominal, plan, rng)
+        bench = kind.draw_bench(nominal, plan, rng)
         wanted = zip(plan.effects, plan.targets, strict=True)
         milder = 0.75 ** max(0, attempt - CONTENT_FROM)
         sized = [_sized(bench, effect, milder * target, rng, attempt) for effect, target in wanted]
         injected = [entry for entry in sized if entry is not None]
         if len(injected) < len(sized):
             continue
-        style = replace(bench.style, loss=_loss(injected))
-        records = tuple(_run(bench, injected, make_flight(style, rng)) for _ in range(3))
+        loss = _loss(injected)
+        flights = (bench.lab.flight(rng, loss, run) for run in range(bench.training + 1))
+        records = tuple(_run(bench, injected, flight) for flight in flights)
         if all(_flown(record) for record in records) and _as_expected(bench, injected, records, attempt):
-            return Case(records, bench.absent, style, _truth(bench, plan, injected, records))
+            return Case(records, bench.logging, bench.restated, _truth(bench, plan, injected, records))
     names = " + ".join(effect.name for effect in plan.effects)
     raise RuntimeError(f"no flyable draw of {names or 'a rig without effect'} in {ATTEMPTS} attempts")
-
-
-def _draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
-    stated = [name for effect in plan.effects for name in effect.absent]
-    # Now and then a plant file states no dry friction and the rig has none: an absent term alone must not tell anything.
-    stated += [name for name in ("b_cE", "b_cA") if rng.random() < 0.1 and name not in stated]
-    absent = tuple(sorted(stated))
-    zero = {name: np.zeros(1) for name in absent}
-    known = replace(nominal.with_values(zero), sds={**nominal.sds, **zero})
-    exact = plan.kind == "nominal" and rng.random() < 0.25
-    true = known if exact else draw_rig(known, rng)
-    style = draw_style(rng, plan.excited, RUN_S)
-    if any(effect.needs == "reversal" for effect in plan.effects):
-        style = replace(style, dither_V=(style.dither_V[0], 1.5 + 1.5 * style.excited), azimuth_rad=1.4)
-    return Bench(known, true, make_pilot(known, float(rng.uniform(0.85, 1.15))), style, absent)
 
 
 def _model(bench: Bench, injected: Sequence[Injected], leave_out: int | None = None) -> Model:
@@ -119,28 +79,28 @@ def _model(bench: Bench, injected: Sequence[Injected], leave_out: int | None = N
     return Model(bench.true.with_values(coulomb), settings, placed=lacks_sensor, loses=loses)
 
 
-def _run(bench: Bench, injected: Sequence[Injected], flight: Flight) -> Record:
+def _run(bench: Bench, injected: Sequence[Injected], flight: Any) -> Record:
     """Shadows: the rig itself, without any effect, then without each effect where there are several."""
     whole = _model(bench, injected)
     single = range(len(injected)) if len(injected) > 1 else ()
     shadows = [whole, _model(bench, injected, -1), *(_model(bench, injected, i) for i in single)]
-    start = start_state(bench.nominal, flight.reference[0, 0], flight.reference[0, 1])
-    return fly(whole, bench.nominal, bench.pilot, flight, start, shadows)
+    return bench.lab.fly(whole, shadows, flight)
 
 
 def _flown(record: Record) -> bool:
     return not record.failed and record.stop_share <= STOP_SHARE
 
 
-def _loss(injected: Sequence[Injected]) -> float:
-    return sum(min(entry.effect.loss * entry.m, 0.6) for entry in injected)
+def _loss(injected: Sequence[Injected]) -> Loss:
+    share = sum(min(entry.effect.loss * entry.m, 0.6) for entry in injected)
+    return Loss(share, max((entry.shape.get("burst_frames", 1.0) for entry in injected), default=1.0))
 
 
 def _as_expected(bench: Bench, injected: Sequence[Injected], records: Sequence[Record], attempt: int) -> bool:
     """Whether the whole runs came out about as severe as the trials: one hit on a stop can make an effect look huge."""
     if not injected:
         return True
-    found = severity(bench.nominal, records[:2], 1, _coarse(injected))
+    found = severity(bench.nominal, records[:-1], 1, _coarse(injected))
     expected = float(np.sqrt(sum(entry.trial_severity**2 for entry in injected)))
     return found <= 4.0 * expected and (found >= 0.25 * expected or attempt >= CONTENT_FROM)
 
@@ -179,8 +139,7 @@ def _sized(bench: Bench, effect: Effect, target: float, rng: Generator, attempt:
 def _tried(bench: Bench, effect: Effect, m: float, shape: Shape, seed: int) -> Injected | None:
     """The effect with its severity on a short run; None when the rig did not stay in its range."""
     entry = Injected(effect, m, shape, 0.0)
-    style = replace(bench.style, duration_s=TRIAL_S, loss=_loss([entry]))
-    record = _run(bench, [entry], make_flight(style, np.random.default_rng(seed)))
+    record = _run(bench, [entry], bench.lab.flight(np.random.default_rng(seed), _loss([entry]), None))
     return (
         replace(entry, trial_severity=severity(bench.nominal, [record], 1, _coarse([entry])))
         if _flown(record)
@@ -189,8 +148,8 @@ def _tried(bench: Bench, effect: Effect, m: float, shape: Shape, seed: int) -> I
 
 
 def _truth(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Sequence[Record]) -> Truth:
-    rig, train, hold, coarse = bench.nominal, records[:2], records[2], _coarse(injected)
-    slopes = [sensitivity(bench.nominal, record) for record in train]
+    rig, train, hold, coarse = bench.nominal, records[:-1], records[-1], _coarse(injected)
+    slopes = [sensitivity(bench.lab, bench.nominal, record) for record in train]
     visited = _visited(bench, train)
     shadows = [2 + i if len(injected) > 1 else 1 for i in range(len(injected))]
     alone = [severity(rig, train, k, _coarse([e])) for k, e in zip(shadows, injected, strict=True)]
@@ -204,7 +163,7 @@ def _truth(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Sequ
         hold=_hold(bench, train, hold, slopes),
         excited=plan.excited,
         rotor_speeds=plan.rotor_speeds,
-        defects=("jitter",) if bench.style.jitter else (),
+        defects=("jitter",) if bench.lab.jitter else (),
     )
 
 
@@ -226,10 +185,11 @@ def _described(entry: Injected, size: float, left: float, visited: Visited) -> T
 def _hold(bench: Bench, train: Sequence[Record], hold: Record, slopes: Sequence[Array]) -> Hold:
     """The bars of the hold-out run; the re-tune is fitted on the training runs, re-linearised at its own answer."""
     floor = floor_rad(bench.nominal, train)
+    predict = bench.lab.predict
     stated = predict(bench.nominal, hold, STEP_S)
     rig, total = bench.nominal, np.zeros(len(slopes[0]))
     for _ in range(3):
-        gaps = [(record.y_rad - predict(rig, record, STEP_S))[::THIN] for record in train]
+        gaps = [(record.y_rad - predict(rig, record, STEP_S))[:: record.thin] for record in train]
         linear = [gap + np.tensordot(total, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
         total = retune(linear, slopes, floor)
         rig = moved_rig(bench.nominal, total)
@@ -261,4 +221,5 @@ def _visited(bench: Bench, records: Sequence[Record]) -> Visited:
         u_T=u[:, 1],
         gravity_Nm=bench.true.value("tau_gE"),
         tail_thrust=lambda w: np.sign(w) * thrust(np.abs(w)),
+        start_s=bench.logging.start_s,
     )

@@ -14,6 +14,7 @@ from blind.case import build_case
 from blind.files import case_files, draw_defects
 from blind.mix import KINDS, plans
 from blind.rig import load_rig, read_rig
+from blind.rigs import FIRST, kind_of_rig
 from blind.sealed import CASES_FILE, TRUTH_FILE, seal, truth_from_json, truth_to_json
 from records.errors import BadInput
 from records.files import write_atomic
@@ -23,13 +24,14 @@ PLANT = Path(__file__).resolve().parent.parent / "plants" / "ce150.toml"
 
 @dataclass(frozen=True)
 class Order:
-    """All that one case depends on: which of a benchmark's cases it is, and the text of the plant file."""
+    """All that one case depends on: which of a benchmark's cases it is, the text of the plant file, the kind of rig."""
 
     seed: int
     index: int
     cases: int
     kinds: tuple[str, ...]
     plant: str
+    rig: str
 
     @property
     def name(self) -> str:
@@ -42,22 +44,30 @@ Each = Callable[[Callable[[Order], Made], Sequence[Order]], Iterable[Made]]
 
 
 def make(
-    seed: int, out: Path, cases: int = 60, kinds: Sequence[str] = KINDS, plant: Path = PLANT, each: Each = map
+    seed: int,
+    out: Path,
+    cases: int = 60,
+    kinds: Sequence[str] = KINDS,
+    plant: Path = PLANT,
+    each: Each = map,
+    rig: str = FIRST,
 ) -> Path:
-    """Write `cases` cases of the given kinds into the folder `out`, the same bytes for the same seed, and return cases.json.
+    """Write `cases` cases of some kinds with one kind of rig into the folder `out`, the same bytes for the same seed; returns cases.json.
 
     `each` makes the cases, in their order, as `map` does.
 
-    Layout: case-XXXX/ (plant.toml, train-1, train-2 and hold-1 as .csv and .toml, README.md), cases.json with a commitment to each
+    Layout: case-XXXX/ (plant.toml, train-1 and so on and hold-1 as .csv and .toml, README.md), cases.json with a commitment to each
     truth, sealed/truth.json. An earlier benchmark in `out` is replaced, as a whole and only when the new one is complete.
-    Raises BadInput for a plant that is no CE150, an unknown kind, a negative seed, an `out` that holds something else.
+    Raises BadInput for a plant that is no CE150, an unknown kind or rig, a negative seed, an `out` that holds something else.
     """
     if seed < 0:
         raise BadInput("seed", "--seed", str(seed), "a number from 0 up", "choose another seed")
     _, text = load_rig(plant)
-    plans(cases, kinds, np.random.default_rng([seed, 0]))  # refuses what cannot be dealt before anything is flown
+    plans(
+        cases, kinds, kind_of_rig(rig).catalogue, np.random.default_rng([seed, 0])
+    )  # refuses what cannot be dealt before anything is flown
     check_replaceable(out)
-    orders = [Order(seed, index, cases, tuple(kinds), text) for index in range(1, cases + 1)]
+    orders = [Order(seed, index, cases, tuple(kinds), text, rig) for index in range(1, cases + 1)]
     work = _work_folder(out)
     try:
         truths = {}
@@ -80,8 +90,9 @@ def make(
 def make_case(order: Order) -> Made:
     """One case, without company: its files, and its truth."""
     seed = (order.seed, order.index)
-    plan = plans(order.cases, order.kinds, np.random.default_rng([order.seed, 0]))[order.index - 1]
-    case = build_case(read_rig(order.plant, order.name), plan, (*seed, 1))
+    kind = kind_of_rig(order.rig)
+    plan = plans(order.cases, order.kinds, kind.catalogue, np.random.default_rng([order.seed, 0]))[order.index - 1]
+    case = build_case(kind, read_rig(order.plant, order.name), plan, (*seed, 1))
     rng = np.random.default_rng([*seed, 2])
     defects = draw_defects(rng)
     files = case_files(order.name, case, order.plant, defects, rng)

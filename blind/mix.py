@@ -6,8 +6,8 @@ from itertools import cycle, islice
 import numpy as np
 from numpy.random import Generator
 
-from blind.case import Plan
-from blind.effects import KNOWN, OUTSIDE, TIMING, Effect
+from blind.bench import Catalogue, Plan
+from blind.effect import Effect
 from records.errors import BadInput
 
 # Share of each kind and the range of severities that is wanted for each of its effects.
@@ -24,7 +24,7 @@ KINDS = tuple(SHARES)
 COUNTS = {"nominal": 0, "double": 2, "triple": 3}
 
 
-def plans(cases: int, kinds: Sequence[str], rng: Generator) -> list[Plan]:
+def plans(cases: int, kinds: Sequence[str], catalogue: Catalogue, rng: Generator) -> list[Plan]:
     """`cases` plans in random order, kinds by their shares; raises BadInput for an unknown kind or no case."""
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:
@@ -32,7 +32,7 @@ def plans(cases: int, kinds: Sequence[str], rng: Generator) -> list[Plan]:
         raise BadInput("kind of case", "--kinds", got, f"some of {', '.join(KINDS)}", "name kinds with commas between")
     if cases < 1:
         raise BadInput("number of cases", "--cases", str(cases), "at least 1", "ask for a positive number")
-    dealt = [plan for kind in kinds for plan in _of_kind(kind, _count(kind, kinds, cases), rng)]
+    dealt = [plan for kind in kinds for plan in _of_kind(kind, _count(kind, kinds, cases), catalogue, rng)]
     order = rng.permutation(len(dealt))
     return [dealt[index] for index in order]
 
@@ -48,8 +48,8 @@ def _count(kind: str, kinds: Sequence[str], cases: int) -> int:
     return counts[kind]
 
 
-def _of_kind(kind: str, count: int, rng: Generator) -> list[Plan]:
-    pool = {"outside": OUTSIDE, "timing": TIMING}.get(kind, KNOWN)
+def _of_kind(kind: str, count: int, catalogue: Catalogue, rng: Generator) -> list[Plan]:
+    pool = {"outside": catalogue.outside, "timing": catalogue.timing}.get(kind, catalogue.known)
     groups = _groups(pool, COUNTS.get(kind, 1), count, rng)
     return [_plan(kind, group, index, rng) for index, group in enumerate(groups)]
 

@@ -1,7 +1,7 @@
 """The CE150 as this benchmark knows it: numbers read from a plant file, drawn within their stated spread."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -118,12 +118,18 @@ def uncertain(nominal: Rig) -> list[tuple[str, int, float]]:
     return [(name, index, float(sd)) for name, sds in nominal.sds.items() for index, sd in enumerate(sds) if sd > 0.0]
 
 
-def without_friction(text: str, names: tuple[str, ...]) -> str:
-    """The plant file's text with value and sd of `names` set to 0: the contract's way to say that a term is absent."""
-    lines, inside = [], False
+def stated_zero(names: Sequence[str]) -> dict[tuple[str, str], str]:
+    """What a plant file states of absent parameters, value and sd 0: (table, key) -> value, for `restated`."""
+    return {(f"parameters.{name}", key): "0.0" for name in names for key in ("value", "sd")}
+
+
+def restated(text: str, changes: Mapping[tuple[str, str], str]) -> str:
+    """The plant file's text with some values replaced: (table, key) -> value; the comment behind a replaced one goes."""
+    lines, table = [], ""
     for line in text.split("\n"):
         if line.startswith("["):
-            inside = any(line.startswith(f"[parameters.{name}]") for name in names)
+            table = line[1:].partition("]")[0]
         key = line.split("=")[0].strip()
-        lines.append(f"{key} = 0.0" if inside and key in ("value", "sd") else line)
+        value = changes.get((table, key))
+        lines.append(line if value is None else f"{key} = {value}")
     return "\n".join(lines)

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from blind.bench import Lab
+from blind.record import Record
 from blind.rig import Rig, uncertain
-from blind.truth import Record, predict
 
 Array = NDArray[np.float64]
 SLOPE_STEP_S = 2e-3
 STEP_S = 5e-4
-THIN = 4
 
 
 def rms(errors: Array) -> Array:
@@ -35,14 +35,14 @@ def severity(rig: Rig, records: Sequence[Record], shadow: int, coarse_rad: Array
     return float(np.sqrt(np.sum(squares)))
 
 
-def sensitivity(rig: Rig, record: Record) -> Array:
-    """Change of the 1 s predictions per sd of each uncertain parameter, every fourth row: (parameters, rows, outputs)."""
-    base = predict(rig, record, SLOPE_STEP_S)[::THIN]
+def sensitivity(lab: Lab, rig: Rig, record: Record) -> Array:
+    """Change of the 1 s predictions per sd of each uncertain parameter, rows of 40 ms: (parameters, rows, outputs)."""
+    base = lab.predict(rig, record, SLOPE_STEP_S)[:: record.thin]
     columns = []
     for name, index, sd in uncertain(rig):
         moved = rig.values[name].copy()
         moved[index] += 0.3 * sd
-        shifted = predict(rig.with_values({name: moved}), record, SLOPE_STEP_S)[::THIN]
+        shifted = lab.predict(rig.with_values({name: moved}), record, SLOPE_STEP_S)[:: record.thin]
         columns.append((shifted - base) / 0.3)
     return np.array(columns)
 
@@ -51,7 +51,7 @@ def retune(gaps: Sequence[Array], slopes: Sequence[Array], floor: Array) -> Arra
     """Parameter steps in sd that best explain `gaps` (rows, outputs), each step held by its spread: ridge regression."""
     A = np.concatenate([(s / floor).reshape(len(s), -1) for s in slopes], axis=1).T
     b = np.concatenate([(gap / floor).ravel() for gap in gaps])
-    # Rows within one window repeat one another: THIN rows of 10 ms count as they stand, the prior as one row per parameter.
+    # Rows within one window repeat one another: rows of 40 ms count as they stand, the prior as one row per parameter.
     return np.asarray(np.linalg.solve(A.T @ A + np.eye(A.shape[1]), A.T @ b))
 
 
@@ -60,7 +60,7 @@ def severity_left(
 ) -> float:
     """Severity of what re-tuning the parameters within their spread cannot explain."""
     floor = floor_rad(rig, records)
-    gaps = [(record.shadow[:, 0] - record.shadow[:, shadow])[::THIN] for record in records]
+    gaps = [(record.shadow[:, 0] - record.shadow[:, shadow])[:: record.thin] for record in records]
     steps = retune(gaps, slopes, floor)
     left = [gap - np.tensordot(steps, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
     return float(np.sqrt(np.sum((rms(np.concatenate(left)) ** 2 + coarse_rad**2 / 12.0) / floor**2)))

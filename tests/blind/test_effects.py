@@ -5,13 +5,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from blind.effects import KNOWN, OUTSIDE, TIMING, Effect, Visited
+from blind.effect import Effect, Visited
+from blind.first.effects import CATALOGUE
+from blind.record import Record
 from blind.rig import Rig
-from blind.truth import Record
 from tests.blind.conftest import calm_flight, lively_flight
 
 Flown = Callable[..., Record]
-ALL = (*KNOWN, *TIMING, *OUTSIDE)
+KNOWN, OUTSIDE = CATALOGUE.known, CATALOGUE.outside
+ALL = (*KNOWN, *CATALOGUE.timing, *OUTSIDE)
 # The others act through lost commands, the rig's own friction, or the counts.
 SIMULATED = [e for e in ALL if not e.loss and not e.coulomb and not e.name.endswith("sensor.quantization")]
 
@@ -223,7 +225,7 @@ def visited(rig: Rig, flown: Flown) -> Visited:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("effect", [*KNOWN, *TIMING], ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", [*KNOWN, *CATALOGUE.timing], ids=lambda effect: effect.name)
 def test_every_library_effect_has_finite_parameters_in_the_librarys_formula(visited: Visited, effect: Effect) -> None:
     found = effect.equivalent(1.0, effect.draw(np.random.default_rng(2)), visited)
     assert any(entry.main for entry in found.values())

@@ -10,6 +10,7 @@ import pytest
 
 from blind import KINDS, make
 from blind.mix import plans
+from blind.rigs import FIRST, kind_of_rig
 from blind.sealed import open_seal
 from records.errors import BadInput
 from records.log import load_log
@@ -117,7 +118,7 @@ def test_bad_requests_are_refused_and_leave_nothing_behind(tmp_path: Path) -> No
 
 
 def test_kinds_come_by_their_shares_and_effects_go_round_before_one_repeats() -> None:
-    dealt = plans(400, KINDS, np.random.default_rng(0))
+    dealt = plans(400, KINDS, kind_of_rig(FIRST).catalogue, np.random.default_rng(0))
     counts = {kind: sum(plan.kind == kind for plan in dealt) for kind in KINDS}
     assert counts == {
         "nominal": 80,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from blind import markdown, score, to_json
-from blind.effects.effect import Equivalent
+from blind.effect import Equivalent
 from blind.sealed import Hold, TrueEffect, Truth, seal
 from blind.statistics import calibration_error, clopper_pearson, reliability
 

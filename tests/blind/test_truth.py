@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind.pilot import rest, rotor_slope
-from blind.rig import Rig, draw_rig, without_friction
-from blind.truth import Record, predict
+from blind.first.pilot import rest, rotor_slope
+from blind.first.truth import predict
+from blind.record import Record
+from blind.rig import Rig, draw_rig, restated, stated_zero
 from records.plant import load_plant
 from sim.bind import bind
 from sim.simulate import simulate
@@ -82,7 +83,7 @@ def test_drawn_parameters_stay_within_two_and_a_half_sd_and_friction_stays_posit
 
 def test_an_absent_friction_is_stated_as_zero_and_the_file_stays_a_plant(tmp_path: Path) -> None:
     path = tmp_path / "plant.toml"
-    path.write_text(without_friction(PLANT.read_text(), ("b_cA",)))
+    path.write_text(restated(PLANT.read_text(), stated_zero(["b_cA"])))
     plant, stated = load_plant(path), load_plant(PLANT)
     assert plant.parameters["b_cA"].value == plant.parameters["b_cA"].sd == 0.0
     assert plant.parameters["b_cE"] == stated.parameters["b_cE"]

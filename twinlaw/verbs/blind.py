@@ -21,13 +21,14 @@ from twinlaw.diagnosing_each import answers, questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds; diagnose, baseline, score DIR RESULTS; --workers, --cluster; --json."""
+    """make --seed --out --cases --kinds --rig; diagnose, baseline, score DIR RESULTS; --workers, --cluster; --json."""
     verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score", required=True)
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
     maker.add_argument("--cases", type=options.count, default=60, help="default: %(default)s")
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
+    maker.add_argument("--rig", default=blind.FIRST, help=f"kind of rig: {', '.join(blind.RIGS)}; default: %(default)s")
     maker.set_defaults(part=_make)
     asker = verbs.add_parser(
         "diagnose", help="diagnose all cases that RESULTS does not answer yet, side by side, with the time of each"
@@ -66,7 +67,7 @@ def run(chosen: argparse.Namespace) -> int:
 def _make(chosen: argparse.Namespace) -> int:
     kept = chosen.out.parent / f".{chosen.out.name}.unfinished"
     each = sweeping.each("flown", sweeping.crew_of(chosen), kept, lambda order: order.name)
-    path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")), each=each)
+    path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")), each=each, rig=chosen.rig)
     shutil.rmtree(kept, ignore_errors=True)
     print(json.dumps({"cases": str(path)}) if chosen.json else f"{path}  {chosen.cases} cases, seed {chosen.seed}")
     return 0

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.random import Generator
 
-from blind.effects.effect import (
+from blind.effect import (
     Effect,
     Equivalents,
     Settings,

@@ -1,6 +1,6 @@
 """The benchmark's own simulation (blind/c): built once, flown with any effects, with shadows that leave effects out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -9,40 +9,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from blind.native import FLAGS, pointer, set_fields
+from blind.record import Model, Record
 from blind.rig import Rig
 from toolchain.host import build_shared, load_shared
 
 C_DIR = Path(__file__).resolve().parent / "c"
 SOURCES = ("driver.c", "body.c", "sensor.c", "pilot.c", "flight.c")
-# No -march: the same seed must give the same bytes on another machine of this kind.
-FLAGS = (
-    "-O3",
-    "-std=c11",
-    "-D_GNU_SOURCE",
-    "-ffp-contract=off",
-    "-fno-math-errno",
-    "-fno-sanitize=undefined",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-)
+PERIOD_S = 0.01
 WINDOW_ROWS = 100
 SUBSTEPS = 100
 GUSTS_PER_ROW = 10
 PLACED, LOSES = 1, 2
 ROW_SHAPES = {"t_s": (), "u_V": (2,), "y_rad": (2,), "exact_rad": (2,), "apparent": (6,)}
 Array = NDArray[np.float64]
-Settings = Mapping[tuple[str, int], float]
-
-
-@dataclass(frozen=True)
-class Model:
-    """A rig with settings of effects: (field of effects_t, index, -1 for a number) -> value. `placed`: see flight.c, shadows."""
-
-    rig: Rig
-    settings: Settings
-    placed: bool = False
-    loses: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,22 +42,6 @@ class Flight:
         return len(self.substeps)
 
 
-@dataclass(frozen=True, eq=False)
-class Record:
-    """What a run gives from time 0 on, n rows: times, commands (n, 2) V, counted and exact angles (n, 2) rad, apparent state (n, 6):
-    psi psi' phi phi' omega_M omega_T; each shadow's angles (n, shadows, 2). `stop_share` of the time on an elevation stop."""
-
-    t_s: Array
-    u_V: Array
-    y_rad: Array
-    exact_rad: Array
-    apparent: Array
-    shadow: Array
-    reference: Array
-    stop_share: float
-    failed: bool
-
-
 @cache
 def library() -> tuple[Any, Any]:
     """(ffi, lib) of the compiled simulation."""
@@ -91,22 +55,24 @@ def fly(model: Model, nominal: Rig, pilot: Any, flight: Flight, start: Array, sh
     count, rows = len(shadows), flight.rows
     arrays = {name: np.zeros((rows, *shape)) for name, shape in ROW_SHAPES.items()}
     arrays["shadow"] = np.zeros((rows, count, 2))
-    out = ffi.new("record_t *", {name: _pointer(ffi, array) for name, array in arrays.items()})
+    out = ffi.new("record_t *", {name: pointer(ffi, array) for name, array in arrays.items()})
     given = ffi.new("flight_t *", _flight_fields(ffi, flight))
     rigs = ffi.new("rig_t[]", [shadow.rig.fields() for shadow in shadows])
     effects = ffi.new("effects_t[]", count)
     for index, shadow in enumerate(shadows):
-        _set(effects[index], shadow.settings)
+        set_fields(effects[index], shadow.settings)
     own = ffi.new("effects_t *")
-    _set(own, model.settings)
+    set_fields(own, model.settings)
     mode = ffi.new("unsigned char[]", [PLACED * s.placed + LOSES * s.loses for s in shadows])
     lib.fly(
         ffi.new("rig_t *", model.rig.fields()), own, ffi.new("rig_t *", nominal.fields()), pilot, given,
-        _pointer(ffi, start), count, rigs, effects, mode, WINDOW_ROWS, out,
+        pointer(ffi, start), count, rigs, effects, mode, WINDOW_ROWS, out,
     )  # fmt: skip
     log = {name: array[flight.settle :] for name, array in arrays.items()}
     reference = flight.reference[flight.settle :]
-    return Record(**log, reference=reference, stop_share=out.at_stop / rows / SUBSTEPS, failed=bool(out.failed))
+    return Record(
+        **log, reference=reference, stop_share=out.at_stop / rows / SUBSTEPS, failed=bool(out.failed), period_s=PERIOD_S
+    )
 
 
 def predict(rig: Rig, record: Record, step_s: float) -> Array:
@@ -115,14 +81,10 @@ def predict(rig: Rig, record: Record, step_s: float) -> Array:
     out = np.zeros_like(record.y_rad)
     t_s, u_V, apparent = (np.ascontiguousarray(x) for x in (record.t_s, record.u_V, record.apparent))
     lib.predict(
-        ffi.new("rig_t *", rig.fields()), len(t_s), _pointer(ffi, t_s), _pointer(ffi, u_V), _pointer(ffi, apparent),
-        WINDOW_ROWS, step_s, _pointer(ffi, out),
+        ffi.new("rig_t *", rig.fields()), len(t_s), pointer(ffi, t_s), pointer(ffi, u_V), pointer(ffi, apparent),
+        WINDOW_ROWS, step_s, pointer(ffi, out),
     )  # fmt: skip
     return out
-
-
-def _pointer(ffi: Any, array: Array) -> Any:
-    return ffi.cast("double *", array.ctypes.data)
 
 
 def _flight_fields(ffi: Any, flight: Flight) -> dict[str, Any]:
@@ -130,16 +92,8 @@ def _flight_fields(ffi: Any, flight: Flight) -> dict[str, Any]:
         "rows": flight.rows,
         "settle": flight.settle,
         "substeps": ffi.cast("int *", flight.substeps.ctypes.data),
-        "reference": _pointer(ffi, flight.reference),
-        "dither_V": _pointer(ffi, flight.dither_V),
-        "gust_Nm": _pointer(ffi, flight.gust_Nm),
+        "reference": pointer(ffi, flight.reference),
+        "dither_V": pointer(ffi, flight.dither_V),
+        "gust_Nm": pointer(ffi, flight.gust_Nm),
         "lost": ffi.cast("unsigned char *", flight.lost.ctypes.data),
     }
-
-
-def _set(struct: Any, settings: Settings) -> None:
-    for (field, index), value in settings.items():
-        if index < 0:
-            setattr(struct, field, value)
-        else:
-            getattr(struct, field)[index] = value

@@ -7,10 +7,9 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from blind.truth import GUSTS_PER_ROW, SUBSTEPS, Flight
+from blind.first.truth import GUSTS_PER_ROW, PERIOD_S, SUBSTEPS, Flight
 
 Array = NDArray[np.float64]
-PERIOD_S = 0.01
 SETTLE_ROWS = 300
 REFERENCES = ("steps", "ramps", "sines", "multisine")
 DITHERS = ("prbs", "multisine")

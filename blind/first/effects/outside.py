@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.random import Generator
 
-from blind.effects.effect import Effect, Settings, Shape, sign
+from blind.effect import Effect, Settings, Shape, sign
 
 
 def _outside(

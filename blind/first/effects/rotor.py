@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.random import Generator
 
-from blind.effects.effect import (
+from blind.effect import (
     Effect,
     Equivalent,
     Equivalents,

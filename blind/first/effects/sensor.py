@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from numpy.random import Generator
 
-from blind.effects.effect import Effect, Equivalent, Equivalents, Settings, Shape, Visited, relative, sign
+from blind.effect import Effect, Equivalent, Equivalents, Settings, Shape, Visited, relative, sign
 
 SENSORS = ("psi_sensor", "phi_sensor")
 ANGLES = ("psi", "phi")

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.random import Generator
 
-from blind.effects.effect import Effect, Equivalents, Settings, Shape, Visited, fitted, relative
+from blind.effect import Effect, Equivalents, Settings, Shape, Visited, fitted, relative
 
 ROTORS = ("main", "tail")
 INPUTS = ("u_M", "u_T")

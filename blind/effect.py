@@ -15,7 +15,10 @@ Settings = Mapping[tuple[str, int], float]
 
 @dataclass(frozen=True, eq=False)
 class Visited:
-    """The samples that a case's training runs went through: angles, rates, rotor speeds, commands, times; SI units, shape (n,)."""
+    """The samples that a case's training runs went through: angles, rates, rotor speeds, commands, times; SI units, shape (n,).
+
+    Times count from the first row, to which the logs give the time `start_s`.
+    """
 
     t_s: Array
     psi: Array
@@ -28,6 +31,7 @@ class Visited:
     u_T: Array
     gravity_Nm: float
     tail_thrust: Callable[[Array], Array]
+    start_s: float = 0.0
 
     def angle(self, axis: int) -> Array:
         """Angle of axis 0 (elevation) or 1 (azimuth)."""

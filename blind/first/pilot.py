@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.signal import place_poles
 
+from blind.first.truth import library
 from blind.rig import Rig
-from blind.truth import library
 
 Array = NDArray[np.float64]
 POINTS = 9
