@@ -125,3 +125,13 @@ def scale_of(formula: Array, target: Array) -> float:
 def sign(rng: Generator) -> float:
     """+1 or -1."""
     return 1.0 if rng.random() < 0.5 else -1.0
+
+
+def nearest_rectangle(push: Callable[[Array], Array]) -> tuple[float, float]:
+    """(height, width) of the rectangle in the middle of a pulse over phases 0 to 1 that comes nearest to it."""
+    phase = np.linspace(0.0, 1.0, 4001)
+    height = push(phase)
+    widths = np.linspace(0.3, 1.0, 141)
+    area = np.array([height[np.abs(phase - 0.5) <= width / 2].sum() / 4001 for width in widths])
+    best = int(np.argmax(area**2 / widths))
+    return float(area[best] / widths[best]), float(widths[best])

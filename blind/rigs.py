@@ -1,11 +1,11 @@
 """The kinds of rig that a benchmark can be made of, by name."""
 
-from blind import first
+from blind import first, second
 from blind.bench import RigKind
 from records.errors import BadInput
 
 FIRST = "first"
-RIGS = {FIRST: first.KIND}
+RIGS = {FIRST: first.KIND, "second": second.KIND}
 
 
 def kind_of_rig(name: str) -> RigKind:

@@ -12,6 +12,7 @@ from blind.effect import (
     Shape,
     Visited,
     fitted,
+    nearest_rectangle,
     relative,
     scale_of,
     shape_only,
@@ -129,14 +130,10 @@ def _pulse(axis: int) -> Effect:
     """A push that swells and fades here, a rectangle in the library: the rectangle of the same middle that fits best."""
 
     def equivalent(m: float, shape: Shape, visited: Visited) -> Equivalents:
-        phase = np.linspace(0.0, 1.0, 4001)
-        push = np.sqrt(np.sin(np.pi * phase))
-        widths = np.linspace(0.3, 1.0, 141)
-        area = np.array([push[np.abs(phase - 0.5) <= width / 2].sum() / 4001 for width in widths])
-        best = int(np.argmax(area**2 / widths))
-        duration = widths[best] * shape["long_s"]
+        height, width = nearest_rectangle(lambda phase: np.sqrt(np.sin(np.pi * phase)))
+        duration = width * shape["long_s"]
         return {
-            "torque": relative(3e-3 * m * shape["sign"] * area[best] / widths[best]),
+            "torque": relative(3e-3 * m * shape["sign"] * height),
             "t_0": shape_only(shape["start_s"] + 0.5 * (shape["long_s"] - duration), duration),
             "duration": shape_only(duration, duration),
         }

@@ -1,0 +1,11 @@
+"""The second kind of rig: Runge-Kutta steps of 125 us, friction by one of three laws, PID, cascade or state feedback, rows of 5 to 20 ms.
+
+It shares with the first only what a case is and how it is sized and sealed: motion, friction, controllers, manoeuvres, sensors and the
+formulas of its effects are its own.
+"""
+
+from blind.bench import RigKind
+from blind.second.effects import CATALOGUE
+from blind.second.lab import draw_bench
+
+KIND = RigKind(CATALOGUE, draw_bench)

@@ -1,0 +1,120 @@
+/* From an axis to the number that its encoder gives. */
+#include <math.h>
+
+#include "rig.h"
+
+enum { PAST_LENGTH = 1024 };
+
+/* The encoder's own angle and rate: those of the arm, or of the hub that it drives through a spring. */
+static void shaft(const effects_t *fx, const state_t *s, int axis, double *angle, double *rate)
+{
+    int at = fx->mass_reads[axis] != 0.0 ? 6 + 2 * axis : 2 * axis;
+    double x = s->x[at], v = s->x[at + 1], t = s->t_s > 0.0 ? s->t_s : 0.0;
+    double bent = 1.0 + fx->scale_error[axis] * (1.0 + fx->scale_bend[axis] * fabs(x));
+    *angle = x * bent + fx->offset_rad[axis] * (1.0 + fx->offset_swing[axis] * sin(x)) + fx->pickup_rad_V[axis] * s->volts[axis];
+    *angle += s->missed_rad[axis] + fx->wander_rad_s[axis] * t;
+    *rate = v * (bent + fx->scale_error[axis] * fx->scale_bend[axis] * fabs(x));
+}
+
+static double filtered(const effects_t *fx, state_t *s, int axis, double angle, double dt)
+{
+    double first_s = fx->sensor_lag_s[axis] * fx->sensor_split[axis], second_s = fx->sensor_lag_s[axis] - first_s;
+    double *y = s->filtered[axis];
+    y[0] += (angle - y[0]) * -expm1(-dt / first_s);
+    y[1] += (y[0] - y[1]) * -expm1(-dt / second_s);
+    return y[1];
+}
+
+/* The bus asks for the angle now and then: how old the answer is differs from 10 ms to 10 ms. */
+static void delayed(const effects_t *fx, state_t *s, int axis, double dt, double *angle, double *rate)
+{
+    s->past[axis][s->past_index] = *angle;
+    s->past_rate[axis][s->past_index] = *rate;
+    double luck = 2.0 * scatter((int)floor(s->t_s / 0.01) + 977 * axis) - 1.0;
+    int back = (int)(fx->sensor_delay_s[axis] * (1.0 + fx->sensor_spread[axis] * luck) / dt + 0.5);
+    int index = (s->past_index - back + PAST_LENGTH) % PAST_LENGTH;
+    *angle = s->past[axis][index];
+    *rate = s->past_rate[axis][index];
+}
+
+static double play(double *held, double angle, double half)
+{
+    return *held = fmin(fmax(*held, angle - half), angle + half);
+}
+
+/* Two gears in a row of which one has more play: the mean of two plays. */
+static double geared(const effects_t *fx, state_t *s, int axis, double angle)
+{
+    double half = 0.5 * fx->backlash_rad[axis], split = fx->backlash_split[axis];
+    return 0.5 * (play(&s->played[axis][0], angle, half * (1.0 + split)) + play(&s->played[axis][1], angle, half * (1.0 - split)));
+}
+
+/* Lines that pass too fast are not all counted. */
+static void miss(const effects_t *fx, state_t *s, int axis, double dt)
+{
+    double v = s->x[2 * axis + 1];
+    if (fx->missed[axis] != 0.0 && fabs(v) > fx->missed_rad_s[axis])
+        s->missed_rad[axis] -= dt * fx->missed[axis] * (v - copysign(fx->missed_rad_s[axis], v));
+}
+
+/* Whether what the encoder shows depends on the past: if not, it need only be known at the samples. */
+int sensor_moves(const effects_t *fx)
+{
+    int moves = 0;
+    for (int i = 0; i < 2; i++)
+        moves |= fx->sensor_lag_s[i] > 0.0 || fx->sensor_delay_s[i] > 0.0 || fx->backlash_rad[i] > 0.0 || fx->missed[i] != 0.0;
+    return moves;
+}
+
+void sensor_step(const effects_t *fx, state_t *s, double dt)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        double angle, rate;
+        miss(fx, s, axis, dt);
+        shaft(fx, s, axis, &angle, &rate);
+        if (fx->sensor_lag_s[axis] > 0.0) {
+            double before = s->filtered[axis][1];
+            angle = filtered(fx, s, axis, angle, dt);
+            rate = (angle - before) / dt;
+        }
+        if (fx->sensor_delay_s[axis] > 0.0)
+            delayed(fx, s, axis, dt, &angle, &rate);
+        if (fx->backlash_rad[axis] > 0.0)
+            angle = geared(fx, s, axis, angle);
+        s->read[axis] = angle;
+        s->read_rate[axis] = rate;
+    }
+    s->past_index = (s->past_index + 1) % PAST_LENGTH;
+}
+
+/* Everything behind the arm starts as if it had moved or rested with it for ever. */
+void sensor_rest(const effects_t *fx, state_t *s)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        double angle, rate;
+        s->x[6 + 2 * axis] = s->x[2 * axis];
+        s->x[7 + 2 * axis] = s->x[2 * axis + 1];
+        s->missed_rad[axis] = 0.0;
+        shaft(fx, s, axis, &angle, &rate);
+        for (int i = 0; i < 2; i++)
+            s->filtered[axis][i] = s->played[axis][i] = angle;
+        s->read[axis] = s->counted[axis] = angle;
+        s->read_rate[axis] = rate;
+        for (int index = 0; index < PAST_LENGTH; index++) {
+            s->past[axis][index] = angle;
+            s->past_rate[axis][index] = rate;
+        }
+    }
+}
+
+/* A coarse disc with a trigger that holds its level a little beyond the edge, read through the stated steps. */
+double sensor_count(const rig_t *rig, const effects_t *fx, state_t *s, int axis)
+{
+    double y = s->read[axis], q = rig->resolution_rad[axis], coarse = fx->count_rad[axis];
+    if (coarse > 0.0) {
+        if (fabs(y - s->counted[axis]) > coarse * (0.5 + fx->count_hold[axis]))
+            s->counted[axis] = coarse * round(y / coarse);
+        y = coarse * round(s->counted[axis] / coarse);
+    }
+    return q * floor(y / q + 0.5);
+}
