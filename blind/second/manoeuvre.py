@@ -89,7 +89,8 @@ def _staircase(rng: Generator, t_s: Array, axis: int, lively: bool) -> Array:
 
 def _holding(rng: Generator, t_s: Array, axis: int, lively: bool) -> Array:
     """Still, with one change of place on the way."""
-    first, second = rng.uniform(-0.7, 0.7, 2)
+    first = rng.uniform(-0.7, 0.7)
+    second = first - np.sign(first) * rng.uniform(0.3, 1.2)
     return np.asarray(np.where(t_s < rng.uniform(0.3, 0.7) * t_s[-1], first, second))
 
 

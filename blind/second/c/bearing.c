@@ -42,11 +42,10 @@ void bearing_grip(const rig_t *rig, const bearing_t *bearing, const effects_t *f
 {
     double dx[12];
     int known = 0;
+    s->held[0] = s->held[1] = 0;
     for (int axis = 0; axis < 2; axis++) {
         int at = rate_index(fx, axis);
-        int slow = bearing->law[axis] == STICK_SLIP && fabs(s->x[at]) < bearing->width[axis];
-        s->held[axis] = 0;
-        if (!slow)
+        if (bearing->law[axis] != STICK_SLIP || fabs(s->x[at]) >= bearing->width[axis])
             continue;
         if (!known++)
             slope(rig, fx, s, s->x, gust, dx);
