@@ -45,7 +45,7 @@ class Part:
 
     def command(self, *volts: float) -> None:
         """Send a command for both rotors."""
-        self.lib.line_send(self.effects, self.state, self.ffi.new("double[2]", volts))
+        self.lib.line_send(self.state, self.ffi.new("double[2]", volts))
 
     def settle(self, *volts: float) -> None:
         """As if that command had been there for ever."""

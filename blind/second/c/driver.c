@@ -10,13 +10,13 @@ static double within(double x, double low, double high)
     return x < low ? low : (x > high ? high : x);
 }
 
-/* Each command is under way for the delay, more or less; none overtakes another. */
-void line_send(const effects_t *fx, state_t *s, const double u_V[2])
+void line_send(state_t *s, const double u_V[2])
 {
     double luck = 2.0 * scatter(s->sent++) - 1.0;
     for (int i = 0; i < 2; i++) {
         line_t *line = &s->line[i];
-        line->due_s[line->head] = s->t_s + fx->delay_s[i] * (1.0 + fx->delay_spread[i] * luck);
+        line->sent_s[line->head] = s->t_s;
+        line->luck[line->head] = luck;
         line->u_V[line->head] = u_V[i];
         line->head = (line->head + 1) % LINE_LENGTH;
     }
@@ -29,9 +29,13 @@ void line_settle(state_t *s, const double u_V[2])
     s->load_V = fabs(u_V[0]) + fabs(u_V[1]);
 }
 
-static double arrived(line_t *line, double t_s)
+/* Each command is under way for the delay, more or less; none overtakes another. */
+static double arrived(const effects_t *fx, line_t *line, int i, double t_s)
 {
-    while (line->tail != line->head && line->due_s[line->tail] <= t_s + 1e-9) {
+    while (line->tail != line->head) {
+        double delay_s = fx->delay_s[i] * (1.0 + fx->delay_spread[i] * line->luck[line->tail]);
+        if (line->sent_s[line->tail] + delay_s > t_s + 1e-9)
+            break;
         line->now_V = line->u_V[line->tail];
         line->tail = (line->tail + 1) % LINE_LENGTH;
     }
@@ -83,7 +87,7 @@ void driver_step(const rig_t *rig, const effects_t *fx, state_t *s, double dt)
 {
     double came[2];
     for (int i = 0; i < 2; i++)
-        came[i] = within(arrived(&s->line[i], s->t_s), rig->u_min_V[i], rig->u_max_V[i]);
+        came[i] = within(arrived(fx, &s->line[i], i, s->t_s), rig->u_min_V[i], rig->u_max_V[i]);
     if (fx->supply_s > 0.0)
         s->load_V += (fabs(came[0]) + fabs(came[1]) - s->load_V) * -expm1(-dt / fx->supply_s);
     for (int i = 0; i < 2; i++) {

@@ -48,7 +48,7 @@ typedef struct {
 } effects_t;
 
 typedef struct {
-    double due_s[64], u_V[64]; /* commands under way, oldest first at `tail` */
+    double sent_s[64], luck[64], u_V[64];          /* commands under way, oldest first at `tail` */
     int head, tail;
     double now_V;
 } line_t;
@@ -106,7 +106,7 @@ double main_thrust(const rig_t *rig, const effects_t *fx, double speed, double p
 double tail_thrust(const rig_t *rig, const effects_t *fx, double speed, double main_speed, double rate, double chip_factor);
 void rotor_brake(const effects_t *fx, state_t *s, double dt);
 void weather(const effects_t *fx, state_t *s);
-void line_send(const effects_t *fx, state_t *s, const double u_V[2]);
+void line_send(state_t *s, const double u_V[2]);
 void line_settle(state_t *s, const double u_V[2]);
 void driver_step(const rig_t *rig, const effects_t *fx, state_t *s, double dt);
 void bearing_grip(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const double gust[2]);

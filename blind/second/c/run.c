@@ -89,12 +89,12 @@ void fly(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, const 
         if (row == 0)
             line_settle(s, u_V);
         if (!flight->lost[row])
-            line_send(fx, s, u_V);
+            line_send(s, u_V);
         go(rig, bearing, fx, s, flight, row, 1);
         for (int i = 0; i < shadows && row >= flight->settle; i++) {
             memcpy(out->shadow + 2 * (shadows * row + i), shadow[i].read, 2 * sizeof(double));
             if (!(mode[i] & LOSES_FRAMES) || !flight->lost[row])
-                line_send(&shadow_fx[i], &shadow[i], u_V);
+                line_send(&shadow[i], u_V);
             go(&shadow_rig[i], bearing, &shadow_fx[i], &shadow[i], flight, row, 0);
         }
         out->at_stop += fabs(s->x[0]) >= rig->stop_rad[0];

@@ -62,7 +62,11 @@ def _limit(rotor: int) -> Effect:
     def equivalent(m: float, shape: Shape, visited: Visited) -> Equivalents:
         u = visited.u(rotor)
         out = soft_limit(u, size / m, shape["knee"])
-        best = fitted(lambda x: np.clip(u, -abs(x[0]), abs(x[0])) - u, out - u, [0.95 * size / m])
+        if np.array_equal(out, u):
+            return {"limit": relative(size / m)}
+        # A limit above all that came through would have no slope and stay where it starts.
+        start = min(size / m, 0.99 * float(np.abs(out).max()))
+        best = fitted(lambda x: np.clip(u, -abs(x[0]), abs(x[0])) - u, out - u, [start])
         return {"limit": relative(abs(best[0]))}
 
     name, places = _name(rotor, "saturation")

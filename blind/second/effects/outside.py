@@ -43,7 +43,7 @@ def _both_axes(axis: int) -> tuple[Effect, ...]:
         _outside(
             f"{name}.loose_mass",
             name,
-            f"torque(hidden state) on {name}",
+            f"mode(torque) of {name}",
             lambda m, s: {
                 ("mass_share", axis): min(0.04 * m, 0.6),
                 ("mass_rad_s", axis): s["rad_s"],
@@ -184,7 +184,7 @@ ROTORS = (
     _outside(
         "main_rotor.slipping_hub",
         "main_rotor main_input",
-        "limit(domega_M/dt)",
+        "limit(u_M, omega_M)",
         lambda m, s: {("clutch_rad_s2", -1): 400.0 / m},
         bounds=(0.05, 10.0),
         keywords="slip clutch hub acceleration_limit current torque_limit",

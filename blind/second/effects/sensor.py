@@ -96,7 +96,7 @@ def _coarse(axis: int) -> Effect:
         lambda m, shape: {"count_rad": 0.01 * m, "count_hold": shape["hold"]},
         lambda rng: {"hold": rng.uniform(0.0, 0.15)},
         lambda m, shape, visited: {"q": relative(0.01 * m)},
-        (0.4, 8.0),
+        (0.4, 4.0),
     )
 
 
