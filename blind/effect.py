@@ -99,6 +99,32 @@ class Effect:
     loss: float = 0.0
 
 
+def outside_effect(
+    name: str,
+    places: str,
+    depends: str,
+    settings: Callable[[float, Shape], Settings],
+    draw: Callable[[Generator], Shape] = _no_shape,
+    bounds: tuple[float, float] = (0.01, 10.0),
+    keywords: str = "",
+    twins: str = "",
+    sensor: bool = False,
+) -> Effect:
+    """An effect that the contract's table does not hold; lists of words are given as one text."""
+    return Effect(
+        name=name,
+        places=tuple(places.split()),
+        depends=depends,
+        settings=settings,
+        draw=draw,
+        bounds=bounds,
+        known=False,
+        sensor=sensor,
+        keywords=tuple(keywords.split()),
+        twins=tuple(twins.split()),
+    )
+
+
 def relative(value: float, either_sign: bool = False) -> Equivalent:
     """A parameter judged relative to its own size."""
     return Equivalent(float(value), abs(float(value)), either_sign)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from blind.bench import Bench, Plan
+from blind.native import set_fields
 from blind.record import Loss, Model, Record
 from blind.rig import Rig, load_rig
 from blind.second.controller import draw_controller
@@ -27,11 +28,7 @@ class Part:
         self.ffi, self.lib = library()
         self.rig = self.ffi.new("rig_t *", rig.fields())
         self.effects = self.ffi.new("effects_t *")
-        for (field, index), value in settings.items():
-            if index < 0:
-                setattr(self.effects, field, value)
-            else:
-                getattr(self.effects, field)[index] = value
+        set_fields(self.effects, settings)
         self.state = self.ffi.new("state_t *")
         self.state.t_s = t_s
         self.state.x = [*(x or []), *[0.0] * (12 - len(x or []))]

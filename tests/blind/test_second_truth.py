@@ -127,16 +127,18 @@ def test_the_shadow_of_the_rig_itself_repeats_it_exactly_in_still_air() -> None:
         np.testing.assert_array_equal(record.shadow[:, 0], record.exact_rad)
 
 
-def test_every_kind_of_controller_holds_the_arm_where_it_is_told() -> None:
-    """With integral action in each: 3 mrad (one and a half counts of 4096) after 3 s of settling and 5 more."""
+def test_every_kind_of_controller_holds_an_arm_that_is_heavier_than_stated_where_it_is_told() -> None:
+    """Gravity 5 % more: without its integral each would stay 20 mrad below; 5 mrad are left after 23 s."""
+    heavy = Model(SMOOTH.with_values({"tau_gE": 1.05 * SMOOTH.values["tau_gE"]}), {})
     seen = {}
     for seed in range(12):
         period_s = PERIODS_S[seed % len(PERIODS_S)]
         kind, _ = draw_controller(SMOOTH, period_s, np.random.default_rng(seed))
-        lab = lab_of(SMOOTH, 6.0, calm_style("holding", (0.0, 0.0), (0.0, 0.0)), period_s=period_s, seed=seed)
-        seen[kind] = np.abs(flown(lab, {}).exact_rad[-round(1.0 / period_s) :]).max()
+        lab = lab_of(SMOOTH, 20.0, calm_style("holding", (0.0, 0.0), (0.0, 0.0)), period_s=period_s, seed=seed)
+        record = lab.fly(heavy, [], lab.flight(np.random.default_rng(0), Loss(), 0))
+        seen[kind] = max(seen.get(kind, 0.0), np.abs(record.exact_rad[-round(1.0 / period_s) :]).max())
     assert set(seen) == set(KINDS)
-    assert max(seen.values()) < 3e-3, seen
+    assert max(seen.values()) < 5e-3, seen
 
 
 def test_a_loop_with_the_wrong_sign_or_far_too_much_gain_is_not_taken_for_stable() -> None:

@@ -1,40 +1,11 @@
 """Effects that the contract's table does not hold. Each has a right place and a functional class; a name of the table is a wrong name."""
 
-from collections.abc import Callable
-
 import numpy as np
-from numpy.random import Generator
 
-from blind.effect import Effect, Settings, Shape, sign
-
-
-def _outside(
-    name: str,
-    places: str,
-    depends: str,
-    settings: Callable[[float, Shape], Settings],
-    draw: Callable[[Generator], Shape] = lambda rng: {},
-    bounds: tuple[float, float] = (0.01, 10.0),
-    keywords: str = "",
-    twins: str = "",
-    sensor: bool = False,
-) -> Effect:
-    return Effect(
-        name=name,
-        places=tuple(places.split()),
-        depends=depends,
-        settings=settings,
-        draw=draw,
-        bounds=bounds,
-        known=False,
-        sensor=sensor,
-        keywords=tuple(keywords.split()),
-        twins=tuple(twins.split()),
-    )
-
+from blind.effect import outside_effect, sign
 
 AXES = (
-    _outside(
+    outside_effect(
         "azimuth.wind_drag",
         "azimuth tail_rotor",
         "torque(phi, phi_dot) on azimuth",
@@ -42,7 +13,7 @@ AXES = (
         lambda rng: {"from_rad": rng.uniform(-np.pi, np.pi)},
         keywords="wind draught gust",
     ),
-    _outside(
+    outside_effect(
         "azimuth.cable_hysteresis",
         "azimuth",
         "torque(phi, sgn phi_dot) on azimuth",
@@ -50,7 +21,7 @@ AXES = (
         lambda rng: {"slip_rad": rng.uniform(0.1, 0.4)},
         keywords="hysteresis bouc dahl presliding lugre",
     ),
-    _outside(
+    outside_effect(
         "azimuth.quadratic_reaction",
         "azimuth main_rotor",
         "torque(omega_M) on azimuth",
@@ -58,14 +29,14 @@ AXES = (
         lambda rng: {"sign": sign(rng)},
         keywords="reaction",
     ),
-    _outside(
+    outside_effect(
         "elevation.load_friction",
         "elevation main_rotor",
         "torque(omega_M, sgn psi_dot) on elevation",
         lambda m, s: {("load_friction_m", -1): 2e-3 * m},
         keywords="load speed_dependent",
     ),
-    _outside(
+    outside_effect(
         "azimuth.inertia_shape",
         "azimuth",
         "inertia(psi) of azimuth",
@@ -74,7 +45,7 @@ AXES = (
         bounds=(0.02, 1.5),
         keywords="inertia",
     ),
-    _outside(
+    outside_effect(
         "azimuth.coriolis",
         "azimuth",
         "torque(psi, psi_dot, phi_dot) on azimuth",
@@ -82,7 +53,7 @@ AXES = (
         bounds=(0.05, 3.0),
         keywords="coriolis",
     ),
-    _outside(
+    outside_effect(
         "elevation.bumper",
         "elevation",
         "torque(psi) on elevation",
@@ -90,7 +61,7 @@ AXES = (
         lambda rng: {"from_rad": rng.uniform(0.05, 0.2)},
         keywords="bumper stop",
     ),
-    _outside(
+    outside_effect(
         "azimuth.detent",
         "azimuth",
         "torque(phi) on azimuth",
@@ -98,7 +69,7 @@ AXES = (
         lambda rng: {"count": float(rng.integers(5, 12))},
         keywords="detent cogging",
     ),
-    _outside(
+    outside_effect(
         "elevation.grease",
         "elevation",
         "torque(t, psi_dot) on elevation",
@@ -107,7 +78,7 @@ AXES = (
         bounds=(0.05, 3.0),
         keywords="grease viscous thermal",
     ),
-    _outside(
+    outside_effect(
         "azimuth.draught",
         "azimuth",
         "torque(t) on azimuth",
@@ -115,7 +86,7 @@ AXES = (
         lambda rng: {"rad_s": rng.uniform(3.0, 12.0), "phase": rng.uniform(0.0, 6.0)},
         keywords="draught periodic gust wind",
     ),
-    _outside(
+    outside_effect(
         "elevation.draught",
         "elevation",
         "torque(t) on elevation",
@@ -125,21 +96,21 @@ AXES = (
     ),
 )
 DRIVES = (
-    _outside(
+    outside_effect(
         "main_rotor.axial_inflow",
         "main_rotor elevation",
         "thrust(omega_M, psi_dot)",
         lambda m, s: {("inflow", 0): 1e-5 * m},
         keywords="inflow",
     ),
-    _outside(
+    outside_effect(
         "tail_rotor.axial_inflow",
         "tail_rotor azimuth",
         "thrust(omega_T, phi_dot)",
         lambda m, s: {("inflow", 1): 3e-5 * m},
         keywords="inflow",
     ),
-    _outside(
+    outside_effect(
         "main_input.current_limit",
         "main_input main_rotor",
         "limit(u_M, omega_M)",
@@ -147,7 +118,7 @@ DRIVES = (
         bounds=(0.2, 8.0),
         keywords="current",
     ),
-    _outside(
+    outside_effect(
         "tail_input.memory_band",
         "tail_input",
         "play of u_T",
@@ -155,7 +126,7 @@ DRIVES = (
         bounds=(0.05, 8.0),
         keywords="memory hysteresis play backlash",
     ),
-    _outside(
+    outside_effect(
         "tail_rotor.stall",
         "tail_rotor",
         "thrust(omega_T)",
@@ -165,7 +136,7 @@ DRIVES = (
     ),
 )
 ENCODERS = (
-    _outside(
+    outside_effect(
         "phi_sensor.cross_talk",
         "phi_sensor azimuth",
         "output(psi) of phi",
@@ -174,7 +145,7 @@ ENCODERS = (
         keywords="cross alignment",
         sensor=True,
     ),
-    _outside(
+    outside_effect(
         "psi_sensor.cyclic",
         "psi_sensor",
         "output(psi) of psi",
@@ -183,7 +154,7 @@ ENCODERS = (
         keywords="cyclic eccentric periodic",
         sensor=True,
     ),
-    _outside(
+    outside_effect(
         "phi_sensor.cyclic",
         "phi_sensor",
         "output(phi) of phi",
@@ -192,7 +163,7 @@ ENCODERS = (
         keywords="cyclic eccentric periodic",
         sensor=True,
     ),
-    _outside(
+    outside_effect(
         "phi_sensor.count_slip",
         "phi_sensor",
         "output(t) of phi",

@@ -4,7 +4,8 @@ from blind.bench import Catalogue
 from blind.second.effects.axis import ONE_AXIS, axis_effects
 from blind.second.effects.bearing import ASYMMETRY, bearing_effects
 from blind.second.effects.driver import LOOP, driver_effects
-from blind.second.effects.outside import OUTSIDE
+from blind.second.effects.outside_axis import AXES
+from blind.second.effects.outside_drive import DRIVES, ENCODERS, ROTORS
 from blind.second.effects.rotor import AIR, rotor_effects
 from blind.second.effects.sensor import sensor_effects
 
@@ -14,4 +15,6 @@ PAIRS = tuple(
     for effects in (driver_effects, rotor_effects, bearing_effects, axis_effects, sensor_effects)
     for effect in effects(index)
 )
-CATALOGUE = Catalogue(known=(*PAIRS, *AIR, *ONE_AXIS, ASYMMETRY), timing=LOOP, outside=OUTSIDE)
+CATALOGUE = Catalogue(
+    known=(*PAIRS, *AIR, *ONE_AXIS, ASYMMETRY), timing=LOOP, outside=(*AXES, *ROTORS, *DRIVES, *ENCODERS)
+)
