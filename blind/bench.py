@@ -40,7 +40,8 @@ class Lab(Protocol):
         """One closed-loop run; each shadow runs freely for a second at a time."""
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
-        """Free runs of an effect-free rig on a record's commands, anew from its apparent state each second; angles (n, 2) in rad."""
+        """Free runs of an effect-free rig on a record's commands, anew from its apparent state each second; angles (n,
+        2) in rad."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Logging:
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """The rig as stated, the rig as it is (without effects), where it flies, how many training runs, how they are logged.
+    """The rig as stated, the rig as it is (without effects), where it flies, its training runs, how they are logged.
 
     `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given.
     """

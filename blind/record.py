@@ -17,7 +17,7 @@ THINNED_S = 0.04
 class Model:
     """A rig with settings of effects: (field of effects_t, index, -1 for a number) -> value.
 
-    As a shadow, a `placed` one starts from what the rig's sensors show, and one that `loses` misses the rig's lost commands.
+    As a shadow, a `placed` one starts from what the rig's sensors show; one that `loses` misses its lost commands.
     """
 
     rig: Rig
@@ -36,8 +36,11 @@ class Loss:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """What a run gives from time 0 on, n rows: times, commands (n, 2) V, counted and exact angles (n, 2) rad, apparent state (n, 6):
-    psi psi' phi phi' omega_M omega_T; each shadow's angles (n, shadows, 2). `stop_share` of the time on an elevation stop."""
+    """What a run gives from time 0 on, n rows: times, commands (n, 2) V, counted and exact angles (n, 2) rad, apparent
+    state (n, 6): psi psi' phi phi' omega_M omega_T; each shadow's angles (n, shadows, 2).
+
+    `stop_share` of the time on an elevation stop.
+    """
 
     t_s: Array
     u_V: Array

@@ -52,7 +52,7 @@ class FirstLab:
 def draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
     """A rig within its stated spread, a controller of some bandwidth, a style."""
     stated = [name for effect in plan.effects for name in effect.absent]
-    # Now and then a plant file states no dry friction and the rig has none: an absent term alone must not tell anything.
+    # Now and then the plant file denies dry friction and the rig has none: an absent term alone must tell nothing.
     stated += [name for name in ("b_cE", "b_cA") if rng.random() < 0.1 and name not in stated]
     absent = tuple(sorted(stated))
     zero = {name: np.zeros(1) for name in absent}

@@ -1,7 +1,8 @@
-"""The second kind of rig: Runge-Kutta steps of 125 us, friction by one of three laws, PID, cascade or state feedback, rows of 5 to 20 ms.
+"""The second kind of rig: Runge-Kutta steps of 125 us, three laws of friction, three kinds of controller, rows of 5
+to 20 ms.
 
-It shares with the first only what a case is and how it is sized and sealed: motion, friction, controllers, manoeuvres, sensors and the
-formulas of its effects are its own.
+It shares with the first only what a case is and how it is sized and sealed: motion, friction, controllers, manoeuvres,
+sensors and the formulas of its effects are its own.
 """
 
 from blind.bench import RigKind

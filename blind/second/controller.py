@@ -1,4 +1,5 @@
-"""Gains of the second rig's controllers, drawn until the loop is stable with room to spare all over the elevation's range."""
+"""Gains of the second rig's controllers, drawn until the loop is stable with room to spare all over the elevation's
+range."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -87,7 +88,8 @@ def linear(rig: Rig, axis: int, psi_rad: float) -> tuple[Array, Array]:
 
 
 def stable(rig: Rig, kind: str, axis: int, gains: Sequence[float] | Array, period_s: float, filter_s: float) -> bool:
-    """Whether the sampled loop decays, and still does not grow when its commands come 40 ms late, wherever the arm stands."""
+    """Whether the sampled loop decays, and still does not grow when its commands come 40 ms late, wherever the arm
+    stands."""
     late = int(np.ceil(LATE_S / period_s))
     for psi in np.linspace(-RANGE_RAD, RANGE_RAD, 7):
         plant = linear(rig, axis, float(psi))
@@ -101,7 +103,8 @@ def stable(rig: Rig, kind: str, axis: int, gains: Sequence[float] | Array, perio
 def _spectral_radius(
     plant: tuple[Array, Array], kind: str, g: Sequence[float] | Array, period_s: float, filter_s: float, late: int
 ) -> float:
-    """Of one period of the loop: angle, rate, speed, then the controller's last angle, rate, sum, speed, then commands under way."""
+    """Of one period of the loop: angle, rate, speed, then the controller's last angle, rate, sum, speed, then commands
+    under way."""
     A, B = plant
     whole = expm(np.block([[A, B], [np.zeros((1, 4))]]) * period_s)
     angle, rate, speed, last, tracked, total, modelled, *queue = np.eye(7 + late)

@@ -1,4 +1,5 @@
-"""Where the second rig flies: drawn periods, encoders, friction, controller, air and manoeuvres behind the shared way to make a case."""
+"""Where the second rig flies: drawn periods, encoders, friction, controller, air and manoeuvres behind the shared way
+to make a case."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -54,7 +55,8 @@ class SecondLab:
         return self.style.jitter_share > 0.0
 
     def flight(self, rng: Generator, loss: Loss, run: int | None) -> Flight:
-        """The case's run of that number, each with another manoeuvre; a trial (`run` None) is shorter and flies any of them."""
+        """The case's run of that number, each with another manoeuvre; a trial (`run` None) is shorter and flies any of
+        them."""
         style, period_s = self.style, self.control.period_s
         settle = round(SETTLE_S / period_s)
         rows = settle + round((TRIAL_S if run is None else self.run_s) / period_s)
@@ -83,7 +85,8 @@ class SecondLab:
 
 
 def draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
-    """All of a case but its effects: what its plant file states, the rig itself, controller, manoeuvres, air, how it is logged."""
+    """All of a case but its effects: what its plant file states, the rig itself, controller, manoeuvres, air, how it
+    is logged."""
     stated = [name for effect in plan.effects for name in effect.absent]
     # An absent term alone must not tell anything.
     stated += [name for name in ("b_cE", "b_cA") if rng.random() < 0.1 and name not in stated]

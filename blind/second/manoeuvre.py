@@ -1,4 +1,5 @@
-"""What a pilot of the second rig asks for: references of several kinds, and dithers on both inputs; all drawn from one generator."""
+"""What a pilot of the second rig asks for: references of several kinds, and dithers on both inputs; all drawn from one
+generator."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,5 @@
-"""The second rig's simulation (blind/second/c): built once, flown with any effects, with shadows that leave effects out."""
+"""The second rig's simulation (blind/second/c): built once, flown with any effects, with shadows that leave effects
+out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +35,8 @@ class Bearing:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """What a run is given, by row: steps, references (n, 2) rad, dither (n, 2) V, gusts (n, slots, 2) rad/s^2, lost frames."""
+    """What a run is given, by row: steps, references (n, 2) rad, dither (n, 2) V, gusts (n, slots, 2) rad/s^2, lost
+    frames."""
 
     settle: int
     steps: NDArray[np.int32]
@@ -54,7 +56,8 @@ def library() -> tuple[Any, Any]:
 def fly(
     model: Model, bearing: Bearing, nominal: Rig, control: Any, flight: Flight, start: Array, shadows: Sequence[Model]
 ) -> Record:
-    """One closed-loop run from the state `start` (6,); each shadow runs freely for a second at a time, on the same bearings."""
+    """One closed-loop run from the state `start` (6,); each shadow runs freely for a second at a time, on the same
+    bearings."""
     ffi, lib = library()
     count, rows = len(shadows), len(flight.steps)
     arrays = {name: np.zeros((rows, *shape)) for name, shape in ROW_SHAPES.items()}
@@ -69,7 +72,8 @@ def fly(
     mode = ffi.new("unsigned char[]", [STARTS_FROM_SHOWN * s.placed + LOSES_FRAMES * s.loses for s in shadows])
     period_s = control.period_s
     lib.fly(
-        ffi.new("rig_t *", model.rig.fields()), _bearing(ffi, bearing), own, ffi.new("rig_t *", nominal.fields()), control,
+        ffi.new("rig_t *", model.rig.fields()), _bearing(ffi, bearing), own,
+        ffi.new("rig_t *", nominal.fields()), control,
         ffi.new("flight_t *", _flight_fields(ffi, flight)), pointer(ffi, start), count, rigs, effects, mode,
         round(1.0 / period_s), out,
     )  # fmt: skip
@@ -84,7 +88,8 @@ def fly(
 
 
 def predict(rig: Rig, bearing: Bearing, record: Record, step_s: float) -> Array:
-    """Free runs of an effect-free rig on a record's commands, anew from its apparent state each second; angles (n, 2) in rad."""
+    """Free runs of an effect-free rig on a record's commands, anew from its apparent state each second; angles (n, 2)
+    in rad."""
     ffi, lib = library()
     out = np.zeros_like(record.y_rad)
     t_s, u_V, apparent = (np.ascontiguousarray(x) for x in (record.t_s, record.u_V, record.apparent))

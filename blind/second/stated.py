@@ -14,7 +14,8 @@ LEAST = 0.02  # of the stated value: what is positive stays so
 
 
 def draw_stated(nominal: Rig, absent: Sequence[str], rng: Generator) -> tuple[Rig, Mapping[tuple[str, str], str]]:
-    """(the rig as stated, what its plant file says otherwise): spreads half to twice as wide, encoders of 1024 to 8192 counts."""
+    """(the rig as stated, what its plant file says otherwise): spreads half to twice as wide, encoders of 1024 to 8192
+    counts."""
     factor = float(2.0 ** rng.uniform(-1.0, 1.0))
     sds = {name: np.array([float(f"{factor * sd:.4g}") for sd in values]) for name, values in nominal.sds.items()}
     counts = [int(rng.choice(COUNTS)) for _ in range(2)]

@@ -1,4 +1,5 @@
-"""A benchmark of the second rig: files that the contract's readers accept, truths that say what flew, the same bytes for a seed."""
+"""A benchmark of the second rig: files that the contract's readers accept, truths that say what flew, the same bytes
+for a seed."""
 
 import re
 from concurrent.futures import ThreadPoolExecutor

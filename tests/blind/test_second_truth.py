@@ -55,7 +55,8 @@ def integrated(rig: Rig, record: Record, rounding_rad_s: float) -> np.ndarray:
 
 
 def test_without_effects_and_friction_it_follows_the_equations_to_a_nanoradian() -> None:
-    """Free 1 s runs from the same states against an independent integration; fourth order at 125 us leaves rounding only."""
+    """Free 1 s runs from the same states against an independent integration; fourth order at 125 us leaves rounding
+    only."""
     record = flown(lab_of(SMOOTH, 12.0, LIVELY_STYLE), {})
     assert np.ptp(record.exact_rad, axis=0).min() > 0.3
     assert np.abs(integrated(SMOOTH, record, 1.0) - record.exact_rad).max() < 1e-9
@@ -118,8 +119,10 @@ def test_a_presliding_bearing_comes_back_when_the_push_does_not_reach_its_level(
 
 def test_the_shadow_of_the_rig_itself_repeats_it_exactly_in_still_air() -> None:
     hidden = {
-        ("step_V", 1): 0.3, ("sensor_delay_s", 0): 0.02, ("sensor_spread", 0): 0.2, ("maxwell_Nm_rad", -1): 5e-3, ("maxwell_s", -1): 0.5,
-        ("mass_share", 1): 0.4, ("mass_rad_s", 1): 30.0, ("mass_zeta", 1): 0.05, ("mass_reads", 1): 1.0, ("delay_s", 0): 0.02,
+        ("step_V", 1): 0.3, ("sensor_delay_s", 0): 0.02, ("sensor_spread", 0): 0.2,
+        ("maxwell_Nm_rad", -1): 5e-3, ("maxwell_s", -1): 0.5,
+        ("mass_share", 1): 0.4, ("mass_rad_s", 1): 30.0, ("mass_zeta", 1): 0.05, ("mass_reads", 1): 1.0,
+        ("delay_s", 0): 0.02,
         ("delay_spread", 0): 0.2, ("spin_inertia", 0): 4e-5, ("spin_soft_s", 0): 0.01,
     }  # fmt: skip
     for law, width in ((ROUNDED, 3e-3), (PRESLIDING, 1e-3), (STICK_SLIP, 1e-3)):
@@ -142,7 +145,8 @@ def test_every_kind_of_controller_holds_an_arm_that_is_heavier_than_stated_where
 
 
 def test_a_loop_with_the_wrong_sign_or_far_too_much_gain_is_not_taken_for_stable() -> None:
-    """Truth: Hurwitz by hand for PID (6, 4, 3.2) at rest; negated it diverges, thirty-fold the rotor's lag makes it oscillate."""
+    """Truth: Hurwitz by hand for PID (6, 4, 3.2) at rest; negated it diverges, thirty-fold the rotor's lag makes it
+    oscillate."""
     good = np.array([6.0, 4.0, 3.2, 0.0])
     assert stable(NOMINAL, "pid", 0, good, 0.01, 0.03)
     assert not stable(NOMINAL, "pid", 0, -good, 0.01, 0.03)
@@ -177,7 +181,8 @@ def test_a_reference_stays_within_reach_and_has_no_jumps(kind: str) -> None:
 
 
 def test_what_is_drawn_spans_what_is_promised() -> None:
-    """200 draws: every period, count of encoder and number of runs; parameters within 3 of the stated sd and of their sign."""
+    """200 draws: every period, count of encoder and number of runs; parameters within 3 of the stated sd and of their
+    sign."""
     benches = [bench_of(draw_bench, seed, excited=seed % 2 == 0) for seed in range(60)]
     assert {bench.logging.period_s for bench in benches} == set(PERIODS_S)
     assert {bench.training for bench in benches} == {1, 2, 3}

@@ -1,4 +1,5 @@
-/* Rotors and the air: damping, thrust and what spoils it, the brake of a dry bearing; and what changes slowly with time. */
+/* Rotors and the air: damping, thrust and what spoils it, the brake of a dry bearing; and what changes slowly with
+ * time. */
 #include <math.h>
 
 #include "rig.h"
@@ -58,7 +59,8 @@ double main_thrust(const rig_t *rig, const effects_t *fx, double speed, double p
     return force - fx->stale * stale_N;
 }
 
-double tail_thrust(const rig_t *rig, const effects_t *fx, double speed, double main_speed, double rate, double chip_factor)
+double tail_thrust(const rig_t *rig, const effects_t *fx, double speed, double main_speed, double rate,
+                   double chip_factor)
 {
     double force = plain_thrust(rig->thrust[TAIL], speed) * chip_factor;
     if (fx->reverse != 0.0 && speed < 0.0) {
@@ -127,8 +129,8 @@ void weather(const effects_t *fx, state_t *s)
         }
         s->dip_factor[i] = dipped(fx, i, s->t_s);
         s->outer_Nm[i] = fx->drift_Nm_s[i] * t;
-        if (fx->pulse_s[i] > 0.0)
-            s->outer_Nm[i] += fx->pulse_Nm[i] * trapezium((s->t_s - fx->pulse_start_s[i]) / fx->pulse_s[i], fx->pulse_rise[i]);
+        double phase = fx->pulse_s[i] > 0.0 ? (s->t_s - fx->pulse_start_s[i]) / fx->pulse_s[i] : 0.0;
+        s->outer_Nm[i] += fx->pulse_Nm[i] * trapezium(phase, fx->pulse_rise[i]);
         if (fx->knock_Nm[i] != 0.0)
             s->outer_Nm[i] += knocks(s->t_s, fx->knock_Nm[i], fx->knock_every_s[i], i);
     }

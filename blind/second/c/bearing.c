@@ -5,7 +5,8 @@
 
 enum { ELEVATION = 0, AZIMUTH = 1, ROUNDED = 0, PRESLIDING = 1, STICK_SLIP = 2 };
 
-/* Where the rate of the body in the bearing stands: the arm's, or that of a hub which the arm drives through a spring. */
+/* Where the rate of the body in the bearing stands: the arm's, or that of a hub which the arm drives through a
+ * spring. */
 static int rate_index(const effects_t *fx, int axis)
 {
     return fx->mass_reads[axis] != 0.0 ? 7 + 2 * axis : 1 + 2 * axis;

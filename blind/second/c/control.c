@@ -1,4 +1,5 @@
-/* The second rig's controllers: PID, cascade, or state feedback, each with a static feed-forward and a filtered derivative. */
+/* The second rig's controllers: PID, cascade, or state feedback, each with a static feed-forward and a filtered
+ * derivative. */
 #include <math.h>
 
 #include "rig.h"
@@ -39,8 +40,8 @@ static double feedback(const control_t *c, int i, double psi_ref, double error, 
     return c->kind == FEEDBACK ? u - g[3] * (k->speed[i] - parabola(c->feed_rad_s[i], psi_ref)) : u;
 }
 
-void control_step(const control_t *c, const rig_t *nominal, const double r_rad[2], const double y_rad[2], const double dither_V[2],
-                  control_state_t *k, double u_V[2])
+void control_step(const control_t *c, const rig_t *nominal, const double r_rad[2], const double y_rad[2],
+                  const double dither_V[2], control_state_t *k, double u_V[2])
 {
     double part = c->period_s / (c->rate_filter_s + c->period_s);
     for (int i = 0; i < 2; i++) {

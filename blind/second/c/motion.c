@@ -1,4 +1,5 @@
-/* Equations (4) to (9) with what may be added to them, and one step: half of the friction, Runge-Kutta for the rest, the other half. */
+/* Equations (4) to (9) with what may be added to them, and one step: half of the friction, Runge-Kutta for the rest,
+ * the other half. */
 #include <math.h>
 #include <string.h>
 
@@ -36,13 +37,17 @@ static double shared_torque(const effects_t *fx, const state_t *s, int axis, dou
 static double spin_torque(const effects_t *fx, const double x[12], int axis)
 {
     int rotor = 1 - axis;
-    return fx->spin_inertia[axis] != 0.0 ? -fx->spin_inertia[axis] * (x[4 + rotor] - x[10 + axis]) / fx->spin_soft_s[axis] : 0.0;
+    if (fx->spin_inertia[axis] == 0.0)
+        return 0.0;
+    return -fx->spin_inertia[axis] * (x[4 + rotor] - x[10 + axis]) / fx->spin_soft_s[axis];
 }
 
-static double elevation_torque(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], double lift, double c, double sn)
+static double elevation_torque(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], double lift,
+                               double c, double sn)
 {
     double turn = x[3], w = x[5];
-    double torque = rig->arm_m[MAIN] * lift + rig->centrifugal * turn * turn * 2.0 * sn * c + rig->gyro * turn * x[4] * sn;
+    double torque = rig->arm_m[MAIN] * lift + rig->gyro * turn * x[4] * sn;
+    torque += rig->centrifugal * turn * turn * 2.0 * sn * c;
     double centre = fx->centre_rad * (1.0 + fx->centre_droop * c);
     torque -= rig->gravity_Nm * s->gravity_factor * (centre != 0.0 ? cos(x[0] + centre) : c);
     if (fx->tail_lift != 0.0)
@@ -54,10 +59,12 @@ static double elevation_torque(const rig_t *rig, const effects_t *fx, const stat
     return torque + spin_torque(fx, x, ELEVATION) + shared_torque(fx, s, ELEVATION, x[0], x[1]);
 }
 
-static double azimuth_torque(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], double lift, double side, double c)
+static double azimuth_torque(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], double lift,
+                             double side, double c)
 {
     double phi = x[2], v = x[3], raise = x[1], w = x[4];
-    double torque = c * (rig->arm_m[TAIL] * side - rig->reaction * w + spin_torque(fx, x, AZIMUTH) + fx->flap * lift * raise);
+    double torque = c * (rig->arm_m[TAIL] * side - rig->reaction * w);
+    torque += c * (spin_torque(fx, x, AZIMUTH) + fx->flap * lift * raise);
     if (fx->gyro_azimuth != 0.0)
         torque -= fx->gyro_azimuth * raise * w * sin(x[0] + fx->gyro_cant_rad);
     if (fx->tilt_Nm != 0.0)
@@ -72,7 +79,8 @@ static double azimuth_torque(const rig_t *rig, const effects_t *fx, const state_
 }
 
 /* One axis: its arm alone, or two masses with a spring between; the bearing drags the hub where there is one. */
-static void accelerate(const rig_t *rig, const effects_t *fx, const state_t *s, int axis, const double x[12], double torque, double shape, double *dx)
+static void accelerate(const rig_t *rig, const effects_t *fx, const state_t *s, int axis, const double x[12],
+                       double torque, double shape, double *dx)
 {
     int arm = 2 * axis, mass = 6 + 2 * axis;
     double whole = rig->inertia[axis] * shape, share = fx->mass_share[axis], hub = fx->mass_reads[axis];
@@ -80,7 +88,8 @@ static void accelerate(const rig_t *rig, const effects_t *fx, const state_t *s, 
     dx[arm] = x[arm + 1];
     if (share != 0.0) {
         double omega = fx->mass_rad_s[axis], reduced = rig->inertia[axis] * share * (1.0 - share);
-        force = reduced * (omega * omega * (x[arm] - x[mass]) + 2.0 * fx->mass_zeta[axis] * omega * (x[arm + 1] - x[mass + 1]));
+        double stretch = x[arm] - x[mass], slip = x[arm + 1] - x[mass + 1];
+        force = reduced * omega * (omega * stretch + 2.0 * fx->mass_zeta[axis] * slip);
         dx[mass] = x[mass + 1];
         dx[mass + 1] = (force - hub * drag) / (whole * share);
     }
@@ -92,10 +101,12 @@ static void accelerate(const rig_t *rig, const effects_t *fx, const state_t *s, 
 }
 
 /* `gust` in rad/s^2 on each arm. */
-void slope(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], const double gust[2], double dx[12])
+void slope(const rig_t *rig, const effects_t *fx, const state_t *s, const double x[12], const double gust[2],
+           double dx[12])
 {
     double c = cos(x[0]), sn = sin(x[0]);
-    double lift = main_thrust(rig, fx, x[4], x[0], s->stale_N), side = tail_thrust(rig, fx, x[5], x[4], x[3], s->chip_factor);
+    double lift = main_thrust(rig, fx, x[4], x[0], s->stale_N);
+    double side = tail_thrust(rig, fx, x[5], x[4], x[3], s->chip_factor);
     memset(dx, 0, WHOLE * sizeof *dx);
     double raise = elevation_torque(rig, fx, s, x, lift, c, sn) + rig->inertia[ELEVATION] * gust[ELEVATION];
     double turn = azimuth_torque(rig, fx, s, x, lift, side, c) + rig->inertia[AZIMUTH] * c * gust[AZIMUTH];
@@ -111,8 +122,9 @@ void slope(const rig_t *rig, const effects_t *fx, const state_t *s, const double
 static void runge_kutta(const rig_t *rig, const effects_t *fx, state_t *s, const double gust[2], double h)
 {
     double k1[12], k2[12], k3[12], k4[12], x[12] = {0};
-    int extra = fx->mass_share[0] != 0.0 || fx->mass_share[1] != 0.0 || fx->spin_inertia[0] != 0.0 || fx->spin_inertia[1] != 0.0;
-    int n = extra ? WHOLE : PLAIN;
+    int masses = fx->mass_share[0] != 0.0 || fx->mass_share[1] != 0.0;
+    int followers = fx->spin_inertia[0] != 0.0 || fx->spin_inertia[1] != 0.0;
+    int n = masses || followers ? WHOLE : PLAIN;
     slope(rig, fx, s, s->x, gust, k1);
     for (int i = 0; i < n; i++)
         x[i] = s->x[i] + 0.5 * h * k1[i];
@@ -151,7 +163,8 @@ static void stop(const rig_t *rig, const effects_t *fx, state_t *s, int axis)
         s->x[7 + 2 * axis] = 0.0;
 }
 
-void plant_step(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const double gust[2], double dt)
+void plant_step(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const double gust[2],
+                double dt)
 {
     driver_step(rig, fx, s, dt);
     follow_up(rig, fx, s, dt);

@@ -1,5 +1,6 @@
-/* A flight of the rig. Beside it run shadows: other models that are set to the rig's whole state at the head of each window and then
- * go on without gusts on the same commands; one whose sensors differ starts from the angles and rates that the rig's sensors show. */
+/* A flight of the rig. Beside it run shadows: other models that are set to the rig's whole state at the head of each
+ * window and then go on without gusts on the same commands; one whose sensors differ starts from the angles and rates
+ * that the rig's sensors show. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +35,8 @@ static void begin(const effects_t *fx, const double start[6], double t_s, state_
     weather(fx, s);
 }
 
-static void go(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const flight_t *flight, int row, int windy)
+static void go(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const flight_t *flight,
+               int row, int windy)
 {
     static const double calm[2] = {0.0, 0.0};
     int moves = sensor_moves(fx), steps = flight->steps[row];
@@ -58,7 +60,8 @@ static void measure(const rig_t *rig, const effects_t *fx, state_t *s, int row, 
     shown(s, out->apparent + 6 * row);
 }
 
-static void renew(int shadows, const effects_t *fx, const unsigned char *mode, state_t *shadow, const state_t *s, const double *apparent)
+static void renew(int shadows, const effects_t *fx, const unsigned char *mode, state_t *shadow, const state_t *s,
+                  const double *apparent)
 {
     for (int k = 0; k < shadows; k++) {
         shadow[k] = *s;
@@ -67,9 +70,9 @@ static void renew(int shadows, const effects_t *fx, const unsigned char *mode, s
     }
 }
 
-void fly(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, const rig_t *nominal, const control_t *control,
-         const flight_t *flight, const double start[6], int shadows, const rig_t *shadow_rig, const effects_t *shadow_fx,
-         const unsigned char *mode, int window, record_t *out)
+void fly(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, const rig_t *nominal,
+         const control_t *control, const flight_t *flight, const double start[6], int shadows,
+         const rig_t *shadow_rig, const effects_t *shadow_fx, const unsigned char *mode, int window, record_t *out)
 {
     state_t *all = malloc((size_t)(shadows + 1) * sizeof *all), *s = all, *shadow = all + 1;
     control_state_t k;
@@ -84,7 +87,8 @@ void fly(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, const 
             renew(shadows, shadow_fx, mode, shadow, s, out->apparent + 6 * row);
         if (row == 0)
             control_start(control, flight->reference, out->y_rad, &k);
-        control_step(control, nominal, flight->reference + 2 * row, out->y_rad + 2 * row, flight->dither_V + 2 * row, &k, u_V);
+        control_step(control, nominal, flight->reference + 2 * row, out->y_rad + 2 * row,
+                     flight->dither_V + 2 * row, &k, u_V);
         memcpy(out->u_V + 2 * row, u_V, sizeof u_V);
         if (row == 0)
             line_settle(s, u_V);
@@ -103,9 +107,10 @@ void fly(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, const 
     free(all);
 }
 
-/* Free runs of an effect-free rig over recorded rows, anew from the recorded state at the head of each window; out (rows, 2). */
-void predict(const rig_t *rig, const bearing_t *bearing, int rows, const double *t_s, const double *u_V, const double *apparent,
-             int window, double dt, double *out)
+/* Free runs of an effect-free rig over recorded rows, anew from the recorded state at the head of each window; out
+ * (rows, 2). */
+void predict(const rig_t *rig, const bearing_t *bearing, int rows, const double *t_s, const double *u_V,
+             const double *apparent, int window, double dt, double *out)
 {
     static const effects_t none;
     static const double calm[2] = {0.0, 0.0};

@@ -11,8 +11,8 @@ static void shaft(const effects_t *fx, const state_t *s, int axis, double *angle
     int at = fx->mass_reads[axis] != 0.0 ? 6 + 2 * axis : 2 * axis;
     double x = s->x[at], v = s->x[at + 1], t = s->t_s > 0.0 ? s->t_s : 0.0;
     double bent = 1.0 + fx->scale_error[axis] * (1.0 + fx->scale_bend[axis] * fabs(x));
-    *angle = x * bent + fx->offset_rad[axis] * (1.0 + fx->offset_swing[axis] * sin(x)) + fx->pickup_rad_V[axis] * s->volts[axis];
-    *angle += s->missed_rad[axis] + fx->wander_rad_s[axis] * t;
+    double offset = fx->offset_rad[axis] * (1.0 + fx->offset_swing[axis] * sin(x)) + fx->wander_rad_s[axis] * t;
+    *angle = x * bent + offset + fx->pickup_rad_V[axis] * s->volts[axis] + s->missed_rad[axis];
     *rate = v * (bent + fx->scale_error[axis] * fx->scale_bend[axis] * fabs(x));
 }
 
@@ -46,7 +46,8 @@ static double play(double *held, double angle, double half)
 static double geared(const effects_t *fx, state_t *s, int axis, double angle)
 {
     double half = 0.5 * fx->backlash_rad[axis], split = fx->backlash_split[axis];
-    return 0.5 * (play(&s->played[axis][0], angle, half * (1.0 + split)) + play(&s->played[axis][1], angle, half * (1.0 - split)));
+    double wide = play(&s->played[axis][0], angle, half * (1.0 + split));
+    return 0.5 * (wide + play(&s->played[axis][1], angle, half * (1.0 - split)));
 }
 
 /* Lines that pass too fast are not all counted. */
@@ -61,8 +62,10 @@ static void miss(const effects_t *fx, state_t *s, int axis, double dt)
 int sensor_moves(const effects_t *fx)
 {
     int moves = 0;
-    for (int i = 0; i < 2; i++)
-        moves |= fx->sensor_lag_s[i] > 0.0 || fx->sensor_delay_s[i] > 0.0 || fx->backlash_rad[i] > 0.0 || fx->missed[i] != 0.0;
+    for (int i = 0; i < 2; i++) {
+        moves |= fx->sensor_lag_s[i] > 0.0 || fx->sensor_delay_s[i] > 0.0;
+        moves |= fx->backlash_rad[i] > 0.0 || fx->missed[i] != 0.0;
+    }
     return moves;
 }
 

@@ -1,4 +1,5 @@
-"""The second rig's effects: those of the contract's table in formulas of its own, and some that the table does not hold."""
+"""The second rig's effects: those of the contract's table in formulas of its own, and some that the table does not
+hold."""
 
 from blind.bench import Catalogue
 from blind.second.effects.axis import ONE_AXIS, axis_effects

@@ -12,7 +12,8 @@ ANGLES = ("psi", "phi")
 
 
 def sensor_effects(axis: int) -> tuple[Effect, ...]:
-    """Every library effect of one encoder. An offset of the azimuth is left out: nothing depends on where azimuth's zero is."""
+    """Every library effect of one encoder. An offset of the azimuth is left out: nothing depends on where azimuth's
+    zero is."""
     return (*((_offset(),) if axis == 0 else ()), _scale(axis), *_timing(axis), _coarse(axis), _play(axis))
 
 
