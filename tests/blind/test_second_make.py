@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import blind
 from blind import make
 from blind.make import Order, make_case
 from blind.sealed import open_seal
@@ -18,6 +19,7 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.plants import MODELS
 from tests.blind.conftest import PLANT
+from twinlaw.command import main
 
 SEED = 9
 MIX = ("nominal", "single", "outside")
@@ -106,3 +108,16 @@ def test_an_unknown_kind_of_rig_is_refused_and_nothing_stays_behind(tmp_path: Pa
     with pytest.raises(BadInput, match=r"--rig.*'third'.*first, second"):
         make(1, tmp_path / "x", 5, rig="third")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_command_line_hands_on_which_kind_of_rig_is_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["blind", "make", "--seed", "2", "--workers", "1", "--out", str(tmp_path / "x")]
+    assert main([*words, "--rig", "third"]) == 2
+    assert "first, second" in capsys.readouterr().err
+    asked = []
+    monkeypatch.setattr(blind, "make", lambda *_, rig, **__: asked.append(rig))
+    for given in ([], ["--rig", "first"], ["--rig", "second"]):
+        assert main([*words, *given]) == 0
+    assert asked == ["first", "first", "second"]

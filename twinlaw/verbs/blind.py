@@ -1,9 +1,9 @@
 """Make sealed cases for a diagnosis, or score what it said of them.
 
-`twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld; `twinlaw blind score DIR RESULTS` opens the seal and
-scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind
-baseline NAME DIR RESULTS` answers them in a plain way, to be beaten. The generator shares no code with simulation or diagnosis. What was
-interrupted goes on where it was.
+`twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld, `--rig second` with another kind of rig;
+`twinlaw blind score DIR RESULTS` opens the seal and scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR
+RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind baseline NAME DIR RESULTS` answers them in a plain way,
+to be beaten. The generator shares no code with simulation or diagnosis. What was interrupted goes on where it was.
 """
 
 import argparse
