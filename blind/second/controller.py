@@ -19,12 +19,12 @@ KINDS = ("pid", "cascade", "feedback")
 RANGE_RAD = 0.6
 DRAWS = 200
 SLOWEST_RAD_S = 0.25
-LATE_S = 0.04
+LATE_S = 0.06
 AXES = (("M", "E"), ("T", "A"))
 # Angle, integral and rate gains at bandwidth 1, by axis, V/rad, V/(rad s), V s/rad.
-PID = ((6.0, 4.0, 3.2), (3.0, 0.8, 1.5))
+PID = ((3.8, 2.3, 2.0), (3.0, 0.8, 1.5))
 # Angle to rate in 1/s, then rate and its integral to volts.
-CASCADE = ((1.7, 3.4, 2.2), (1.1, 2.2, 1.0))
+CASCADE = ((1.3, 1.9, 1.7), (1.1, 2.2, 1.0))
 # Weights of the integral, angle and rate against one volt.
 WEIGHTS = ((16.0, 30.0, 5.0), (0.8, 8.0, 1.0))
 
@@ -88,7 +88,7 @@ def linear(rig: Rig, axis: int, psi_rad: float) -> tuple[Array, Array]:
 
 
 def stable(rig: Rig, kind: str, axis: int, gains: Sequence[float] | Array, period_s: float, filter_s: float) -> bool:
-    """Whether the sampled loop decays, and still does not grow when its commands come 40 ms late, wherever the arm
+    """Whether the sampled loop decays, and still does not grow when its commands come 60 ms late, wherever the arm
     stands."""
     late = int(np.ceil(LATE_S / period_s))
     for psi in np.linspace(-RANGE_RAD, RANGE_RAD, 7):

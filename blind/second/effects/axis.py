@@ -39,7 +39,7 @@ def _effect(
     equivalent: Callable[[float, Shape, Visited], Equivalents],
 ) -> Effect:
     own = f"{depends} on {AXES[axis]}"
-    return Effect(f"{AXES[axis]}.{name}", (AXES[axis],), own, settings, draw, equivalent, (0.01, 20.0))
+    return Effect(f"{AXES[axis]}.{name}", (AXES[axis],), own, settings, draw, equivalent, (0.01, 10.0))
 
 
 def _drag(axis: int) -> Effect:
@@ -230,6 +230,6 @@ ONE_AXIS = (
         settings=lambda m, s: {("gyro_azimuth", -1): 3e-5 * m, ("gyro_cant_rad", -1): s["cant_rad"]},
         draw=lambda rng: {"cant_rad": rng.uniform(-0.05, 0.05)},
         equivalent=_gyro_equivalent,
-        bounds=(0.01, 30.0),
+        bounds=(0.01, 10.0),
     ),
 )

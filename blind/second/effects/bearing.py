@@ -24,7 +24,7 @@ def _coulomb(axis: int) -> Effect:
         depends=f"torque(sgn {ANGLES[axis]}_dot) on {AXES[axis]}",
         settings=lambda m, shape: {},
         equivalent=lambda m, shape, visited: {"b": relative(COULOMB_NM[axis] * m)},
-        bounds=(0.03, 20.0),
+        bounds=(0.03, 12.0),
         absent=(("b_cE", "b_cA")[axis],),
         coulomb={axis: COULOMB_NM[axis]},
     )
@@ -46,7 +46,7 @@ def _stribeck(axis: int) -> Effect:
         return {"speed_rad_s": rng.uniform(0.03, 0.12)}
 
     depends = f"torque({ANGLES[axis]}_dot) on {AXES[axis]}"
-    return Effect(f"{AXES[axis]}.stribeck", (AXES[axis],), depends, settings, draw, equivalent, (0.02, 20.0))
+    return Effect(f"{AXES[axis]}.stribeck", (AXES[axis],), depends, settings, draw, equivalent, (0.02, 12.0))
 
 
 # Only one direction gets harder; the sign says which.
@@ -57,5 +57,5 @@ ASYMMETRY = Effect(
     settings=lambda m, shape: {("asymmetry_Nm", 1): 4e-4 * m * shape["sign"]},
     draw=lambda rng: {"sign": sign(rng)},
     equivalent=lambda m, shape, visited: {"difference": relative(4e-4 * m * shape["sign"], either_sign=True)},
-    bounds=(0.03, 20.0),
+    bounds=(0.03, 12.0),
 )

@@ -115,7 +115,7 @@ def _delay(rotor: int) -> Effect:
         lambda m, shape: _late((rotor,), m, shape),
         lambda rng: {"spread": rng.uniform(0.0, 0.25)},
         lambda m, shape, visited: {"tau": relative(0.012 * m)},
-        (0.1, 10.0),
+        (0.1, 8.0),
     )
 
 
@@ -157,7 +157,7 @@ def _lag(rotor: int) -> Effect:
         lambda m, shape: {("lag_s", rotor): 0.02 * m, ("lag_split", rotor): shape["split"]},
         lambda rng: {"split": rng.uniform(0.6, 0.9)},
         lambda m, shape, visited: {"tau": relative(0.02 * m)},
-        (0.05, 10.0),
+        (0.05, 6.0),
     )
 
 

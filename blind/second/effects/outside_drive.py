@@ -112,6 +112,7 @@ def _pickup(axis: int) -> Effect:
         f"output({current}) of {angle}",
         lambda m, s: {("pickup_rad_V", axis): 3e-3 * m * s["sign"]},
         lambda rng: {"sign": sign(rng)},
+        bounds=(0.02, 4.0),
         keywords="pickup interference magnetic current emi",
         sensor=True,
     )

@@ -64,7 +64,7 @@ def _scale(axis: int) -> Effect:
         lambda m, shape: {"scale_error": 0.04 * m * shape["sign"], "scale_bend": shape["bend"]},
         lambda rng: {"sign": sign(rng), "bend": rng.uniform(0.0, 0.2)},
         equivalent,
-        (0.02, 8.0),
+        (0.02, 5.0),
     )
 
 
@@ -109,5 +109,5 @@ def _play(axis: int) -> Effect:
         lambda m, shape: {"backlash_rad": 0.01 * m, "backlash_split": shape["split"]},
         lambda rng: {"split": rng.uniform(0.1, 0.4)},
         lambda m, shape, visited: {"width": relative(0.01 * m)},
-        (0.3, 8.0),
+        (0.3, 4.0),
     )
