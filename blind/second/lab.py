@@ -28,7 +28,7 @@ WIDTHS = {ROUNDED: (1e-3, 1e-2), PRESLIDING: (2e-4, 4e-3), STICK_SLIP: (5e-4, 3e
 
 @dataclass(frozen=True)
 class Style:
-    """How a case is flown: kinds of manoeuvre by run, reach in rad, dither in V, air, how far rows come early or late."""
+    """How a case is flown: kinds of manoeuvre by run, reach in rad, dither in V, air, how irregular the rows."""
 
     manoeuvres: tuple[str, ...]
     lively: bool

@@ -33,7 +33,7 @@ LIVELY = lab_of(NOMINAL, 5.0, LIVELY_STYLE)
 
 @pytest.mark.parametrize("effect", SIMULATED, ids=lambda effect: effect.name)
 def test_every_effect_is_felt(effect: Effect) -> None:
-    """At four times its reference size (within bounds) an excited run's free predictions differ by more than 1e-4 rad."""
+    """At four times its size (within bounds) an excited run's free predictions differ by more than 1e-4 rad."""
     shape = effect.draw(np.random.default_rng(1))
     early = {key: 1.55 if key in ("start_s", "time_s") and value > 4.0 else value for key, value in shape.items()}
     record = flown(LIVELY, effect.settings(float(np.clip(4.0, *effect.bounds)), early), placed=effect.sensor)

@@ -19,7 +19,7 @@ LIVELY_STYLE = calm_style("s-curves", (0.4, 1.2), (0.6, 2.0))
 
 
 def equations(rig: Rig, x: np.ndarray, u_V: np.ndarray, rounding_rad_s: float) -> np.ndarray:
-    """Seed 000, equations (4) to (9), with odd extension and sgn(v) = tanh(v / rounding); x (6, runs), u_V (2, runs)."""
+    """Seed 000, equations (4) to (9), odd extension, sgn(v) = tanh(v / rounding); x (6, runs), u_V (2, runs)."""
     psi, psi_dot, _, phi_dot, w_M, w_T = x
     v = {name: rig.value(name) for name in rig.values if rig.values[name].size == 1}
     p = {name: np.polynomial.Polynomial(rig.values[name]) for name in ("p_bM", "p_bT", "p_FM", "p_FT")}
@@ -145,7 +145,8 @@ def test_every_kind_of_controller_holds_an_arm_that_is_heavier_than_stated_where
 
 
 def test_a_loop_with_the_wrong_sign_or_far_too_much_gain_is_not_taken_for_stable() -> None:
-    """Truth: gravity turns the arm over above the horizontal; negated it falls, thirty-fold the rotor's lag is too long."""
+    """Truth: gravity turns the arm over above the horizontal; negated it falls, thirty-fold the rotor's lag is too
+    long."""
     good = np.array([3.8, 2.3, 2.0, 0.0])
     assert stable(NOMINAL, "pid", 0, good, 0.01, 0.03)
     assert not stable(NOMINAL, "pid", 0, -good, 0.01, 0.03)

@@ -73,7 +73,7 @@ def _dry(rotor: int) -> Effect:
 
 
 def lifted(psi: Array, gain: float, reach: float) -> Array:
-    """Cheeseman and Bennett's 1 / (1 - (R / 4 h)^2) - 1 over the height that the arm gives; `gain` at the lower stop."""
+    """Cheeseman and Bennett's 1 / (1 - (R / 4 h)^2) - 1 over the height of the arm; `gain` at the lower stop."""
     height = 1.0 + reach * (np.sin(psi) + np.sin(STOP_RAD))
     return np.asarray(1.0 / (1.0 - gain / (1.0 + gain) / height**2) - 1.0)
 
