@@ -9,6 +9,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import chain
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -59,12 +60,14 @@ class Variant:
 @dataclass(frozen=True, eq=False)
 class Kit:
     """A nominal plant with its library: `names` are effects on its equations without a state or an axis of their own, `wide_names`
-    those with. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
+    those with, less `bristles`, whose states say what friction does near rest: every hypothesis may suppose them, and each state makes
+    a pass longer. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
 
     bound: BoundPlant
     effects: Mapping[str, Effect]
     names: tuple[str, ...]
     wide_names: tuple[str, ...]
+    bristles: tuple[str, ...]
     outputs: tuple[str, ...]
 
     @cached_property
@@ -94,40 +97,26 @@ class Kit:
         """How many coefficients are the plant's own; they come first in every variant."""
         return len(self.bound.p)
 
-    @cached_property
+    @property
     def plain(self) -> Variant:
         """The nominal equations alone, which are the fastest."""
         return _variant(self, ())
 
-    @cached_property
-    def main(self) -> Variant:
-        """All effects without states of their own."""
-        return _variant(self, self.names)
-
-    @cached_property
-    def wide(self) -> Variant:
-        """All effects on the equations."""
-        return _variant(self, (*self.names, *self.wide_names))
-
     def prepare(self) -> None:
         """Open the variants that every search asks for, those not on disk yet built side by side."""
         lags = [name for name in self.effects if is_lag(name)]
-        each(self.variant, [(), self.names, (*self.names, *self.wide_names), *([lag] for lag in lags)])
+        each(self.variant, [(), self.names[:1], self.wide_names, self.bristles, *([lag] for lag in lags)])
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
-        return name in self.names or name in self.wide_names or is_lag(name)
+        return name in self.names or name in self.wide_names or name in self.bristles or is_lag(name)
 
     def variant(self, effects: Iterable[str]) -> Variant:
-        """The fastest variant that carries all of `effects` that any variant carries."""
-        wanted = [name for name in effects if self.carried(name)]
-        behind = sorted(name for name in wanted if is_lag(name))
-        if behind:
-            further = any(name in self.wide_names for name in wanted)
-            return _lagged_variant(self, behind[0], further)
-        if any(name in self.wide_names for name in wanted):
-            return self.wide
-        return self.main if wanted else self.plain
+        """The fastest variant that carries all of `effects` that any carries: each group of which one is wanted, and one lag."""
+        wanted = {name for name in effects if self.carried(name)}
+        groups = [group for group in (self.wide_names, self.bristles) if not wanted.isdisjoint(group)]
+        behind = sorted(filter(is_lag, wanted))[:1]
+        return _variant(self, (*self.names, *chain.from_iterable(groups), *behind) if wanted else ())
 
 
 def is_lag(name: str) -> bool:
@@ -140,7 +129,9 @@ def make_kit(bound: BoundPlant) -> Kit:
     effects = library(bound)
     names = _noted(bound, "names", lambda: _sorted_names(bound, effects))
     outputs = [*bound.model.outputs, *(str(s) for s in bound.model.states if str(s) not in bound.model.outputs)]
-    return Kit(bound, effects, tuple(names["stateless"]), tuple(names["others"]), tuple(outputs))
+    gaps = tuple(name for name in names["others"] if effects[name].names_a_gap)
+    bristles = tuple(name for name in names["others"] if not effects[name].names_a_gap)
+    return Kit(bound, effects, tuple(names["stateless"]), gaps, bristles, tuple(outputs))
 
 
 def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str, Any]:
@@ -155,10 +146,6 @@ def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str,
 
 
 @cache
-def _lagged_variant(kit: Kit, name: str, further: bool) -> Variant:
-    return _variant(kit, (*kit.names, *(kit.wide_names if further else ()), name))
-
-
 def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     """Open a variant, building it where it is not on disk yet."""
     bound = kit.bound

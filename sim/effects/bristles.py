@@ -2,8 +2,8 @@
 
 (1)  torque - b_c z / z_0,   z' = v - |v| z / z_0          (Dahl 1968), in place of - b_c sgn(v)
 
-b_c is all dry friction of the axis, its own and what effects add. A hundredth of it stays as it is: an axis without any would count as one
-without friction. z_0 is a few encoder steps at most; what gives way further has a name, `presliding`.
+b_c is all dry friction of the axis, its own and what effects add; none of it sticks then. z_0 is a few encoder steps at most; what gives
+way further has a name, `presliding`.
 """
 
 from collections.abc import Iterator
@@ -11,12 +11,10 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import NOTHING, axis_of, short, with_axis, with_state
+from sim.effects.edits import NOTHING, axis_of, short, sign_of, with_axis, with_state
 from sim.effects.effect import Effect, EffectParameter
 from sim.effects.hysteresis import strain_rate
 from sim.model import Model, symbol
-
-GIVEN_WAY = 0.99  # of the level
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -43,11 +41,12 @@ def _edit(model: Model, z_0: sympy.Symbol, name: str) -> Model:
     way = z_0 + NOTHING
     present = z_0 / way
     model = with_state(model, z, present * strain_rate(axis_of(model, name).velocity, z, way))
-    share = GIVEN_WAY * present
+    # Where friction depends on its direction, the bristles' stretch stands for that: dry friction that is gone has none.
+    level = sympy.sympify(axis_of(model, name).coulomb).xreplace({sign_of(model, name): z / way})
     return with_axis(
         model,
         name,
         lambda axis: replace(
-            axis, torque=axis.torque - share * axis.coulomb * z / way, coulomb=axis.coulomb * (1 - share)
+            axis, torque=axis.torque - present * level * z / way, coulomb=axis.coulomb * (1 - present)
         ),
     )

@@ -101,7 +101,7 @@ THRUST_T = {
 TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.coulomb": lambda s: -s.b * sgn(s.v_psi),
     "elevation.creep": lambda s: s.b_cE * creeps(s.v_psi, s.v_c),
-    "elevation.bristles": lambda s: 0.99 * s.b_cE * (sgn(s.v_psi) - s.z / s.z_0),
+    "elevation.bristles": lambda s: s.b_cE * (sgn(s.v_psi) - s.z / s.z_0),
     "elevation.stribeck": lambda s: -s.b_s * grip(s.v_psi, s.v_s, s.e) * sgn(s.v_psi),
     "elevation.load_friction": lambda s: -s.c * abs(s.w_M) * sgn(s.v_psi),
     "elevation.friction_asymmetry": lambda s: -s.difference / 2,
@@ -125,7 +125,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
 TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.coulomb": lambda s: -s.b * sgn(s.v_phi),
     "azimuth.creep": lambda s: s.b_cA * creeps(s.v_phi, s.v_c),
-    "azimuth.bristles": lambda s: 0.99 * s.b_cA * (sgn(s.v_phi) - s.z / s.z_0),
+    "azimuth.bristles": lambda s: s.b_cA * (sgn(s.v_phi) - s.z / s.z_0),
     "azimuth.stribeck": lambda s: -s.b_s * grip(s.v_phi, s.v_s, s.e) * sgn(s.v_phi),
     "azimuth.load_friction": lambda s: -s.c * abs(s.w_T) * sgn(s.v_phi),
     "azimuth.friction_asymmetry": lambda s: -s.difference / 2,
