@@ -35,13 +35,14 @@ NOT_TRIED = {
     r"twinlaw diagnose --plant plants/(?!ce150)": "takes minutes on a recording; tests/diagnosis/test_real_data.py has one",
     r"twinlaw identify .*--search genetic": "takes ten seconds; tests/twinlaw/test_identify_genetic.py",
     r"twinlaw sweep .*--repetitions": "tests/twinlaw/test_frequency.py with one repetition",
+    r"twinlaw blind make --rig second": "tests/blind/test_second_make.py",
     r"twinlaw experiments --plant .*velagic.*--repetitions": "the repetitions of docs/identification.md with another plant",
     r"pip |dask |twinlaw .*--cluster": "needs other computers; tests/jobs/test_cluster.py has some on this one",
 }
 # What is smaller here than on the page, so that it takes seconds.
 SMALLER = {
     "--repetitions 100": "--repetitions 1",
-    r"--seed \d+ --cases (300|40)": "--seed 3 --cases 1 --kinds nominal",
+    r"--seed \d+ --cases 300": "--seed 3 --cases 1 --kinds nominal",
     "--cases 2 --workers": "--cases 1 --workers",
 }
 HELD = {"docs/tutorial.md": "tests/docs/test_tutorial.py", "docs/new-plant.md": "tests/docs/test_new_plant.py"}
