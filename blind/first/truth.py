@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from blind.native import FLAGS, pointer, set_fields
+from blind.native import pointer, set_fields, simulation
 from blind.record import Model, Record
 from blind.rig import Rig
-from toolchain.host import build_shared, load_shared
 
 C_DIR = Path(__file__).resolve().parent / "c"
 SOURCES = ("driver.c", "body.c", "sensor.c", "pilot.c", "flight.c")
@@ -42,11 +40,9 @@ class Flight:
         return len(self.substeps)
 
 
-@cache
 def library() -> tuple[Any, Any]:
     """(ffi, lib) of the compiled simulation."""
-    path = build_shared("blind_truth", [C_DIR / name for name in SOURCES], include_dirs=(C_DIR,), flags=FLAGS)
-    return load_shared((C_DIR / "truth.h").read_text(encoding="utf-8"), path)
+    return simulation("blind_truth", C_DIR / "truth.h", SOURCES)
 
 
 def fly(model: Model, nominal: Rig, pilot: Any, flight: Flight, start: Array, shadows: Sequence[Model]) -> Record:

@@ -3,17 +3,15 @@ out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from blind.native import FLAGS, pointer, set_fields
+from blind.native import pointer, set_fields, simulation
 from blind.record import Model, Record
 from blind.rig import Rig
-from toolchain.host import build_shared, load_shared
 
 C_DIR = Path(__file__).resolve().parent / "c"
 SOURCES = ("air.c", "driver.c", "bearing.c", "motion.c", "sensor.c", "control.c", "run.c")
@@ -46,11 +44,9 @@ class Flight:
     lost: NDArray[np.uint8]
 
 
-@cache
 def library() -> tuple[Any, Any]:
     """(ffi, lib) of the compiled simulation."""
-    path = build_shared("blind_second", [C_DIR / name for name in SOURCES], include_dirs=(C_DIR,), flags=FLAGS)
-    return load_shared((C_DIR / "rig.h").read_text(encoding="utf-8"), path)
+    return simulation("blind_second", C_DIR / "rig.h", SOURCES)
 
 
 def fly(
