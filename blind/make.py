@@ -63,9 +63,8 @@ def make(
     if seed < 0:
         raise BadInput("seed", "--seed", str(seed), "a number from 0 up", "choose another seed")
     _, text = load_rig(plant)
-    plans(
-        cases, kinds, kind_of_rig(rig).catalogue, np.random.default_rng([seed, 0])
-    )  # refuses what cannot be dealt before anything is flown
+    # Refuses what cannot be dealt before anything is flown.
+    plans(cases, kinds, kind_of_rig(rig).catalogue, np.random.default_rng([seed, 0]))
     check_replaceable(out)
     orders = [Order(seed, index, cases, tuple(kinds), text, rig) for index in range(1, cases + 1)]
     work = _work_folder(out)

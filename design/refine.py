@@ -5,7 +5,7 @@ on the processor. What is left of eq (26) then is small, and in gamma it is know
 
     A dP + B dQ = (gamma - gamma_1) ... (gamma - gamma_6) - (A P + B Q),    row . (d unknowns) = value - row . unknowns
 
-One such step takes what is left of both to 1e-13 of the coefficients.
+One such step leaves 1e-12 of each coefficient at most on the CE150.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,11 @@ UNKNOWNS = 7  # d_0 .. d_3, c_0 .. c_2
 
 
 def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[complex], free: FreeDegree) -> DeltaForm:
-    """The controller `found` [V/rad] after that step; b (4,) and a (4,) of `plant` ascend in gamma, poles (6,) in rad/s."""
+    """The controller `found` after that step: q (4,) in V/rad, p (3,).
+
+    b (4,) and a (4,) of `plant` ascend in gamma, poles (6,) are in rad/s. `found` must be near: all is linear, but a step as large as the
+    controller itself would bring back what its columns round away. Raises numpy's LinAlgError where A and B share a root.
+    """
     origin = _at(plant, free, np.zeros(UNKNOWNS))
     columns = np.stack([_at(plant, free, unit) - origin for unit in np.eye(UNKNOWNS)], axis=1)
     missing = np.append(wanted(poles_rad_s, plant.sample_period_s)[:-1], free.value) - _at(
