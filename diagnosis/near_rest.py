@@ -9,7 +9,7 @@ from diagnosis.hypothesis import Supposed, passes
 from diagnosis.screen import FRICTIONS
 from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import with_unrest
-from sim.effects.effect import Effect
+from sim.effects.effect import Effect, Values
 
 FITTED = 2  # of those that promise most
 FOLD = 2.0  # from one size that is tried to the next
@@ -28,16 +28,17 @@ def yielding(case: Case, found: Sequence[Tried]) -> Case:
         ((tried.evidence + gained, tried, supposed) for tried, supposed, gained in asked if gained > 0.0),
         key=lambda entry: -entry[0],
     )
-    best, chosen = found[0].evidence + WORTH, case.stated
+    best, yields = found[0].evidence + WORTH, dict[str, Values]()
     for _, tried, supposed in promising[:FITTED]:
         fitted = fit(case, supposed, rounds=4)
         if fitted is not None and evidence(fitted) > best:
             best = evidence(fitted)
-            chosen = {name: v for name, v in fitted.supposed.effects.items() if name not in tried.effects}
-    if chosen is case.stated:
+            beside = tried.fit.supposed.effects
+            yields = {name: values for name, values in fitted.supposed.effects.items() if name not in beside}
+    if not yields:
         return case
-    exact = {name: dict.fromkeys(values, 0.0) for name, values in chosen.items()}
-    return replace(case, stated=chosen, stated_sd={**exact, **case.stated_sd})
+    exact = {name: dict.fromkeys(values, 0.0) for name, values in yields.items()}
+    return replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact})
 
 
 def _yielded(case: Case, found: Fit) -> tuple[Supposed, float]:

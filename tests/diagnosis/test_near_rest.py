@@ -16,7 +16,7 @@ from diagnosis.tape import tape_of
 from diagnosis.trial import Tried, evidence
 from records.log import RunLog
 from sim.bind import BoundPlant, bind
-from sim.effects.api import with_effects
+from sim.effects.api import with_effects, without_effects
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.model import Model
@@ -79,6 +79,20 @@ def test_axes_that_give_before_they_slide_are_taken_to(plant: BoundPlant) -> Non
     assert set(supposed) == set(GIVE)
     for name in GIVE:
         assert supposed[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
+
+
+def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
+    # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that, and its friction gives.
+    drag = "elevation.quadratic_drag"
+    stated = with_effects(plant, {drag: {"c": 2e-3}}, sd={drag: {"c": 1e-4}})
+    log = default_flight(plant, {**GIVE, drag: {"c": 4e-3}})
+    case = make_case(make_kit(without_effects(stated)), [log], stated=stated)
+    nominal = nominal_fit(case)
+    assert nominal.supposed.effects[drag]["c"] != pytest.approx(2e-3, rel=0.01)
+    found = yielding(case, [Tried((), nominal, evidence(nominal))])
+    assert set(found.stated) == {drag, *GIVE}
+    assert found.stated[drag] == {"c": 2e-3}
+    assert found.stated_sd[drag] == {"c": 1e-4}
 
 
 def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
