@@ -9,7 +9,7 @@ from diagnosis.case import Case
 from diagnosis.fit import unfitted
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
-from diagnosis.instants import is_event
+from diagnosis.instants import happens
 from diagnosis.predict import WINDOW_S
 from diagnosis.retune import Retune
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
@@ -90,7 +90,7 @@ def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tu
     Effects that happen at an instant, which is another one in each log, and frames that are lost at random are not asked.
     """
     named = () if weighed.nameless or not weighed.tried else weighed.tried[0].effects
-    if not named or not all(_lasts(holdout.case, name) for name in named):
+    if not named or not all(_lasts(holdout.case, weighed.tried[0], name) for name in named):
         return weighed, ()
     told = holdout.shrinkage(holdout.predicted(weighed.tried[0]))
     most = 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
@@ -124,8 +124,9 @@ def _in_air(case: Case, tried: Tried, floor: Mapping[str, float]) -> dict[str, f
     return {name: float(np.hypot(rms, moved.get(str(model.outputs[name]), 0.0))) for name, rms in floor.items()}
 
 
-def _lasts(case: Case, name: str) -> bool:
-    return name != LOST_FRAMES and not is_event(case.kit.effects[name])
+def _lasts(case: Case, tried: Tried, name: str) -> bool:
+    """Whether an effect does the same in each log: no frames lost at random, no event but one that was before all logs."""
+    return name != LOST_FRAMES and not happens(case.kit.effects[name], tried.fit.supposed.effects[name])
 
 
 def worse(holdout: Holdout, weighed: Weighed) -> float:

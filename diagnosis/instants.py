@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.ground import Ground
-from sim.effects.effect import Effect
+from sim.effects.effect import Effect, Values
 
 Array = NDArray[np.float64]
 TIMES = ("t_0", "t_1", "t_s")
@@ -33,6 +33,13 @@ def instants(ground: Ground, effect: Effect) -> list[dict[str, float]]:
 def is_event(effect: Effect) -> bool:
     """Whether an effect happens at an instant."""
     return any(parameter.symbol in TIMES for parameter in effect.parameters)
+
+
+def happens(effect: Effect, values: Values) -> bool:
+    """Whether it is an event in these logs: not where its instant was pushed to the beginning of time, from where on it stays as it is."""
+    instants = [parameter for parameter in effect.parameters if parameter.symbol in TIMES]
+    ends = "duration" in effect.parameter
+    return any(ends or values[instant.symbol] > instant.lower for instant in instants)
 
 
 def _jumps(ground: Ground, target: int) -> list[float]:

@@ -3,8 +3,10 @@
 import pytest
 
 from diagnosis.engine import Material, diagnose
+from diagnosis.instants import happens
 from diagnosis.result import Result
 from sim.bind import BoundPlant
+from sim.effects.api import library
 from tests.diagnosis.conftest import Fly
 
 TWO_SD = 1.1  # times J_A, which its file states to 5 %
@@ -66,3 +68,12 @@ def test_a_coarse_sensor_is_not_blamed_for_what_its_steps_leave(plant: BoundPlan
     assert found.effects[0].effect == "psi_sensor.quantization"
     assert found.effects[0].probability > 0.8
     assert not [note for note in found.notes if "something else is missing" in note]
+
+
+@pytest.mark.parametrize(("instant_s", "event"), [(12.0, True), (0.0, False)])
+def test_an_event_before_all_logs_is_none(plant: BoundPlant, instant_s: float, event: bool) -> None:
+    # A weight that moved at the beginning of time is another weight in each log; a push has its end besides.
+    effects = library(plant)
+    assert happens(effects["elevation.weight_shift"], {"Delta": 0.01, "t_1": instant_s}) is event
+    assert happens(effects["elevation.disturbance"], {"torque": 1e-3, "t_0": instant_s, "duration": 1.0})
+    assert not happens(effects["azimuth.cable_spring"], SPRING["azimuth.cable_spring"])
