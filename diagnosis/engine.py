@@ -52,7 +52,11 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = replace(seen, detection=confirmed_by(seen.detection, found, beyond))
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
-    return gap(seen, material, _judged(seen, material, found, beyond))
+    judged = _judged(seen, material, found, beyond)
+    seen = replace(seen, detection=borne_out(seen.detection, judged))
+    if seen.detection.p > ALARM:
+        return no_gap(seen, material, judged.holdout)
+    return gap(seen, material, judged)
 
 
 def _seen(bound: BoundPlant, material: Material) -> Seen:
@@ -131,6 +135,11 @@ def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> 
     explained += [] if beyond is None else [beyond.score]
     best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
     return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))
+
+
+def borne_out(detection: Detection, judged: Judged) -> Detection:
+    """A small gap whose explanations do not hold, be it on the hold-out, is explained by nothing: evidence of 0 nats."""
+    return replace(detection, p=1.0) if detection.largest <= PLAIN_TO_SEE and judged.weighed.nameless else detection
 
 
 def nominal_fit(case: Case) -> Fit:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.fit import seen_in_readings
 from diagnosis.prior import prior_odds
 from diagnosis.trial import Tried
 
@@ -61,9 +62,11 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     named = [entry for entry in tried if entry.effects]
     if not named:
         return _nameless(nominal, left, retune)
-    best = max(entry.evidence for entry in named)
+    first = max(named, key=lambda entry: entry.evidence)
+    best = first.evidence
     whole = max(best - nominal.evidence, 0.0)
-    scale = ALIKE + OFF_FORM * whole**OFF_POWER + OFF_SHARE * min(whole, FARTHEST)
+    formed = max(best - _read_off(named, first, nominal).evidence, 0.0)
+    scale = ALIKE + OFF_FORM * formed**OFF_POWER + OFF_SHARE * min(formed, FARTHEST)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
     scores += [prior_odds(entry) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
@@ -79,6 +82,12 @@ def weigh(tried: Sequence[Tried], nominal: Tried, left: float, retune: float | N
     return Weighed(
         chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
     )
+
+
+def _read_off(named: Sequence[Tried], first: Tried, nominal: Tried) -> Tried:
+    """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
+    exact = {name for name in first.effects if seen_in_readings(name)}
+    return next((entry for entry in named if set(entry.effects) == exact), nominal)
 
 
 def candid(weights: Array) -> Array:

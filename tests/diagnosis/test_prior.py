@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 
 from diagnosis.detect import Detection, FormScores
-from diagnosis.engine import confirmed_by
+from diagnosis.engine import borne_out, confirmed_by
 from diagnosis.fit import Fit
 from diagnosis.ground import Scores
 from diagnosis.hypothesis import Supposed
 from diagnosis.prior import prior_odds
 from diagnosis.replicas import Tail
+from diagnosis.result import Judged
 from diagnosis.search import Search
 from diagnosis.trial import Tried
+from diagnosis.weigh import Weighed, weigh
 
 
 def tried(evidence: float = 0.0, **effects: dict[str, float]) -> Tried:
@@ -47,6 +49,12 @@ def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
     )
 
 
+def seen(largest: float) -> Detection:
+    """A gap of that many nats that chance makes once in a million."""
+    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+    return Detection(1e-6, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
+
+
 @pytest.mark.parametrize(
     ("largest", "evidence", "sure", "gap"),
     [(20.0, 3.0, True, False), (20.0, 12.0, True, True), (20.0, 12.0, False, False), (200.0, 3.0, False, True)],
@@ -54,9 +62,25 @@ def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
 def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure: bool, gap: bool) -> None:
     # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6, but for an effect whose
     # size may be zero they say nothing.
-    empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
-    detection = Detection(1e-6, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
     nothing = tried()
     ground = object()
     found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, ground, ())  # type: ignore[arg-type]
-    assert (confirmed_by(detection, found, None).p <= 0.01) is gap
+    assert (confirmed_by(seen(largest), found, None).p <= 0.01) is gap
+
+
+@pytest.mark.parametrize(("largest", "unknown", "gap"), [(20.0, 0.95, False), (20.0, 0.3, True), (200.0, 0.95, True)])
+def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float, unknown: float, gap: bool) -> None:
+    # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap.
+    weighed = Weighed((tried(12.0),), (1.0 - unknown,), unknown, 0.0, 10.0)
+    judged = Judged(object(), None, weighed, tried(), None, ())  # type: ignore[arg-type]
+    assert (borne_out(seen(largest), judged).p <= 0.01) is gap
+
+
+@pytest.mark.parametrize(("first", "second_counts"), [("psi_sensor.quantization", True), ("main_input.lag", False)])
+def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first: str, second_counts: bool) -> None:
+    # Truth: steps that are read off the log to a thousandth are exact, and 150 nats beside them are as many as alone. A lag that gains
+    # 40000 nats is a form, and what it lacks of the truth may gain as much.
+    one = tried(40000.0, **{first.replace(".", "__"): {}})
+    both = tried(40150.0, **{first.replace(".", "__"): {}, "elevation__cable_spring": {"k": 0.003}})
+    found = weigh([both, one], tried(), left=10.0)
+    assert (found.tried[0] is both) is second_counts
