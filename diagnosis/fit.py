@@ -18,6 +18,7 @@ ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
+SCATTERS = "jitter"  # the symbol of a number that makes readings less sure (jitter.py)
 GRID_SD = 3e-4  # of a sensor's coarse step, as a share: a range of a thousand counts holds its grid to a count
 OUT_OF_REACH = 1e3  # references
 WIDE = 20.0  # sd of an effect's size before the data, in its reference
@@ -55,7 +56,7 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
     found = []
     for name, values in supposed.effects.items():
         for parameter in case.kit.effects[name].parameters:
-            if seen_in_readings(name):
+            if seen_in_readings(name) or parameter.symbol == SCATTERS:
                 continue
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case
+from diagnosis.fit import SCATTERS
 from diagnosis.hypothesis import Supposed, coefficients
 from sim.effects.build import paths_with
+from sim.effects.effect import Values
 from sim.paths import Held, OutputStage, Trace, pass_inputs, pass_output
 from sim.plants import MODELS
 
@@ -22,7 +24,8 @@ class Flown:
     """The plant of `case` under `supposed` at time `t_s` in state `x` (states of its variant,).
 
     `x0` holds the plant's own states first; what effects brought and x0 lacks starts at 0. Axes `locked` stay where they stand. With a
-    `seed` the supposed unrest shakes the axes. `lost` is set once the state has left all bounds; then nothing moves any more.
+    `seed` the supposed unrest shakes the axes and delays scatter as supposed; without, all is as on average. `lost` is set once the
+    state has left all bounds; then nothing moves any more.
     """
 
     def __init__(
@@ -38,6 +41,7 @@ class Flown:
         kit = case.kit
         variant = kit.variant(supposed.effects)
         further = {name: values for name, values in supposed.effects.items() if name not in variant.names}
+        further = further if seed is not None else {name: without_scatter(values) for name, values in further.items()}
         on_input, on_output = paths_with(MODELS[kit.bound.plant.model](), further)
         self._case, self._filter, self.t_s, self.lost = case, variant.filter, t_s, False
         self._outputs = len(kit.bound.model.outputs)
@@ -142,6 +146,11 @@ class Flown:
         for name, array in self._arrays.items():
             setattr(self._request, name, chosen.ffi.cast("void *", array.ctypes.data))
         self._request.columns, self._request.slots = 0, width
+
+
+def without_scatter(values: Values) -> Values:
+    """The numbers of an effect that does the same each time."""
+    return {symbol: 0.0 if symbol == SCATTERS else value for symbol, value in values.items()}
 
 
 def _shaken(case: Case, supposed: Supposed, locked: tuple[str, ...]) -> Array:

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case
-from diagnosis.fit import GRID_SD, Fit, seen_in_readings
+from diagnosis.fit import GRID_SD, SCATTERS, Fit, seen_in_readings
 from diagnosis.hypothesis import coefficients
+from diagnosis.jitter import jitter_sd, scatters
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -69,10 +70,15 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
         if seen_in_readings(name)
         for s, v in of.items()
     }
+    sd |= {
+        (name, SCATTERS): case.stated_sd[name][SCATTERS] if name in case.stated else jitter_sd(case, fit.supposed, name)
+        for name in fit.supposed.effects
+        if scatters(case, name)
+    }
     return {
         name: {
-            symbol: Estimate(float(value), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
-            for symbol, value in values.items()
+            symbol: Estimate(float(values[symbol]), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
+            for symbol in case.kit.effects[name].parameter
         }
         for name, values in fit.supposed.effects.items()
     }

@@ -141,10 +141,12 @@ def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]
     supposed = ground.fit.supposed
     for name in names:
         effect = case.kit.effects[name]
-        if effect.on_equations or not effect.smooth or len(effect.parameters) != 1 or is_lag(name):
+        plain = sum(not parameter.refining for parameter in effect.parameters) == 1
+        if effect.on_equations or not effect.smooth or not plain or is_lag(name):
             continue
         unit = size_scale(effect.size)
-        small = {effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}
+        absent = {parameter.symbol: parameter.first for parameter in effect.parameters}
+        small = {**absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}
         runs = passes(case, supposed.with_effects({**supposed.effects, name: small}))
         if runs is not None:
             scores = ground.scores_of(((stacked(runs) - ground.w) / SMALL)[:, None])

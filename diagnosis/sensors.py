@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from diagnosis.kit import Kit
 from diagnosis.lattice import grid_evidence
-from diagnosis.tape import Tape, late
+from diagnosis.tape import Tape, late, variance_stated
 from sim.effects.effect import Values
 
 Array = NDArray[np.float64]
 # A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
 BELL = 0.32
+RATE_S = 0.05  # to both sides, over which a reading's rate is taken: long enough for an encoder's steps, short for a helicopter
 
 
 def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
@@ -28,13 +29,39 @@ def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
         if sensor is None:
             continue
         output = kit.outputs.index(sensor.output)
-        if kind in ("delay", "lag"):
+        if kind == "delay":
+            stated = variance_stated(kit.bound.plant, sensor.output)
+            tape = late(unsure_when(tape, output, values["jitter"], stated), output, values["tau"])
+        elif kind == "lag":
             tape = late(tape, output, values["tau"])
         elif kind == "quantization":
             tape = _coarser(tape, output, values["q"], kit.bound.plant.sensors[sensor.output])
         elif kind == "backlash":
             tape = behind_play(tape, output, values["width"])
     return tape
+
+
+def unsure_when(tape: Tape, output: int, jitter_s: float, stated: float) -> Tape:
+    """The tape whose readings of an output are true at an instant that is known to `jitter_s` only: r + (dy/dt jitter)^2.
+
+    What the readings showed of noise beyond the variance that is `stated` is no more than that then, as far as its mean goes.
+    """
+    if jitter_s <= 0.0:
+        return tape
+    seen = np.flatnonzero(np.isfinite(tape.read[:, output]))
+    r = tape.r.copy()
+    further = (rates(tape.t_s[seen], tape.read[seen, output]) * jitter_s) ** 2
+    known = min(max(tape.single[output] - stated, 0.0), float(np.mean(further)))
+    r[seen, output] += further - tape.standing[seen, output] * known
+    return replace(tape, r=r)
+
+
+def rates(t_s: Array, read: Array) -> Array:
+    """How fast readings (n,) change, per second."""
+    before = np.searchsorted(t_s, t_s - RATE_S)
+    behind = np.minimum(np.searchsorted(t_s, t_s + RATE_S), len(t_s) - 1)
+    passed_s = t_s[behind] - t_s[before]
+    return np.divide(read[behind] - read[before], passed_s, out=np.zeros(len(t_s)), where=passed_s > 0.0)
 
 
 def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:

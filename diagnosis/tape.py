@@ -67,7 +67,7 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
         if name in log.columns.outputs or name in log.extra:
             read[:, place] = log.column(name)
             standing[:, place] = _standing(read[:, place])
-            single[place] = _variance(read[:, place], plant.sensors.get(name, 0.0), plant.sensor_noise.get(name, 0.0))
+            single[place] = _variance(read[:, place], plant.sensors.get(name, 0.0), variance_stated(plant, name))
     if used is not None:
         read[~used] = np.nan
     y, r = read.copy(), np.where(np.isfinite(single), standing * single, 1.0)
@@ -110,14 +110,18 @@ def _standing(y: Array) -> Array:
     return count
 
 
-def _variance(y: Array, step: float, noise: float) -> float:
-    """Variance of a measurement: its encoder's step and noise, or what its second differences show where that is clearly more.
+def variance_stated(plant: Plant, output: str) -> float:
+    """Variance of a reading by its encoder's step and its noise."""
+    return plant.sensors.get(output, 0.0) ** 2 / 12.0 + plant.sensor_noise.get(output, 0.0) ** 2
+
+
+def _variance(y: Array, step: float, stated: float) -> float:
+    """Variance of a measurement: that of its encoder's step and noise, or what its second differences show where that is clearly more.
 
     Rounding alone leaves second differences of 6 step^2 / 12 and motion next to nothing; what is far beyond the usual is left out. Where
     no step is stated the readings' own counts: a speed that is logged in whole counts mostly stands still, but is not exact for that.
     """
     second = np.abs(np.diff(y[np.isfinite(y)], 2))
-    stated = step**2 / 12.0 + noise**2
     usual = max(1.4826 * float(np.median(second)), step) if second.size else 0.0
     seen = float(np.mean(np.minimum(second, BEYOND_USUAL * usual) ** 2)) / 6.0 if second.size else 0.0
     if not step:

@@ -10,9 +10,10 @@ from diagnosis.calm import awake
 from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.hypothesis import Supposed, passes
+from diagnosis.jitter import scatters, with_jitter
 from diagnosis.screen import Look, holding
 from diagnosis.start import FIRST_UNREST
-from diagnosis.unrest import unrest_of
+from diagnosis.unrest import unrest_of, with_unrest
 
 Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
@@ -69,6 +70,7 @@ def rough(case: Case, job: Job) -> Tried | None:
         found = awake(case, found)
     elif found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
+    found = _scattered(case, found, [entry.effect])
     astray = start if found is None else found.supposed
     if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
         found = _likelier(found, _from_stated(case, start))
@@ -87,7 +89,7 @@ def at_its_place(case: Case, job: Job) -> Tried | None:
 
 def refined(case: Case, tried: Tried) -> Tried | None:
     """The fit with the unrest that then remains."""
-    start = unrest_of(case, tried.fit)
+    start = with_jitter(case, unrest_of(case, tried.fit), tried.effects)
     for name in tried.effects:
         start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
     for name in holding(case.kit, tried.effects):
@@ -111,6 +113,16 @@ def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]
     for reach in reaches:
         start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
     return start
+
+
+def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | None:
+    """The fit, or a likelier one where readings come after a delay that scatters: in calmer air then."""
+    if found is None or not any(scatters(case, name) for name in effects):
+        return found
+    start = with_jitter(case, found.supposed, effects)
+    if start.effects == found.supposed.effects:
+        return found
+    return _likelier(found, fit(case, with_unrest(case, start), rounds=4))
 
 
 def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths import SAME_INSTANT_S, Array, Held
+from sim.paths import SAME_INSTANT_S, Array, Held, uniform
 
 PIECE_S = 2.5e-3
 MOST_PIECES = 16
@@ -143,16 +143,6 @@ class Lag:
             return np.asarray(wanted[interval] + apart[interval] * share)
 
         return _staircase(signal, self.column, np.where(np.abs(apart) > 1e-9, long_s, 0.0), mean), x
-
-
-def uniform(number: Array, seed: int) -> Array:
-    """Numbers in [0, 1) by splitmix64 of (seed, number): the same whichever way they are asked for."""
-    with np.errstate(over="ignore"):
-        z = number.astype(np.uint64) + np.uint64(seed) * np.uint64(0xD1B54A32D192ED03)
-        z = (z + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
-        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return np.asarray((z ^ (z >> np.uint64(31))) >> np.uint64(11), dtype=float) * 2.0**-53
 
 
 def _merged(edges: Array, more: Array) -> Array:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths import Array, Trace
+from sim.paths import Array, Trace, uniform
 
 SHORTEST_S = 1e-7
 
@@ -75,22 +75,31 @@ class OutputLag:
 
 @dataclass(frozen=True)
 class OutputDelay:
-    """What is measured is `tau_s` old; before the first sample the output moved on steadily."""
+    """What is measured is `tau_s` old; before the first sample the output moved on steadily.
+
+    Sample n is older or younger by something even of standard deviation `jitter_s`, but never from the future; what, depends on
+    (seed, n) alone.
+    """
 
     output: int
     tau_s: float
+    jitter_s: float = 0.0
+    seed: int = 0
     order: ClassVar[int] = 2
     linear: ClassVar[bool] = True
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
-        """See OutputStage; remembers the samples that are still needed."""
+        """See OutputStage; remembers the number of samples and those that are still needed."""
         if self.tau_s < SHORTEST_S:
             return signal, memory
-        trace = signal if memory is None else _joined(memory, signal)
-        wanted = signal.t_s - self.tau_s
-        y, rate = _cubic(trace, wanted)
-        first = max(int(np.searchsorted(trace.t_s, wanted[-1])) - 1, 0)
-        return Trace(signal.t_s, y, rate), Trace(trace.t_s[first:], trace.y[first:], trace.rate[first:])
+        count, past = memory or (0, None)
+        trace = signal if past is None else _joined(past, signal)
+        end = count + len(signal.t_s)
+        apart = self.jitter_s * np.sqrt(12.0) * (uniform(np.arange(count, end), self.seed) - 0.5)
+        y, rate = _cubic(trace, signal.t_s - np.maximum(self.tau_s + apart, 0.0))
+        oldest_s = signal.t_s[-1] - self.tau_s - np.sqrt(3.0) * self.jitter_s
+        first = max(int(np.searchsorted(trace.t_s, oldest_s)) - 1, 0)
+        return Trace(signal.t_s, y, rate), (end, Trace(trace.t_s[first:], trace.y[first:], trace.rate[first:]))
 
 
 @dataclass(frozen=True)

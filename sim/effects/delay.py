@@ -1,6 +1,6 @@
 """Transport delay of a command, of all commands, or of a reading.
 
-(1)  u(t - tau),   y(t - tau)
+(1)  u(t - tau),   y(t - tau - d_n),   d_n even, of standard deviation `jitter`, drawn anew for each sample n
 """
 
 from collections.abc import Iterator
@@ -12,6 +12,7 @@ from sim.paths_input import Delay
 from sim.paths_output import OutputDelay
 
 SECOND = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05))
+JITTER = EffectParameter("jitter", "s", 0.0, 0.1, 0.0, None, (0.0, 1e-3), refining=True)
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -33,11 +34,13 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.delay",
             depends=f"delay of {short(sensor.output)}",
-            parameters=(SECOND,),
-            equation="y(t) = angle(t - tau)",
+            parameters=(SECOND, JITTER),
+            equation="y(t) = angle(t - tau - d), d even about 0, of standard deviation jitter, anew for each reading",
             story="The reading is old when it arrives.",
             source="transport delay",
-            on_output=lambda values, output=output: OutputDelay(output, values["tau"]),
+            on_output=lambda values, output=output: OutputDelay(
+                output, values["tau"], values["jitter"], seed=output + 1
+            ),
             twins={
                 f"{place}.lag": "slow motion shows only the mean time by which both are late",
                 "loop.delay": "in a loop on the angle, being late is the same before and behind the plant",

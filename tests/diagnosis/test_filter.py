@@ -75,7 +75,9 @@ def test_further_instants_change_nothing(stuck: tuple[Case, Supposed], sensor: s
     # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
     case, supposed = stuck
     (plain,) = passes(case, supposed) or [None]
-    (late,) = passes(case, supposed.with_effects({**supposed.effects, f"{sensor}.delay": {"tau": 1e-5}})) or [None]
+    (late,) = passes(
+        case, supposed.with_effects({**supposed.effects, f"{sensor}.delay": {"tau": 1e-5, "jitter": 0.0}})
+    ) or [None]
     assert plain is not None
     assert late is not None
     assert np.mean(np.abs(np.diff(case.flights[0].log.y[:, 1])) == 0.0) > 0.15

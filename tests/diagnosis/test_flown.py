@@ -47,7 +47,7 @@ def readings(law: HostLaw, rig: Flown | SteppedPlant, samples: int = 500) -> np.
     [
         {},
         {"azimuth.cable_spring": {"k": 0.003, "angle_0": 0.1, "h": 0.0}},
-        {"main_input.delay": {"tau": 0.013}, "psi_sensor.delay": {"tau": 0.033}},
+        {"main_input.delay": {"tau": 0.013}, "psi_sensor.delay": {"tau": 0.033, "jitter": 0.0}},
     ],
 )
 def test_it_moves_as_the_simulation_does(
@@ -70,6 +70,16 @@ def test_unrest_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case,
     held = readings(law, Flown(case, restless, x0, locked=("elevation",), seed=1), 200)
     assert np.all(held[:, 0] == 0.0)
     assert np.ptp(held[:, 1]) > 0.0
+
+
+def test_a_delay_scatters_by_the_seed_and_not_at_all_on_average(plant: BoundPlant, case: Case, law: HostLaw) -> None:
+    x0 = equilibrium(plant, 0.0).x0
+    steady, unsteady = (
+        _supposed(case, {"phi_sensor.delay": {"tau": 0.033, "jitter": jitter_s}}) for jitter_s in (0.0, 0.005)
+    )
+    assert np.array_equal(readings(law, Flown(case, unsteady, x0)), readings(law, Flown(case, steady, x0)))
+    shaken = [readings(law, Flown(case, supposed, x0, seed=1)) for supposed in (steady, unsteady)]
+    assert not np.array_equal(*shaken)
 
 
 def test_what_leaves_all_bounds_is_lost(plant: BoundPlant, case: Case) -> None:

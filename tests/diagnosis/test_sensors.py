@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.lattice import coarse_step, grid_evidence
-from diagnosis.sensors import behind_play, standing_rows
+from diagnosis.sensors import behind_play, standing_rows, unsure_when
 from diagnosis.tape import Tape, late, tape_of
 from records.log import RunLog
 from records.plant import load_plant
@@ -37,6 +37,18 @@ def tape(y: np.ndarray) -> Tape:
         loss_power=np.zeros(rows),
         untold_s=np.zeros(rows),
     )
+
+
+def test_a_reading_of_unsure_time_is_as_unsure_as_its_rate_makes_it() -> None:
+    # Truth: 2 ms at 0.3 rad/s are 0.6 mrad; where the axis stands, time does not matter.
+    rows = np.arange(400)
+    angle = STEP * np.round(0.003 * np.minimum(rows, 200) / STEP)
+    found = unsure_when(tape(angle), 0, 2e-3, STEP**2 / 12).r[:, 0] - STEP**2 / 12
+    np.testing.assert_allclose(found[10:190], (0.3 * 2e-3) ** 2, rtol=0.15)
+    assert np.all(found[210:] == 0.0)
+    # Noise that the readings had shown beside the step is that scatter, on average.
+    noisy = replace(tape(angle), r=np.full((400, 1), 2 * STEP**2 / 12), single=np.array([2 * STEP**2 / 12]))
+    assert unsure_when(noisy, 0, 2e-3, STEP**2 / 12).r.mean() == pytest.approx(2 * STEP**2 / 12)
 
 
 def test_a_coarse_grid_is_seen_with_its_step() -> None:

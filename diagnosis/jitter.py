@@ -1,0 +1,110 @@
+"""How much the delay of a sensor scatters, by maximum likelihood: slopes of the innovations under fixed gains know nothing of it.
+
+Fast motion that a plant predicts badly looks alike to the likelihood, but not to the readings by themselves: scatter that is new with each
+reading shows in their fourth differences, which smooth motion leaves alone,
+
+(1)  E (d4 y)^2 / 70 = r + (dy/dt jitter)^2,
+
+so that those of faster readings are the larger. What they do not show is no scatter, and what they may show at most is its bound.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.abreast import each
+from diagnosis.case import Case
+from diagnosis.fit import SCATTERS, likelihood
+from diagnosis.hypothesis import Supposed, passes
+from diagnosis.sensors import rates
+
+SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay
+FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
+LEAST = 5.0  # nats: scatter that explains less is left out
+FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
+SURE = 5.0  # standard errors, as fourth differences share readings: three if they did not
+LEAST_READINGS = 30  # faster ones than a step a row
+TWICE = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
+
+Array = NDArray[np.float64]
+
+
+def with_jitter(case: Case, supposed: Supposed, effects: Iterable[str]) -> Supposed:
+    """The same with the scatter of those of `effects` that are a sensor's delay, likeliest by the logs; 0 where it explains little."""
+    for name in effects:
+        if scatters(case, name):
+            supposed = _likeliest(case, supposed, name)
+    return supposed
+
+
+def most_shown_s(case: Case, output: str) -> float:
+    """The largest scatter (s) that readings of an output leave room for by themselves; 0 where the faster half is no less smooth."""
+    step = case.kit.bound.plant.sensors.get(output, 0.0)
+    place = case.kit.outputs.index(output)
+    found = [_roughness(flight.log.t_s, flight.tape.read[:, place], step) for flight in case.flights]
+    square, rate = np.concatenate(found, axis=1)
+    if len(rate) < LEAST_READINGS:
+        return 0.0
+    fast = rate >= np.median(rate)
+    more = float(np.mean(square[fast]) - np.mean(square[~fast]))
+    error = float(np.hypot(*(np.std(square[half]) / np.sqrt(np.sum(half)) for half in (fast, ~fast))))
+    if more <= SURE * error:
+        return 0.0
+    faster = float(np.mean(rate[fast] ** 2) - np.mean(rate[~fast] ** 2))
+    return float(np.sqrt(TWICE * (more + SURE * error) / faster))
+
+
+def scatters(case: Case, name: str) -> bool:
+    """Whether an effect has a scatter."""
+    return SCATTERS in case.kit.effects[name].parameter
+
+
+def jitter_sd(case: Case, supposed: Supposed, name: str) -> float:
+    """What is known of a delay's scatter (s, one standard deviation), by the likelihood over a fifth of it to both sides.
+
+    Of none, what costs half a nat: the likelihood falls with the square of a scatter that is not there. As large as what was tried where
+    the likelihood falls by less than that.
+    """
+    tau_s, jitter_s = (supposed.effects[name][symbol] for symbol in ("tau", SCATTERS))
+    reach = 0.2 * jitter_s if jitter_s > 0.0 else SHARES[0] * tau_s
+    found = _tried(case, supposed, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
+    lost = found[jitter_s] - 0.5 * (found[max(jitter_s - reach, 0.0)] + found[jitter_s + reach])
+    lost = lost if jitter_s > 0.0 else 2.0 * lost
+    return float(reach * np.sqrt(0.5 / lost)) if 0.5 < lost < np.inf else reach
+
+
+def _roughness(t_s: Array, read: Array, step: float) -> Array:
+    """(d4 y)^2 / 70 and the rate about it (2, readings) where an axis turns by more than a step of its encoder a row."""
+    t_s, read = t_s[np.isfinite(read)], read[np.isfinite(read)]
+    square = np.diff(read, 4) ** 2 / FOURTH
+    rate = np.abs(rates(t_s, read))[2:-2]
+    faster = rate * (t_s[4:] - t_s[:-4]) > 4.0 * step
+    return np.stack([square[faster], rate[faster]])
+
+
+def _likeliest(case: Case, supposed: Supposed, name: str) -> Supposed:
+    tau_s = supposed.effects[name]["tau"]
+    most_s = most_shown_s(case, case.kit.bound.model.places.sensors[name.split(".")[0]].output)
+    if most_s == 0.0:
+        return _with(supposed, name, 0.0)
+    coarse = _tried(case, supposed, name, (0.0, *(share * tau_s for share in SHARES if share * tau_s < most_s), most_s))
+    best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
+    found = coarse | _tried(case, supposed, name, [share * best for share in FINELY])
+    best = max(found, key=lambda jitter_s: found[jitter_s])
+    return _with(supposed, name, best if found[best] > found[0.0] + LEAST else 0.0)
+
+
+def _tried(case: Case, supposed: Supposed, name: str, values_s: Iterable[float]) -> dict[float, float]:
+    """The log likelihood by jitter."""
+
+    def value(jitter_s: float) -> float:
+        runs = passes(case, _with(supposed, name, jitter_s))
+        return -np.inf if runs is None else likelihood(runs)
+
+    asked = sorted(set(values_s))
+    return dict(zip(asked, each(value, asked), strict=True))
+
+
+def _with(supposed: Supposed, name: str, jitter_s: float) -> Supposed:
+    return supposed.with_effects({**supposed.effects, name: {**supposed.effects[name], SCATTERS: jitter_s}})

@@ -1,0 +1,64 @@
+"""A sensor's delay that is never quite the same: told as that delay with its scatter, and nothing beside it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from design.settings import read_settings
+from design.table import design
+from diagnosis.case import make_case
+from diagnosis.engine import Material, diagnose, nominal_fit
+from diagnosis.jitter import jitter_sd, most_shown_s, with_jitter
+from diagnosis.kit import make_kit
+from records.log import RunLog
+from sim.bind import BoundPlant
+from sim.effects.api import with_effects
+from sim.loop import fly_law
+from sim.manoeuvres import Manoeuvre, at_rest
+
+TAU_S, JITTER_S = 0.03, 0.003
+DELAY = "psi_sensor.delay"
+
+
+def late_flight(plant: BoundPlant, jitter_s: float) -> RunLog:
+    """Half a minute in which elevation turns at some 0.5 rad/s, read TAU_S late, more or less."""
+    table, _ = design(plant, read_settings(plant))
+    t_s = np.arange(0.0, 30.0, 0.01)
+    waves = np.column_stack([0.5 * np.sin(1.8 * t_s), 0.8 * np.sin(1.1 * t_s)])
+    lively = Manoeuvre("waves", t_s, waves, at_rest(plant))
+    late = with_effects(plant, {DELAY: {"tau": TAU_S, "jitter": jitter_s}})
+    return replace(fly_law(late, table, lively), extra={})
+
+
+def test_it_is_found_with_its_scatter(plant: BoundPlant) -> None:
+    result = diagnose(plant, Material([late_flight(plant, JITTER_S)], [], [], []))
+    assert result.diagnosis.found == (DELAY,)
+    found = result.diagnosis.effects[0].parameters
+    assert found["tau"].value == pytest.approx(TAU_S, rel=0.03)
+    assert found["jitter"].value == pytest.approx(JITTER_S, rel=0.15)
+    assert abs(found["jitter"].value - JITTER_S) < 3.0 * found["jitter"].sd < 0.5 * JITTER_S
+    assert list(found) == ["tau", "jitter"]
+
+
+def test_a_steady_delay_has_none(plant: BoundPlant) -> None:
+    case = make_case(make_kit(plant), [late_flight(plant, 0.0)])
+    supposed = nominal_fit(case).supposed.with_effects({DELAY: {"tau": TAU_S, "jitter": 0.0}})
+    assert with_jitter(case, supposed, [DELAY]).effects[DELAY]["jitter"] == 0.0
+    assert 0.0 < jitter_sd(case, supposed, DELAY) < 0.03 * TAU_S
+
+
+def test_readings_show_at_most_what_they_scatter(plant: BoundPlant) -> None:
+    # Truth: motion alone, however fast, shows none. What shows leaves room for scatter that neighbours share, sqrt 5, and for chance.
+    def most_s(jitter_s: float) -> float:
+        return most_shown_s(make_case(make_kit(plant), [late_flight(plant, jitter_s)]), "psi_rad")
+
+    assert most_s(0.0) == 0.0
+    assert JITTER_S < most_s(JITTER_S) < 3.0 * JITTER_S
+
+
+def test_noise_that_is_the_same_at_all_speeds_is_no_scatter(plant: BoundPlant) -> None:
+    # Truth: 2 mrad of noise, twice what 3 ms of scatter would bring at 0.3 rad/s.
+    log = late_flight(plant, 0.0)
+    noise = 2e-3 * np.random.default_rng(5).standard_normal(log.y.shape)
+    assert most_shown_s(make_case(make_kit(plant), [replace(log, y=log.y + noise)]), "psi_rad") == 0.0
