@@ -16,11 +16,11 @@ from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.kit import make_kit
 from diagnosis.lost_frames import with_losses
-from diagnosis.near_rest import yielding
+from diagnosis.near_rest import needed, yielding
 from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.retune import Retune, retune
 from diagnosis.screen import look
-from diagnosis.search import Search, search
+from diagnosis.search import Alone, Search, alone, search
 from diagnosis.start import FIRST_UNREST
 from diagnosis.trial import Tried, evidence
 from diagnosis.unknown import left_beside
@@ -45,7 +45,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
     demand_wiring(seen.case, seen.retuned.fit, nominal_fit)
-    seen, found = _yielded(*_searched(seen))
+    seen, found = _explained(seen)
     if found is None:
         return no_gap(seen, material, _holdout(seen, material))
     beyond = retune(seen.case, seen.retuned.fit)
@@ -81,20 +81,41 @@ def _looked_at(case: Case, checked: Case | None) -> Seen:
     return Seen(case, checked, retuned, ground, tuple(looks), lossy, detect(case, ground, looks, lossy))
 
 
-def _searched(seen: Seen) -> tuple[Seen, Search]:
-    return seen, search(seen.case, seen.retuned.fit, seen.case.kit.candidates, seen.ground, seen.looks, seen.lossy)
+def _explained(seen: Seen) -> tuple[Seen, Search | None]:
+    """What explains the gap, with axes that yield near rest where that is part of it; no search where no gap is left then.
 
-
-def _yielded(seen: Seen, found: Search) -> tuple[Seen, Search | None]:
-    """The same, or all anew with axes that yield near rest where that explains the logs better; no search where no gap is left then."""
-    case = yielding(seen.case, (*found.tried[:ASKED], seen.retuned))
-    if case is seen.case:
+    They are asked beside single effects first, as a rig that yields is searched in vain by a plant that sticks; what is then found
+    must still need them.
+    """
+    begun = _alone(seen)
+    again = _yielding(seen, begun.best(ASKED))
+    if again is not None:
+        further = _searched(again)
+        if needed(seen.case, again.retuned if further is None else further.tried[0]):
+            return again, further
+    found = search(seen.case, seen.case.kit.candidates, begun)
+    again = _yielding(seen, found.tried[:ASKED])
+    if again is None:
         return seen, found
-    again = _looked_at(case, seen.checked)
-    if again.detection.p > ALARM:
-        return (again, None) if again.retuned.evidence > found.tried[0].evidence else (seen, found)
-    again, further = _searched(again)
-    return (again, further) if further.tried[0].evidence > found.tried[0].evidence else (seen, found)
+    further = _searched(again)
+    best = again.retuned if further is None else further.tried[0]
+    return (again, further) if best.evidence > found.tried[0].evidence else (seen, found)
+
+
+def _yielding(seen: Seen, found: Sequence[Tried]) -> Seen | None:
+    """All anew with axes that yield near rest, where that explains the logs better beside one of those found; else None."""
+    asked = list(found) if seen.retuned in found else [*found, seen.retuned]
+    case = yielding(seen.case, asked)
+    return None if case is seen.case else _looked_at(case, seen.checked)
+
+
+def _searched(seen: Seen) -> Search | None:
+    """What is found where there is a gap."""
+    return None if seen.detection.p > ALARM else search(seen.case, seen.case.kit.candidates, _alone(seen))
+
+
+def _alone(seen: Seen) -> Alone:
+    return alone(seen.case, seen.retuned, seen.case.kit.candidates, seen.ground, seen.looks, seen.lossy)
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> Judged:

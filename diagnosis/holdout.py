@@ -11,6 +11,7 @@ from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.instants import happens
 from diagnosis.predict import WINDOW_S
+from diagnosis.prior import at_its_end
 from diagnosis.retune import Retune
 from diagnosis.shrinkage import Predicted, error, predict_all, shrinkage
 from diagnosis.start import FIRST_UNREST
@@ -77,7 +78,7 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
     if not weighed.tried or weighed.unknown < weighed.probabilities[0]:
         return weighed
     first = weighed.tried[0]
-    if left > LITTLE * (first.evidence - stated.evidence):
+    if left > LITTLE * (first.evidence - stated.evidence) or any(at_its_end(name, first) for name in first.effects):
         return weighed
     gone = holdout.shrinkage(holdout.predicted(first)).fraction
     return weighed if gone is None or gone < NEARLY_ALL else weighed.with_unknown(min(1.0 - gone, weighed.unknown))

@@ -41,6 +41,13 @@ def yielding(case: Case, found: Sequence[Tried]) -> Case:
     return replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact})
 
 
+def needed(case: Case, best: Tried) -> bool:
+    """Whether a hypothesis found where axes yield is worth as much more as that must be, than the same under `case`, where they do not."""
+    kept = {name: v for name, v in best.fit.supposed.effects.items() if name in case.stated or name in best.effects}
+    fitted = fit(case, with_unrest(case, best.fit.supposed.with_effects(kept)), rounds=4)
+    return fitted is None or best.evidence > evidence(fitted) + WORTH
+
+
 def _yielded(case: Case, found: Fit) -> tuple[Supposed, float]:
     """What was fitted with those axes that yield beside it, one after the other, and what that gains."""
     supposed, value = found.supposed, found.log_likelihood

@@ -30,6 +30,9 @@ UNSEEN_LOSSES_S = (
 )
 # In units of the scale on which hypotheses are compared.
 RARE, WRONG_WAY, NOTHING_NEW = 2.0, 4.5, 9.0
+AT_ITS_END = (
+    4.5  # of a size at the end of its range, which holds what such rigs have: a lag of a second is something else
+)
 PLAIN = 0.1  # by which a constant force goes before what fits as well
 OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another name
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
@@ -55,7 +58,16 @@ def _odds(name: str, tried: Tried) -> float:
         odds -= NOTHING_NEW
     if kind in SAME_AS_PARAMETERS:
         odds -= OWN_PARAMETERS
+    if at_its_end(name, tried):
+        odds -= AT_ITS_END
     return odds
+
+
+def at_its_end(name: str, tried: Tried) -> bool:
+    """Whether a fitted size of an effect went as far from zero as it may."""
+    values = tried.fit.supposed.effects[name]
+    sizes = [entry.parameter for entry in tried.fit.free if entry.effect == name and entry.parameter.is_size]
+    return any(values[size.symbol] in {size.lower, size.upper} - {size.zero} for size in sizes)
 
 
 def _left_by_losses(name: str, tried: Tried) -> bool:

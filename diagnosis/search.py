@@ -14,7 +14,7 @@ from diagnosis.fit import Fit
 from diagnosis.ground import Ground, ground_of
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.screen import Look, look
-from diagnosis.trial import Job, Tried, evidence, keep_better, once_more, refined, rough, tried_as
+from diagnosis.trial import Job, Tried, keep_better, once_more, refined, rough, tried_as
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
@@ -28,6 +28,22 @@ ONCE_MORE = 3  # of the best fits, those that went far
 CERTAIN, LIKELY = 3.5, 1.5  # standard deviations
 MISSED = 15.0  # nats
 WORTH_REFINING = 0.2  # of the best first fit's gain
+
+
+@dataclass(frozen=True, eq=False)
+class Alone:
+    """Single effects as fitted, the nominal plant, and the effects that are worth a costly look beside others; `ground` and `looks` are
+    those of the nominal plant."""
+
+    found: Mapping[frozenset[str], Tried]
+    nominal: Tried
+    worth: frozenset[str]
+    ground: Ground
+    looks: tuple[Look, ...]
+
+    def best(self, count: int) -> list[Tried]:
+        """So many of them, the nominal plant among them, best evidence first."""
+        return sorted((*self.found.values(), self.nominal), key=lambda entry: -entry.evidence)[:count]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,14 +63,14 @@ class Search:
         return next((entry for entry in self.tried if frozenset(entry.effects) == wanted), None)
 
 
-def search(
-    case: Case, nominal: Fit, names: Sequence[str], ground: Ground, looks: Sequence[Look], lossy: Fit | None = None
-) -> Search:
-    """Fit the nominal plant with single effects, pairs and triples of `names`; `nominal` is its fit without any, `looks` those from it,
-    `lossy` its fit with lost frames."""
+def alone(
+    case: Case, first: Tried, names: Sequence[str], ground: Ground, looks: Sequence[Look], lossy: Fit | None = None
+) -> Alone:
+    """Fit the nominal plant with single effects of `names`; `first` is it without any, `looks` those from there, `lossy` its fit with
+    lost frames."""
+    nominal = first.fit
     worth = _worth(looks)
     found = {} if lossy is None else {frozenset((LOST_FRAMES,)): tried_as(case, lossy)}
-    first = Tried((), nominal, evidence(nominal))
     calm = calmed(case, nominal)
     jobs = _promising(nominal, looks, False)[:SINGLES]
     if calm is not None:
@@ -62,6 +78,12 @@ def search(
         worth |= _worth(calm_looks)
         jobs = [*_first_of_each(_promising(calm, calm_looks, True)), *jobs[:CALM_SINGLES]]
     _fit_all(case, jobs, found, first)
+    return Alone(found, first, frozenset(worth), ground, tuple(looks))
+
+
+def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
+    """Fit pairs and triples of `names` that grow from the single effects."""
+    found, first, worth = dict(begun.found), begun.nominal, begun.worth
     for beam in BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
@@ -72,7 +94,7 @@ def search(
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
-    return Search(tuple(tried), first, bool(certain), ground, tuple(looks))
+    return Search(tuple(tried), first, bool(certain), begun.ground, begun.looks)
 
 
 def _worth(looks: Sequence[Look]) -> set[str]:

@@ -1,11 +1,13 @@
 """What is believed before any log: common before rare, no spring that pushes away; and small gaps that nothing explains are none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis.detect import Detection, FormScores
 from diagnosis.engine import borne_out, confirmed_by
-from diagnosis.fit import Fit
+from diagnosis.fit import Fit, Free
 from diagnosis.ground import Scores
 from diagnosis.hypothesis import Supposed
 from diagnosis.prior import prior_odds
@@ -14,6 +16,7 @@ from diagnosis.result import Judged
 from diagnosis.search import Search
 from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed, weigh
+from sim.effects.effect import EffectParameter
 
 
 def tried(evidence: float = 0.0, **effects: dict[str, float]) -> Tried:
@@ -36,6 +39,15 @@ def test_a_spring_that_pushes_away_is_less_probable_than_one_that_pulls() -> Non
 def test_a_constant_force_belongs_to_joints_that_gravity_pushes() -> None:
     carriage, turntable = (tried(**{f"{axis}__offset_force": {"offset": 0.1}}) for axis in ("carriage", "azimuth"))
     assert prior_odds(carriage) > prior_odds(turntable)
+
+
+@pytest.mark.parametrize(("tau_s", "further"), [(0.99, 0.0), (1.0, 4.5), (0.0, 0.0)])
+def test_a_size_at_the_end_of_its_range_is_rather_something_else(tau_s: float, further: float) -> None:
+    # A lag of a second beside air of 0.9 rad/s per root second followed a torque that drifted, 1.6e3 nats better than no lag.
+    usual, asked = (tried(psi_sensor__lag={"tau": value}) for value in (0.02, tau_s))
+    lag = EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0)
+    free = replace(asked, fit=replace(asked.fit, free=(Free("psi_sensor.lag", lag, 0.02),)))
+    assert prior_odds(usual) - prior_odds(free) == pytest.approx(further)
 
 
 def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
