@@ -17,9 +17,10 @@ LEAST = 20.0  # nats by which an axis must explain more when it creeps or gives,
 WORTH = 80.0  # and all together: rigs that creep gained 110 to 765, sealed flights whose friction is a bed of stiff bristles 63 at most
 
 
-def yielding(case: Case, found: Sequence[Tried]) -> Case:
+def yielding(case: Case, found: Sequence[Tried], further: float = 0.0) -> Case:
     """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first; else the same.
 
+    That must explain WORTH and `further` nats more than the best of them.
     It is asked beside them, as under a model that lacks something else an axis often seems to creep; and beside more than the best, as
     where the axes do creep the best is one that makes up for it.
     """
@@ -28,7 +29,7 @@ def yielding(case: Case, found: Sequence[Tried]) -> Case:
         ((tried.evidence + gained, tried, supposed) for tried, supposed, gained in asked if gained > 0.0),
         key=lambda entry: -entry[0],
     )
-    best, yields = found[0].evidence + WORTH, dict[str, Values]()
+    best, yields = found[0].evidence + WORTH + further, dict[str, Values]()
     for _, tried, supposed in promising[:FITTED]:
         fitted = fit(case, supposed, rounds=4)
         if fitted is not None and evidence(fitted) > best:
