@@ -37,9 +37,9 @@ PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
 ASKED = 4  # hypotheses beside which axes may yield
-EARLY_SHARE = (
-    0.2  # of what the best single effect explains: 0.02 at EMPS, whose friction is dry, 1 and more where rigs do yield
-)
+# Of what the best single effect explains, that yielding axes must explain besides: 0.02 at EMPS, whose friction is dry, 1 and more
+# where rigs do yield.
+EARLY_SHARE = 0.2
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -115,7 +115,7 @@ def _yielding(seen: Seen, found: Sequence[Tried], further: float = 0.0) -> Seen 
 
 
 def _searched(seen: Seen) -> Search | None:
-    """What is found where there is a gap."""
+    """What is found; None where there is no gap."""
     return None if seen.detection.p > ALARM else search(seen.case, seen.case.kit.candidates, _alone(seen))
 
 

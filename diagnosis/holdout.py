@@ -74,7 +74,10 @@ def holdout_of(
 
 
 def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) -> Weighed:
-    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found."""
+    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found.
+
+    What has a size at the end of its range is not asked: it may predict well, and is not what it is called.
+    """
     if not weighed.tried or weighed.unknown < weighed.probabilities[0]:
         return weighed
     first = weighed.tried[0]

@@ -25,7 +25,7 @@ LEAST = 5.0  # nats: scatter that explains less is left out
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
 SURE = 5.0  # standard errors, as fourth differences share readings: three if they did not
 LEAST_READINGS = 30  # faster ones than a step a row
-TWICE = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
+SHARED = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
 Array = NDArray[np.float64]
 
@@ -39,20 +39,25 @@ def with_jitter(case: Case, supposed: Supposed, effects: Iterable[str]) -> Suppo
 
 
 def most_shown_s(case: Case, output: str) -> float:
-    """The largest scatter (s) that readings of an output leave room for by themselves; 0 where the faster half is no less smooth."""
+    """The largest scatter (s) that readings of an output leave room for by themselves, by (1).
+
+    0 where the faster half of those that turn by more than a step a row is no less smooth, or none is faster than another.
+    """
     step = case.kit.bound.plant.sensors.get(output, 0.0)
     place = case.kit.outputs.index(output)
-    found = [_roughness(flight.log.t_s, flight.tape.read[:, place], step) for flight in case.flights]
+    found = [_roughness(flight.tape.t_s, flight.tape.read[:, place], step) for flight in case.flights]
     square, rate = np.concatenate(found, axis=1)
     if len(rate) < LEAST_READINGS:
         return 0.0
     fast = rate >= np.median(rate)
+    if fast.all():
+        return 0.0
     more = float(np.mean(square[fast]) - np.mean(square[~fast]))
     error = float(np.hypot(*(np.std(square[half]) / np.sqrt(np.sum(half)) for half in (fast, ~fast))))
     if more <= SURE * error:
         return 0.0
     faster = float(np.mean(rate[fast] ** 2) - np.mean(rate[~fast] ** 2))
-    return float(np.sqrt(TWICE * (more + SURE * error) / faster))
+    return float(np.sqrt(SHARED * (more + SURE * error) / faster))
 
 
 def scatters(case: Case, name: str) -> bool:

@@ -20,9 +20,9 @@ WORTH = 80.0  # and all together: rigs that creep gained 110 to 765, sealed flig
 def yielding(case: Case, found: Sequence[Tried], further: float = 0.0) -> Case:
     """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first; else the same.
 
-    That must explain WORTH and `further` nats more than the best of them.
-    It is asked beside them, as under a model that lacks something else an axis often seems to creep; and beside more than the best, as
-    where the axes do creep the best is one that makes up for it.
+    They must then be WORTH and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
+    something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
+    for it.
     """
     asked = [(tried, *_yielded(case, tried.fit)) for tried in found]
     promising = sorted(

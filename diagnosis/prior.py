@@ -30,9 +30,8 @@ UNSEEN_LOSSES_S = (
 )
 # In units of the scale on which hypotheses are compared.
 RARE, WRONG_WAY, NOTHING_NEW = 2.0, 4.5, 9.0
-AT_ITS_END = (
-    4.5  # of a size at the end of its range, which holds what such rigs have: a lag of a second is something else
-)
+# Of a size at the end of its range, which holds what such rigs have: a lag of a second is something else.
+AT_ITS_END = 4.5
 PLAIN = 0.1  # by which a constant force goes before what fits as well
 OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another name
 SAME_AS_PARAMETERS = ("gain", "balance_weight")

@@ -66,8 +66,8 @@ class Search:
 def alone(
     case: Case, first: Tried, names: Sequence[str], ground: Ground, looks: Sequence[Look], lossy: Fit | None = None
 ) -> Alone:
-    """Fit the nominal plant with single effects of `names`; `first` is it without any, `looks` those from there, `lossy` its fit with
-    lost frames."""
+    """Fit the nominal plant with single effects of `names`; `first` is that plant without any, `looks` those from there, `lossy` its
+    fit with lost frames."""
     nominal = first.fit
     worth = _worth(looks)
     found = {} if lossy is None else {frozenset((LOST_FRAMES,)): tried_as(case, lossy)}

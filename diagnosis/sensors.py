@@ -57,7 +57,7 @@ def unsure_when(tape: Tape, output: int, jitter_s: float, stated: float) -> Tape
 
 
 def rates(t_s: Array, read: Array) -> Array:
-    """How fast readings (n,) change, per second."""
+    """How fast readings (n,) at the instants t_s (n,) change, in their unit per second, over RATE_S to both sides; 0 of a single one."""
     before = np.searchsorted(t_s, t_s - RATE_S)
     behind = np.minimum(np.searchsorted(t_s, t_s + RATE_S), len(t_s) - 1)
     passed_s = t_s[behind] - t_s[before]

@@ -62,3 +62,10 @@ def test_noise_that_is_the_same_at_all_speeds_is_no_scatter(plant: BoundPlant) -
     log = late_flight(plant, 0.0)
     noise = 2e-3 * np.random.default_rng(5).standard_normal(log.y.shape)
     assert most_shown_s(make_case(make_kit(plant), [replace(log, y=log.y + noise)]), "psi_rad") == 0.0
+
+
+def test_an_axis_that_turns_at_one_speed_shows_nothing(plant: BoundPlant) -> None:
+    # Truth: without a faster half there is nothing to compare.
+    log = late_flight(plant, 0.0)
+    steady = np.column_stack([0.5 * log.t_s, log.y[:, 1]])
+    assert most_shown_s(make_case(make_kit(plant), [replace(log, y=steady)]), "psi_rad") == 0.0

@@ -11,7 +11,7 @@ from design.table import design
 from diagnosis.case import make_case
 from diagnosis.engine import Material, diagnose, nominal_fit
 from diagnosis.kit import make_kit
-from diagnosis.near_rest import yielding
+from diagnosis.near_rest import needed, yielding
 from diagnosis.tape import tape_of
 from diagnosis.trial import Tried, evidence
 from records.log import RunLog
@@ -79,6 +79,24 @@ def test_axes_that_give_before_they_slide_are_taken_to(plant: BoundPlant) -> Non
     assert set(supposed) == set(GIVE)
     for name in GIVE:
         assert supposed[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
+
+
+@pytest.mark.parametrize(("effects", "is_needed"), [(GIVE, True), ({}, False)])
+def test_axes_that_give_are_kept_only_where_the_logs_need_it(
+    plant: BoundPlant, effects: Mapping[str, Mapping[str, float]], is_needed: bool
+) -> None:
+    # Truth: a rig whose friction gives over 3 mrad, and one that sticks, each as fitted by a plant that gives.
+    plain = make_case(make_kit(plant), [default_flight(plant, effects)])
+    taken = replace(plain, stated=GIVE, stated_sd={name: {"z_0": 0.0} for name in GIVE})
+    found = nominal_fit(taken)
+    assert needed(plain, Tried((), found, evidence(found))) is is_needed
+
+
+def test_axes_give_only_for_what_is_asked_of_them(plant: BoundPlant) -> None:
+    # Truth: no flight of 50 s is a million nats likelier for its friction.
+    case = make_case(make_kit(plant), [default_flight(plant, GIVE)])
+    nominal = nominal_fit(case)
+    assert yielding(case, [Tried((), nominal, evidence(nominal))], further=1e6) is case
 
 
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:

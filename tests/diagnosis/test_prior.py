@@ -9,6 +9,7 @@ from diagnosis.detect import Detection, FormScores
 from diagnosis.engine import borne_out, confirmed_by
 from diagnosis.fit import Fit, Free
 from diagnosis.ground import Scores
+from diagnosis.holdout import overruled
 from diagnosis.hypothesis import Supposed
 from diagnosis.prior import prior_odds
 from diagnosis.replicas import Tail
@@ -48,6 +49,14 @@ def test_a_size_at_the_end_of_its_range_is_rather_something_else(tau_s: float, f
     lag = EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0)
     free = replace(asked, fit=replace(asked.fit, free=(Free("psi_sensor.lag", lag, 0.02),)))
     assert prior_odds(usual) - prior_odds(free) == pytest.approx(further)
+
+
+def test_a_hold_out_does_not_speak_for_a_size_at_the_end_of_its_range() -> None:
+    # Truth: what is not asked of the hold-out needs none.
+    named = tried(2000.0, psi_sensor__lag={"tau": 1.0})
+    lag = Free("psi_sensor.lag", EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0), 0.02)
+    weighed = Weighed((replace(named, fit=replace(named.fit, free=(lag,))),), (0.1,), 0.9, 0.0, 10.0)
+    assert overruled(object(), weighed, tried(), left=1.0) is weighed  # type: ignore[arg-type]
 
 
 def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
