@@ -7,6 +7,7 @@ compiled library: a second diagnosis of the same kind of plant starts at once.
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import chain
@@ -19,7 +20,7 @@ import sympy
 from numpy.typing import NDArray
 
 import sim
-from diagnosis.abreast import each
+from diagnosis.abreast import WORKERS
 from diagnosis.filter import Filter, build_filter, equations_text, open_filter
 from diagnosis.lagged import lagged
 from records.errors import BadInput
@@ -35,6 +36,7 @@ from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
 EQUATIONS = Lock()  # algebra is Python's, which does one thing at a time; compilers work side by side
+AHEAD = ThreadPoolExecutor(WORKERS)  # builds what will be asked for; the process ends when it has
 VARIANTS: dict[str, Lock] = {}  # by plant and effects: one builds a variant, others wait for it
 
 
@@ -103,9 +105,14 @@ class Kit:
         return _variant(self, ())
 
     def prepare(self) -> None:
-        """Open the variants that every search asks for, those not on disk yet built side by side."""
+        """Begin to open the variants that every diagnosis asks for, in the order in which it does; who needs one sooner waits for it."""
         lags = [name for name in self.effects if is_lag(name)]
-        each(self.variant, [(), self.names[:1], self.wide_names, self.bristles, *([lag] for lag in lags)])
+        for effects in ((), self.wide_names, self.names[:1], *([lag] for lag in lags)):
+            AHEAD.submit(self.variant, effects)
+
+    def prepare_bristles(self) -> None:
+        """The same with the variant that is asked for where there is a gap."""
+        AHEAD.submit(self.variant, self.bristles)
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
@@ -114,9 +121,10 @@ class Kit:
     def variant(self, effects: Iterable[str]) -> Variant:
         """The fastest variant that carries all of `effects` that any carries: each group of which one is wanted, and one lag."""
         wanted = {name for name in effects if self.carried(name)}
+        behind = sorted(filter(is_lag, wanted))
         groups = [group for group in (self.wide_names, self.bristles) if not wanted.isdisjoint(group)]
-        behind = sorted(filter(is_lag, wanted))[:1]
-        return _variant(self, (*self.names, *chain.from_iterable(groups), *behind) if wanted else ())
+        beside = (*self.names, *chain.from_iterable(groups)) if wanted.difference(behind) else ()
+        return _variant(self, (*beside, *behind[:1]))
 
 
 def is_lag(name: str) -> bool:
