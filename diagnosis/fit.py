@@ -138,9 +138,8 @@ def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) ->
         if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < ENOUGH:
             return at
         for _ in range(DAMPINGS):
-            moved = _moved(case, at, damping)
-            tried = _linear(case, moved, free)
-            if tried is not None and tried.log_posterior > at.log_posterior:
+            tried = _linear(case, _moved(case, at, damping), free, at.log_posterior)
+            if tried is not None:
                 break
             damping = max(4.0 * damping, 0.03)
         else:
@@ -166,13 +165,17 @@ def _moved(case: Case, at: Fit, damping: float) -> Supposed:
     return replace(at.supposed, theta=theta + step[:count], effects=effects)
 
 
-def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | None:
-    """Likelihood and linear problem at a point; None where the filter or its slopes fail."""
+def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...], least: float = -np.inf) -> Fit | None:
+    """Likelihood and linear problem at a point; None where the filter or its slopes fail, or it is no likelier than `least`."""
     variant = case.kit.variant(supposed.effects)
     inside = np.array([entry.effect in variant.names for entry in free], dtype=bool)
     places = [variant.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in variant.names]
     runs = passes(case, supposed, [*case.free.tolist(), *places], slopes=not inside.all())
     if runs is None:
+        return None
+    found = likelihood(runs)
+    log_posterior = found + log_prior(case, supposed, free)
+    if not log_posterior > least:
         return None
     count = len(case.free)
     own = np.concatenate([np.arange(count), count + np.flatnonzero(inside)])
@@ -191,8 +194,7 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...]) -> Fit | Non
     if not (np.isfinite(information).all() and np.isfinite(pull).all()):
         return None  # slopes that overflow: as good as a filter that fails
     _add_prior(case, supposed, free, information, pull)
-    found = likelihood(runs)
-    return Fit(supposed, found, found + log_prior(case, supposed, free), free, information, pull)
+    return Fit(supposed, found, log_posterior, free, information, pull)
 
 
 def unfitted(case: Case, unrest: Array) -> Fit | None:

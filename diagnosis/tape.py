@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 BEYOND_USUAL = 3.0
 CLEARLY = 2.0
 MISSING = 1.5  # times the usual step from row to row
+AT_ONCE_S = 1e-7  # instants closer to one another are one
 MERELY_ROUNDED = 1.01  # times the variance of rounding: no noise that would carry readings over an edge and back
 READINGS = {
     "y": np.nan,
@@ -155,10 +156,17 @@ def with_inputs(tape: Tape, stages: Sequence[InputStage]) -> Tape:
 
 def spread(tape: Tape, starts_s: Array, values: Array) -> Tape:
     """The tape with inputs that change at other instants, which join its own."""
-    t_s = np.union1d(tape.t_s, starts_s)
-    t_s = t_s[np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s)]
+    t_s = _merged(tape.t_s, starts_s)
     place = np.maximum(np.searchsorted(starts_s, t_s + 1e-9, side="right") - 1, 0)
     return _placed(tape, t_s, values[place])
+
+
+def _merged(own: Array, others: Array) -> Array:
+    """Instants in order: all of a tape's `own`, and of others those that are clearly behind the one before them."""
+    t_s = np.sort(np.concatenate((own, others)), kind="stable")  # which merges what is in order already
+    kept = np.append(True, np.diff(t_s) > AT_ONCE_S)
+    kept[np.searchsorted(t_s, own)] = True
+    return np.asarray(t_s[kept])
 
 
 def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
@@ -187,16 +195,15 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
     """
     if tau_s <= 0.0:
         return tape
-    t_s = np.union1d(tape.t_s, tape.t_s - tau_s)
-    t_s = t_s[(t_s >= tape.t_s[0]) & (np.append(True, np.diff(t_s) > 1e-7) | np.isin(t_s, tape.t_s))]
+    then = tape.t_s - tau_s
+    t_s = _merged(tape.t_s, then[then >= tape.t_s[0]])
     held = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
     moved = _placed(tape, t_s, tape.u[held])
-    then = tape.t_s - tau_s
-    seen = then >= t_s[0] - 1e-7
-    where = np.clip(np.searchsorted(t_s, then - 1e-7), 0, len(t_s) - 1)[seen]
+    seen = then >= t_s[0] - AT_ONCE_S
+    where = np.clip(np.searchsorted(t_s, then - AT_ONCE_S), 0, len(t_s) - 1)[seen]
     readings: dict[str, Any] = {}
     for name, none in READINGS.items():
-        readings[name] = getattr(moved, name).copy()
+        readings[name] = getattr(moved, name)
         readings[name][:, output] = _spread_out(getattr(tape, name)[seen, output], len(t_s), where, none)
     early = ~seen & np.isfinite(tape.y[:, output])
     return replace(moved, **readings, known=tape.known + float(np.sum(tape.usual[early, output])))
