@@ -132,15 +132,15 @@ def drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
 
 def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: int) -> Case:
     """The case with L of every frame, 0 where the command stays as it was; `sweeps` 0 takes every frame for itself."""
-    at = 0
-    flights: list[Flight] = []
-    for flight, unit in zip(case.flights, answers, strict=True):
-        rows = flight.tape.rows * (max(case.slots) + 1)
-        w = ground.w[at : at + rows].reshape(flight.tape.rows, -1)
-        at += rows
+    ends = np.cumsum([flight.tape.rows for flight in case.flights])[:-1]
+    columns = list(drives(case))
+
+    def judged(flight: Flight, unit: Array, w: Array) -> Flight:
         before = _supposed(flight.tape, ground.fit.supposed)
-        ratios, power = _ratios(flight.tape.u, list(drives(case)), unit, w, before, _judged(flight.tape), sweeps)
-        flights.append(replace(flight, tape=replace(flight.tape, lost=ratios, loss_power=power)))
+        ratios, power = _ratios(flight.tape.u, columns, unit, w, before, _judged(flight.tape), sweeps)
+        return replace(flight, tape=replace(flight.tape, lost=ratios, loss_power=power))
+
+    flights = each(judged, case.flights, answers, np.split(ground.w.reshape(-1, max(case.slots) + 1), ends))
     return case.with_flights(flights)
 
 
