@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-from diagnosis.search import Search
+from diagnosis.search import Search, certainties
 from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed
 from records.diagnosis import PlaceShare
@@ -31,13 +31,20 @@ def place_shares(
 
 
 def _parts(search: Search, tried: Tried) -> Mapping[str, float]:
-    """Shares of a hypothesis' places: what the evidence loses without each effect, where that was tried."""
-    losses = []
-    for name in tried.effects:
-        without = search.of(set(tried.effects) - {name}) if len(tried.effects) > 1 else search.nominal
-        losses.append(1.0 if without is None else max(tried.evidence - without.evidence, 1.0))
-    total = sum(losses)
+    """Shares of a hypothesis' places: what the evidence loses without each of its effects."""
+    losses = {name: max(_loss(search, tried, name), 1.0) for name in tried.effects}
+    total = sum(losses.values())
     parts: defaultdict[str, float] = defaultdict(float)
-    for name, loss in zip(tried.effects, losses, strict=True):
+    for name, loss in losses.items():
         parts[name.split(".")[0]] += loss / total
     return parts
+
+
+def _loss(search: Search, tried: Tried, name: str) -> float:
+    """What the evidence loses without an effect: half the square of how surely its size is not zero where that was not tried, at most what
+    all of them gain together."""
+    rest = set(tried.effects) - {name}
+    without = search.of(rest) if rest else search.nominal
+    if without is not None:
+        return tried.evidence - without.evidence
+    return min(0.5 * certainties(tried.fit).get(name, 0.0) ** 2, tried.evidence - search.nominal.evidence)
