@@ -11,9 +11,11 @@ from diagnosis.exchange import exchange
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
 from diagnosis.kit import make_kit
+from diagnosis.places import place_shares
 from diagnosis.screen import look
-from diagnosis.search import LEAST_GAIN
+from diagnosis.search import LEAST_GAIN, Search
 from diagnosis.trial import Tried, evidence, refined
+from diagnosis.weigh import Weighed
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
 from tests.diagnosis.conftest import Fly
@@ -65,3 +67,20 @@ def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: F
     looks = look(case, ground_of(case, nominal_fit(case)), case.kit.candidates)
     gains = {entry.effect: entry.gain for entry in looks}
     assert gains["main_input.saturation"] > LEAST_GAIN
+
+
+def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: BoundPlant, fly: Fly) -> None:
+    # Two effects of some size; of the two alone only one was tried, so that nothing says what the other takes from the evidence.
+    spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
+    late = {"main_input.delay": {"tau": 0.05}}
+    case = make_case(make_kit(plant), [fly(42, {**spring, **late}, air=False)])
+    nominal = nominal_fit(case)
+    both, single = (fitted(case, nominal, effects) for effects in ({**spring, **late}, late))
+    none = Tried((), nominal, evidence(nominal))
+    search = Search((both, single, none), none, True, ground_of(case, nominal), ())
+    weighed = Weighed((both,), (1.0,), 0.0, 0.0, 1.0)
+    shares = {row.place: row.share for row in place_shares(search, weighed, None)}
+    known = both.evidence - single.evidence  # what the spring gains beside the delay
+    assert known > 100.0
+    assert shares["main_input"] > 0.05
+    assert shares["main_input"] <= (both.evidence - none.evidence) / (both.evidence - none.evidence + known) + 1e-9
