@@ -1,10 +1,12 @@
-"""Compiled filters that several diagnoses want at once, with nothing in the cache yet."""
+"""Compiled filters: which one carries what, and that several diagnoses may want them at once with nothing in the cache yet."""
 
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+from diagnosis.kit import make_kit
+from sim.bind import BoundPlant
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 
@@ -33,6 +35,16 @@ with ThreadPoolExecutor(3) as pool:
     print(repr(list(pool.map(likelihood, range(6)))))
 """
 
+# A search is announced, and the process is through before anything of it is built.
+ANNOUNCE = """
+from diagnosis.kit import make_kit
+from tests.plants import bound
+
+kit = make_kit(bound("emps"))
+kit.prepare()
+kit.prepare_bristles()
+"""
+
 
 def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(tmp_path: Path) -> None:
     # The compiler keeps its own cache, which knows of processes; the project's starts empty.
@@ -50,3 +62,23 @@ def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(
     assert left == ["filter", "filter"]
     assert not [path for path in (tmp_path / "host").iterdir() if path.is_dir()]
     assert not list((tmp_path / "kits").glob(".*"))
+
+
+def test_what_was_announced_is_there_when_the_process_ends(tmp_path: Path) -> None:
+    (tmp_path / "zig").symlink_to(CACHE_DIR / "zig")
+    environment = {**os.environ, "TWINLAW_CACHE": str(tmp_path)}
+    said = subprocess.run(
+        [sys.executable, "-c", ANNOUNCE], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert (said.returncode, said.stderr) == (0, "")
+    # The plant alone, with the whole library, with what has no state, with the one sensor's lag, with axes that yield.
+    assert len([path for path in (tmp_path / "host").iterdir() if path.suffix == ".so"]) == 5
+    assert not [path for path in (tmp_path / "host").iterdir() if path.is_dir()]
+
+
+def test_a_lag_alone_is_carried_without_the_library(plant: BoundPlant) -> None:
+    kit = make_kit(plant)
+    alone, beside = (kit.variant(names) for names in (["psi_sensor.lag"], ["psi_sensor.lag", kit.names[0]]))
+    assert alone.names == {"psi_sensor.lag"}
+    assert alone.states == beside.states
+    assert beside.names == {"psi_sensor.lag", *kit.names}
