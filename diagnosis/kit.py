@@ -7,7 +7,6 @@ compiled library: a second diagnosis of the same kind of plant starts at once.
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import chain
@@ -20,7 +19,7 @@ import sympy
 from numpy.typing import NDArray
 
 import sim
-from diagnosis.abreast import WORKERS
+from diagnosis.abreast import ahead
 from diagnosis.filter import Filter, build_filter, equations_text, open_filter
 from diagnosis.lagged import lagged
 from records.errors import BadInput
@@ -36,7 +35,6 @@ from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
 EQUATIONS = Lock()  # algebra is Python's, which does one thing at a time; compilers work side by side
-AHEAD = ThreadPoolExecutor(WORKERS)  # builds what will be asked for; the process ends when it has
 VARIANTS: dict[str, Lock] = {}  # by plant and effects: one builds a variant, others wait for it
 
 
@@ -108,11 +106,11 @@ class Kit:
         """Begin to open the variants that every diagnosis asks for, in the order in which it does; who needs one sooner waits for it."""
         lags = [name for name in self.effects if is_lag(name)]
         for effects in ((), self.wide_names, self.names[:1], *([lag] for lag in lags)):
-            AHEAD.submit(self.variant, effects)
+            ahead(self.variant, effects)
 
     def prepare_bristles(self) -> None:
         """The same with the variant that is asked for where there is a gap."""
-        AHEAD.submit(self.variant, self.bristles)
+        ahead(self.variant, self.bristles)
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""

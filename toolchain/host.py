@@ -5,6 +5,7 @@ A fresh machine has no C compiler and no Python headers; ABI mode needs neither.
 
 import hashlib
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,7 @@ STRICT_FLOAT_FLAGS = (
 _LIBRARY_FLAGS = ("-shared", "-fPIC", "-g0")
 # What generated C may call, by the names that glibc gives its files.
 _C_LIBRARY = ("libm.so.6", "libc.so.6", "ld-linux")
+INTERRUPTED = (-signal.SIGINT, 128 + signal.SIGINT)  # exit status of a child, and of a shell's
 # Simulation kernels: still without contraction or re-ordering, so that single and batched runs agree to the bit.
 FAST_FLAGS = ("-O3", "-std=c11", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined")
 
@@ -63,9 +65,12 @@ def zig_environment() -> dict[str, str]:
 
 
 def run_zig(arguments: Sequence[str], what: str) -> None:
-    """Run `zig` with `arguments`; raises BadInput with the first error's file, line and text when it refuses."""
+    """Run `zig` with `arguments`; raises BadInput with the first error's file, line and text when it refuses, KeyboardInterrupt where
+    Ctrl-C, which reaches it too, ended it."""
     command = [sys.executable, "-m", "ziglang", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, env=zig_environment(), check=False)
+    if done.returncode in INTERRUPTED:
+        raise KeyboardInterrupt
     if done.returncode != 0:
         raise BadInput(
             what="C compilation",

@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
+from diagnosis.abreast import through_when_interrupted
 from diagnosis.clock import from_their_start
 from diagnosis.engine import Material, diagnose
 from diagnosis.firmware_replay_table import replay_log, table_of
@@ -35,7 +36,7 @@ def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], ou
     """Diagnose log files against a plant file and write all results into `out`; raises BadInput."""
     with stage("reading the logs and looking at them"):
         bound, material = read_material(plant, logs, holdout)
-    with stage("searching for what the model lacks"):
+    with stage("searching for what the model lacks"), through_when_interrupted():
         Thread(target=_load_ahead, daemon=True).start()
         result = diagnose(bound, material)
     for name, text in result_files(result, [path.name for path in logs]).items():

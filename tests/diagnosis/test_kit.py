@@ -1,10 +1,12 @@
 """Compiled filters: which one carries what, and that several diagnoses may want them at once with nothing in the cache yet."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
+from diagnosis.abreast import WORKERS
 from diagnosis.kit import make_kit
 from sim.bind import BoundPlant
 from tests.test_project import ROOT
@@ -45,6 +47,19 @@ kit.prepare()
 kit.prepare_bristles()
 """
 
+WAIT = """
+import signal, sys
+from diagnosis.abreast import through_when_interrupted
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+try:
+    with through_when_interrupted():
+        print("announced", flush=True)
+        signal.pause()
+except KeyboardInterrupt:
+    sys.exit(3)
+"""
+
 
 def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(tmp_path: Path) -> None:
     # The compiler keeps its own cache, which knows of processes; the project's starts empty.
@@ -82,3 +97,21 @@ def test_a_lag_alone_is_carried_without_the_library(plant: BoundPlant) -> None:
     assert alone.names == {"psi_sensor.lag"}
     assert alone.states == beside.states
     assert beside.names == {"psi_sensor.lag", *kit.names}
+
+
+def test_interrupted_it_begins_nothing_more(tmp_path: Path) -> None:
+    (tmp_path / "zig").symlink_to(CACHE_DIR / "zig")
+    command = [sys.executable, "-c", ANNOUNCE + WAIT]
+    environment = {**os.environ, "TWINLAW_CACHE": str(tmp_path)}
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command, cwd=ROOT, env=environment, stdout=pipe, stderr=pipe, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"announced\n"
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does, to the compilers too
+        process.communicate()
+    assert process.returncode == 3
+    # Two were at work; the three behind them are never begun.
+    assert len(list((tmp_path / "host").glob("*.so"))) <= WORKERS
+    assert not [path for path in (tmp_path / "host").glob("*") if path.is_dir()]
