@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import unfitted
+from diagnosis.fit import seen_in_readings, unfitted
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.instants import happens
@@ -134,8 +134,11 @@ def _lasts(case: Case, tried: Tried, name: str) -> bool:
 
 
 def worse(holdout: Holdout, weighed: Weighed) -> float:
-    """How many times as large the hold-out's mean square error is with what is named as without; 0 for no name."""
+    """How many times as large the hold-out's mean square error is with what is named as without; 0 for no name, and for the steps of a
+    sensor alone: the hold-out's own readings show those, and no prediction gets better by them."""
     if not weighed.tried or weighed.probabilities[0] < weighed.unknown:
+        return 0.0
+    if all(map(seen_in_readings, weighed.tried[0].effects)):
         return 0.0
     predicted = holdout.predicted(weighed.tried[0])
     return error(holdout.case, predicted, "after") / _without(holdout, predicted)

@@ -99,13 +99,17 @@ def refined(case: Case, tried: Tried) -> Tried | None:
 
 
 def once_more(case: Case, tried: Tried) -> Tried:
-    """The same begun once more from the parameters as stated, where they have gone far and that ends better."""
-    theta = tried.fit.supposed.theta
-    if theta @ theta < FAR * len(theta):
+    """The same begun once more from the parameters as stated, where they have gone far and that ends better.
+
+    Once under calm air, and once under that of before any log was seen: a filter that expects any motion leads back from further off.
+    """
+    supposed = tried.fit.supposed
+    if supposed.theta @ supposed.theta < FAR * len(supposed.theta):
         return tried
-    start = _from_stated(case, tried.fit.supposed)
-    other = None if start is None else refined(case, tried_as(case, start))
-    return tried if other is None or other.evidence < tried.evidence else other
+    restless = replace(supposed, unrest=np.full_like(supposed.unrest, FIRST_UNREST))
+    starts = [_from_stated(case, begun) for begun in (supposed, restless)]
+    ends = [refined(case, tried_as(case, start)) for start in starts if start is not None]
+    return max((tried, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
 
 
 def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]) -> Supposed:

@@ -1,10 +1,17 @@
 """What logs that were not fitted refute: a re-tune, which is then not written, and an effect that leaves most of their error."""
 
+from dataclasses import replace
+
 import pytest
 
-from diagnosis.engine import Material, diagnose
+from diagnosis.case import make_case
+from diagnosis.engine import Material, diagnose, nominal_fit
+from diagnosis.holdout import Holdout, worse
 from diagnosis.instants import happens
+from diagnosis.kit import make_kit
 from diagnosis.result import Result
+from diagnosis.trial import Tried
+from diagnosis.weigh import Weighed
 from sim.bind import BoundPlant
 from sim.effects.api import library
 from tests.diagnosis.conftest import Fly
@@ -68,6 +75,21 @@ def test_a_coarse_sensor_is_not_blamed_for_what_its_steps_leave(plant: BoundPlan
     assert found.effects[0].effect == "psi_sensor.quantization"
     assert found.effects[0].probability > 0.8
     assert not [note for note in found.notes if "something else is missing" in note]
+
+
+def test_the_steps_of_a_sensor_are_not_refuted_by_predictions(plant: BoundPlant, fly: Fly) -> None:
+    # They make no prediction better, and a start from coarse readings is less sure; the hold-out's own readings lie on the grid.
+    case = make_case(make_kit(plant), [fly(56, {"phi_sensor.quantization": {"q": 0.036}}, rig_seed=55, air=False)])
+    base = nominal_fit(case)
+
+    def refuted(name: str, size: float) -> float:
+        effects = {name: {"q" if "quantization" in name else "offset": size}}
+        wrong = replace(base, supposed=base.supposed.with_effects(effects))
+        holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
+        return worse(holdout, Weighed((Tried((name,), wrong, 1.0),), (0.9,), 0.1, 0.0, 1.0))
+
+    assert refuted("phi_sensor.quantization", 0.036) == 0.0
+    assert refuted("tail_input.offset", 3.0) > 1.5
 
 
 @pytest.mark.parametrize(("instant_s", "event"), [(12.0, True), (0.0, False)])

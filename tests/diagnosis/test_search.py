@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
+from diagnosis.calm import calmed
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
 from diagnosis.exchange import exchange
@@ -14,7 +15,7 @@ from diagnosis.kit import make_kit
 from diagnosis.places import place_shares
 from diagnosis.screen import look
 from diagnosis.search import LEAST_GAIN, Search
-from diagnosis.trial import Tried, evidence, refined
+from diagnosis.trial import Job, Tried, evidence, once_more, refined, rough
 from diagnosis.weigh import Weighed
 from sim.bind import BoundPlant
 from sim.effects.effect import Values
@@ -84,3 +85,24 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: Bo
     assert known > 100.0
     assert shares["main_input"] > 0.05
     assert shares["main_input"] <= (both.evidence - none.evidence) / (both.evidence - none.evidence + known) + 1e-9
+
+
+def test_a_fit_gone_astray_under_calm_air_is_led_back_by_restless_air(plant: BoundPlant, fly: Fly) -> None:
+    # A motor that loses a fifth of its pull as it warms up: from the plant bent to hide that, calm air holds the fit where it is.
+    truth = {"tail_rotor.warmup": {"a": 0.22, "T": 18.0}}
+    case = make_case(make_kit(plant), [fly(seed, truth, rig_seed=63, air=False, seconds=60.0) for seed in (63, 73)])
+    nominal = nominal_fit(case)
+    calm = calmed(case, nominal)
+    assert calm is not None
+    (seen,) = (entry for entry in look(case, ground_of(case, calm), case.kit.candidates) if entry.effect in truth)
+    begun = rough(case, Job(calm, seen, True))
+    assert begun is not None
+    strayed = refined(case, begun)
+    assert strayed is not None
+    assert (
+        np.max(np.abs(strayed.fit.supposed.theta)) > 4.0
+    )  # standard deviations; the rig's own numbers were drawn from them
+    found = once_more(case, strayed)
+    assert found.evidence > strayed.evidence + 50.0
+    assert np.max(np.abs(found.fit.supposed.theta)) < 3.5
+    assert found.fit.supposed.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)
