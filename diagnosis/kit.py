@@ -117,12 +117,14 @@ class Kit:
         return name in self.names or name in self.wide_names or name in self.bristles or is_lag(name)
 
     def variant(self, effects: Iterable[str]) -> Variant:
-        """The fastest variant that carries all of `effects` that any carries: each group of which one is wanted, and one lag."""
+        """The fastest variant that carries all of `effects` that any carries, and one lag; of the wide ones none, one or all, since each
+        brings states and each choice is a library of its own."""
         wanted = {name for name in effects if self.carried(name)}
         behind = sorted(filter(is_lag, wanted))
-        groups = [group for group in (self.wide_names, self.bristles) if not wanted.isdisjoint(group)]
-        beside = (*self.names, *chain.from_iterable(groups)) if wanted.difference(behind) else ()
-        return _variant(self, (*beside, *behind[:1]))
+        wide = [name for name in self.wide_names if name in wanted]
+        bristles = () if wanted.isdisjoint(self.bristles) else self.bristles
+        beside = (*self.names, *(self.wide_names if len(wide) > 1 else wide), *bristles)
+        return _variant(self, (*(beside if wanted.difference(behind) else ()), *behind[:1]))
 
 
 def is_lag(name: str) -> bool:

@@ -99,6 +99,15 @@ def test_a_lag_alone_is_carried_without_the_library(plant: BoundPlant) -> None:
     assert beside.names == {"psi_sensor.lag", *kit.names}
 
 
+def test_of_what_brings_states_one_or_all_are_carried(plant: BoundPlant) -> None:
+    kit = make_kit(plant)
+    first, second, *_ = kit.wide_names
+    one, two = kit.variant([first]), kit.variant([first, second])
+    assert one.names == {first, *kit.names}
+    assert two.names == {*kit.names, *kit.wide_names}
+    assert len(kit.states) < len(one.states) < len(two.states)
+
+
 def test_interrupted_it_begins_nothing_more(tmp_path: Path) -> None:
     (tmp_path / "zig").symlink_to(CACHE_DIR / "zig")
     command = [sys.executable, "-c", ANNOUNCE + WAIT]
