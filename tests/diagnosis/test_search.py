@@ -99,9 +99,8 @@ def test_a_fit_gone_astray_under_calm_air_is_led_back_by_restless_air(plant: Bou
     assert begun is not None
     strayed = refined(case, begun)
     assert strayed is not None
-    assert (
-        np.max(np.abs(strayed.fit.supposed.theta)) > 4.0
-    )  # standard deviations; the rig's own numbers were drawn from them
+    # In standard deviations, from which the rig's own numbers were drawn.
+    assert np.max(np.abs(strayed.fit.supposed.theta)) > 4.0
     found = once_more(case, strayed)
     assert found.evidence > strayed.evidence + 50.0
     assert np.max(np.abs(found.fit.supposed.theta)) < 3.5
