@@ -24,6 +24,7 @@ LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis
 NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
 PARTLY = 0.6  # of the hold-out's error that what is named must be able to take away,
 FAR = 2.5  # where some output's error is still that many floors
+IDLE = 0.25  # of the hold-out's error that an effect must be able to take away for it not to be a way of the training logs alone
 HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
@@ -142,6 +143,23 @@ def worse(holdout: Holdout, weighed: Weighed) -> float:
         return 0.0
     predicted = holdout.predicted(weighed.tried[0])
     return error(holdout.case, predicted, "after") / _without(holdout, predicted)
+
+
+def takes_nothing(holdout: Holdout, weighed: Weighed) -> bool:
+    """Whether what is named surely takes less than IDLE of the hold-out's error away, and maybe none of it.
+
+    Effects that happen at an instant, which is another one in each log, and the steps of a sensor are not asked.
+    """
+    first = weighed.tried[0] if weighed.tried else None
+    if first is None or not all(_foreseen(holdout.case, first, name) for name in first.effects):
+        return False
+    ci95 = holdout.shrinkage(holdout.predicted(first)).fraction_ci95
+    return ci95 is not None and ci95[0] <= 0.0 and ci95[1] < IDLE
+
+
+def _foreseen(case: Case, tried: Tried, name: str) -> bool:
+    """Whether an effect that is there lowers the error of predictions."""
+    return not seen_in_readings(name) and not happens(case.kit.effects[name], tried.fit.supposed.effects[name])
 
 
 def helpful(holdout: Holdout, first: Tried) -> Tried:

@@ -11,6 +11,7 @@ COMMON = (
     "tilt", "gyroscopic", "friction_asymmetry", "offset", "scale", "backlash", "dropped_frames", "gain",
     "quadratic_thrust",
 )  # fmt: skip
+RARE_AT_INPUTS = ("offset", "backlash")
 # Joints that gravity or a driver may push at all times; a turntable is pushed by nothing, so there it is friction that differs.
 PUSHED = ("pitch", "yaw", "arm", "carriage")
 # Sizes that exist in one direction only: a spring pulls back, air brakes, a supply sags, a motor that warms up weakens.
@@ -46,7 +47,7 @@ def _odds(name: str, tried: Tried) -> float:
     place, kind = name.split(".")
     common = kind in COMMON or (kind == "offset_force" and place in PUSHED)
     odds = PLAIN * (kind == "offset_force")
-    odds += 0.0 if common and not (kind == "offset" and place.endswith("_input")) else -RARE
+    odds += 0.0 if common and not (kind in RARE_AT_INPUTS and place.endswith("_input")) else -RARE
     if kind in ONE_WAY and tried.fit.supposed.effects[name][ONE_WAY[kind]] < 0.0:
         odds -= WRONG_WAY
     if kind == "disturbance" and tried.fit.supposed.effects[name]["duration"] > LONG_PULSE_S:

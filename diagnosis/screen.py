@@ -17,6 +17,7 @@ from diagnosis.instants import instants, is_event
 from diagnosis.kit import Kit, is_lag
 from diagnosis.lattice import coarse_step
 from diagnosis.quantised import likely_steps
+from diagnosis.waves import swings, wave_starts
 from sim.effects.effect import Effect, Values
 
 Array = NDArray[np.float64]
@@ -45,14 +46,14 @@ class Look:
 def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | None = None) -> list[Look]:
     """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
 
-    Effects on the way of the signals cost a pass for each start, events a grid of instants; `worth` restricts these, but for limits,
-    which often show only beside another effect.
+    Effects on the way of the signals cost a pass for each start, events a grid of instants, sines one of waves; `worth` restricts
+    these, but for limits, which often show only beside another effect.
     """
     supposed = ground.fit.supposed
     wanted = [name for name in names if name not in supposed.effects]
     kit = case.kit
     costly = [name for name in wanted if worth is None or name in worth or kit.effects[name].kind == "saturation"]
-    stateless = [n for n in wanted if n in kit.names and (n in costly or not is_event(kit.effects[n]))]
+    stateless = [n for n in wanted if n in kit.names and (n in costly or not _sought(kit.effects[n]))]
     others = [name for name in wanted if name in kit.wide_names]
     finite = [name for name in costly if not kit.effects[name].on_equations or _limited(kit.effects[name])]
     kinds, chosen = (
@@ -81,7 +82,7 @@ def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     for name in names:
         effect = kit.effects[name]
         if not _limited(effect):
-            starts[name] = instants(ground, effect) or shape_starts(effect)
+            starts[name] = instants(ground, effect) or wave_starts(ground, effect) or shape_starts(effect)
     found = []
     for turn in range(max((len(values) for values in starts.values()), default=0)):
         now = {name: values[turn] for name, values in starts.items() if turn < len(values)}
@@ -92,6 +93,11 @@ def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
         if runs is not None:
             found += _judged(case, ground, touched, runs)
     return found
+
+
+def _sought(effect: Effect) -> bool:
+    """Effects whose starts are sought in the logs."""
+    return is_event(effect) or swings(effect)
 
 
 def _touched(effect: Effect) -> dict[str, float]:

@@ -34,7 +34,7 @@ def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]])
     """The signals that the filter predicts for a flight."""
     kit = ground.case.kit
     model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
-    x = np.nan_to_num(_by_step(run.x[:, : len(model.states)], tape.row))
+    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], tape.row))
     given = (tape.t_s, *x.T, *tape.u.T, *kit.bound.p)
 
     def value(expression: sympy.Expr) -> Array:
@@ -69,7 +69,7 @@ def _relative(inertia: Array) -> Array:
     return inertia / np.mean(inertia)
 
 
-def _by_step(x: Array, row: NDArray[np.int64]) -> Array:
+def by_step(x: Array, row: NDArray[np.int64]) -> Array:
     """Rows of a log held over a tape's instants."""
     known = np.maximum.accumulate(np.where(row >= 0, row, 0))
     return np.asarray(x[known])

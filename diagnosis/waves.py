@@ -1,14 +1,77 @@
-"""Frequencies at which something swings an axis, whatever the axis does: from the scores of steps in time."""
+"""Where a sine may begin: frequencies at which something swings an axis, whatever the axis does, from the scores of steps in time; and
+how many waves of a way it follows, from the answers to sines and cosines of the way."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.filter import Disturbances, Pass
 from diagnosis.ground import Ground
+from diagnosis.instants import target_of
+from diagnosis.signals import by_step
+from diagnosis.tape import Tape
+from sim.effects.effect import Effect, EffectParameter
 
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
 APART_RAD_S = 0.3
+COUNTS, APART = 48, 0.12  # numbers of waves that are tried, and how far apart those chosen are, as a share
 MOST = 3
+
+
+def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+    """Starts of an effect that swings as a sine: its likeliest waves, each as sine and as cosine; empty for other effects."""
+    target = target_of(ground.case, effect) if swings(effect) else None
+    if target is None:
+        return []
+    if "rate" in effect.parameter:
+        symbol, found = "rate", likely_waves(ground, target)
+    else:
+        symbol, found = "waves", _likely_counts(ground, target, effect.parameter["waves"])
+    return [{symbol: value, "phase": phase} for value in found for phase in effect.parameter["phase"].starts]
+
+
+def swings(effect: Effect) -> bool:
+    """Whether an effect is a sine of something."""
+    return "phase" in effect.parameter
+
+
+def _likely_counts(ground: Ground, target: int, waves: EffectParameter) -> tuple[float, ...]:
+    """Numbers of waves, in rad a unit, whose sine and cosine of the way that a target belongs to gain most, apart from one another."""
+    way = _way(ground, target)
+    if way is None:
+        return ()
+    tried = np.geomspace(waves.lower, waves.upper, COUNTS)
+    scores = ground.scores_by(_sines(ground, target, way, tried), target)
+    pairs = np.arange(2 * COUNTS).reshape(2, COUNTS).T
+    own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
+    return tuple(float(np.exp(value)) for value in _best(np.log(tried), _pair_gains(own, along), APART))
+
+
+def _sines(ground: Ground, target: int, way: int, waves: Array) -> list[Disturbances]:
+    """Sines, then cosines, of a state by flight (steps, 2 k): as an acceleration, or as an error of the output."""
+    moves = target < len(ground.case.kit.states)
+
+    def sines(tape: Tape, run: Pass) -> Disturbances:
+        height = np.append(np.diff(tape.t_s), 0.0) if moves else np.ones(len(tape.t_s))
+        x = np.nan_to_num(by_step(run.filtered[:, way], tape.row))
+
+        def values(part: slice) -> Array:
+            angle = x[part, None] * waves
+            return np.asarray(height[part, None] * np.concatenate([np.sin(angle), np.cos(angle)], axis=1))
+
+        return values
+
+    return [sines(tape, run) for tape, run in zip(ground.tapes, ground.runs, strict=True)]
+
+
+def _way(ground: Ground, target: int) -> int | None:
+    """The state that says where a target is: an axis' position, or what an output reads; None where no state does."""
+    kit, model = ground.case.kit, ground.case.kit.bound.model
+    if target < len(kit.states):
+        found = next((axis.position for axis in model.axes if str(axis.velocity) == kit.states[target]), None)
+    else:
+        found = model.outputs.get(kit.outputs[target - len(kit.states)])
+    return kit.states.index(str(found)) if str(found) in kit.states else None
 
 
 def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
@@ -21,11 +84,15 @@ def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
     gram, score = edge @ scores.gram @ edge.T, edge @ scores.score
     middle = 0.5 * (times[:-1] + times[1:])
     gains = _gains(gram, score, RATES_RAD_S[:, None] * middle)
+    return _best(RATES_RAD_S, gains, APART_RAD_S)
+
+
+def _best(tried: Array, gains: Array, apart: float) -> tuple[float, ...]:
+    """Those that gain most, at least `apart` from one another."""
     chosen: list[float] = []
     for index in np.argsort(-gains).tolist():
-        rate = float(RATES_RAD_S[index])
-        if all(abs(rate - other) > APART_RAD_S for other in chosen):
-            chosen.append(rate)
+        if all(abs(tried[index] - other) > apart for other in chosen):
+            chosen.append(float(tried[index]))
         if len(chosen) == MOST:
             break
     return tuple(chosen)
@@ -34,7 +101,11 @@ def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
 def _gains(gram: Array, score: Array, phases: Array) -> Array:
     """What a sine and a cosine together gain, for each row of phases (waves, instants)."""
     pairs = np.stack([np.sin(phases), np.cos(phases)], axis=1)
-    own, along = pairs @ gram @ pairs.swapaxes(1, 2), pairs @ score
+    return _pair_gains(pairs @ gram @ pairs.swapaxes(1, 2), pairs @ score)
+
+
+def _pair_gains(own: Array, along: Array) -> Array:
+    """What two columns together gain, from their products `own` (k, 2, 2) and scores `along` (k, 2)."""
     ridge = 1e-9 * np.trace(own, axis1=1, axis2=2) + 1e-12
     solved = np.linalg.solve(own + ridge[:, None, None] * np.eye(2), along[:, :, None])[:, :, 0]
     return np.asarray(0.5 * np.einsum("ij,ij->i", along, solved))

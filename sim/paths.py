@@ -88,6 +88,17 @@ def pass_output(
     return signal, tuple(kept)
 
 
+def played(x: Array, width: float, follower: float | None) -> tuple[Array, float]:
+    """What follows x (n,) through a play of `width`, and where it then is; a `follower` of None starts in the middle of the play."""
+    half = width / 2
+    at = float(x[0]) if follower is None else follower
+    y = np.empty(len(x))
+    for k, pushing in enumerate(x.tolist()):
+        at = min(max(at, pushing - half), pushing + half)
+        y[k] = at
+    return y, at
+
+
 def uniform(number: Array, seed: int) -> Array:
     """Numbers in [0, 1) by splitmix64 of (seed, number): the same whichever way they are asked for."""
     with np.errstate(over="ignore"):

@@ -1,4 +1,4 @@
-"""Stages on the way of the inputs: lost frames, delay, steps, slew limit, lag.
+"""Stages on the way of the inputs: lost frames, delay, steps, play, slew limit, lag.
 
 Delay and lost frames are exact. A ramp or an exponential becomes a staircase of the same mean over each piece of at most PIECE_S, so that
 the speed of a rotor is right to third order of the piece.
@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths import SAME_INSTANT_S, Array, Held, uniform
+from sim.paths import SAME_INSTANT_S, Array, Held, played, uniform
 
 PIECE_S = 2.5e-3
 MOST_PIECES = 16
@@ -80,11 +80,26 @@ class Quantised:
 
 
 @dataclass(frozen=True)
+class InputPlay:
+    """The input `column` follows its command only when the play of `width` is used up; it starts in the middle of it."""
+
+    column: int
+    width: float
+    order: ClassVar[int] = 3
+
+    def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
+        """See InputStage; remembers where the input is."""
+        values = signal.values.copy()
+        values[:, self.column], last = played(signal.values[:, self.column], self.width, memory)
+        return Held(signal.edges_s, values), last
+
+
+@dataclass(frozen=True)
 class Memoryless:
     """What arrives of the inputs by equations, for those that stand before a stage with memory."""
 
     applied: Callable[[Array], Array]
-    order: ClassVar[int] = 3
+    order: ClassVar[int] = 4
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
         """See InputStage; remembers nothing."""
@@ -97,7 +112,7 @@ class SlewLimit:
 
     column: int
     rate: float
-    order: ClassVar[int] = 4
+    order: ClassVar[int] = 5
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
         """See InputStage; remembers where the input is."""
@@ -123,7 +138,7 @@ class Lag:
 
     column: int
     tau_s: float
-    order: ClassVar[int] = 5
+    order: ClassVar[int] = 6
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
         """See InputStage; remembers the lag's state."""

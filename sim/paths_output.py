@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths import Array, Trace, uniform
+from sim.paths import Array, Trace, played, uniform
 
 SHORTEST_S = 1e-7
 
@@ -25,13 +25,8 @@ class Play:
 
     def __call__(self, signal: Trace, memory: Any) -> tuple[Trace, Any]:
         """See OutputStage; remembers where the follower is."""
-        half = self.width / 2
-        follower = float(signal.y[0]) if memory is None else memory
-        y = np.empty(len(signal.y))
-        for k, angle in enumerate(signal.y.tolist()):
-            follower = min(max(follower, angle - half), angle + half)
-            y[k] = follower
-        pushed = np.abs(np.abs(signal.y - y) - half) <= 1e-12
+        y, follower = played(signal.y, self.width, memory)
+        pushed = np.abs(np.abs(signal.y - y) - self.width / 2) <= 1e-12
         return Trace(signal.t_s, y, np.where(pushed, signal.rate, 0.0)), follower
 
 

@@ -46,6 +46,7 @@ from sim.effects import (
     supply_sag,
     thrust_law,
     warmup,
+    waves,
 )
 from sim.effects.effect import Effect
 from sim.model import Model
@@ -66,6 +67,7 @@ FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
     level_axis.effects,
     end_stop.effects,
     disturbance.effects,
+    waves.effects,
     inertia.effects,
     gyroscopic.effects,
     axial_inflow.effects,

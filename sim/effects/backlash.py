@@ -1,6 +1,7 @@
-"""Play in the gear or coupling of a sensor.
+"""Play in the gear or coupling of a sensor, or in a driver.
 
 (1)  y moves with the angle only when the play `width` is used up
+(2)  the driver's input likewise with its command
 """
 
 from collections.abc import Iterator
@@ -8,11 +9,12 @@ from collections.abc import Iterator
 from sim.effects.edits import short
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.paths_input import InputPlay
 from sim.paths_output import Play
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each sensor."""
+    """Eq (1) on each sensor, (2) on each input."""
     for output, (place, sensor) in enumerate(model.places.sensors.items()):
         size = sensor.size
         grid = tuple(share * size for share in (0.003, 0.01, 0.03))
@@ -26,4 +28,17 @@ def effects(model: Model) -> Iterator[Effect]:
             on_output=lambda values, output=output: Play(output, values["width"]),
             smooth=False,
             twins={f"{place}.quantization": "both hold the reading still near a reversal"},
+        )
+    for column, (place, entry) in enumerate(model.places.inputs.items()):
+        size = entry.size
+        grid = tuple(share * size for share in (0.01, 0.03, 0.1))
+        yield Effect(
+            name=f"{place}.backlash",
+            depends=f"play of {entry.variable}",
+            parameters=(EffectParameter("width", entry.unit, 0.0, 0.5 * size, 0.02 * size, 0.0, grid),),
+            equation=f"{entry.variable} follows its command through a play of the given width",
+            story="The driver lets small changes pass by: its output moves only when the command has gone far enough.",
+            source="hysteresis of a driver, a worn potentiometer",
+            on_input=lambda values, column=column: InputPlay(column, values["width"]),
+            smooth=False,
         )
