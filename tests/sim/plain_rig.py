@@ -115,6 +115,8 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.offset_force": lambda s: -s.offset,
     "elevation.upper_stop": lambda s: -s.k * max(s.psi - pi / 4 + s.a, 0.0),
     "elevation.lower_stop": lambda s: s.k * max(-pi / 4 + s.a - s.psi, 0.0),
+    "elevation.detent": lambda s: s.amplitude * sin(s.waves * s.psi + s.phase),
+    "elevation.periodic_torque": lambda s: s.amplitude * sin(s.rate * s.t + s.phase),
     "elevation.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
     "elevation.centrifugal": lambda s: s.c * s.v_phi**2 * sin(2 * s.psi),
     "elevation.tail_gyroscopic": lambda s: s.K * s.w_T * s.v_phi,
@@ -138,6 +140,8 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.wind": lambda s: s.c * squared(cos(s.phi - s.Phi_w) - s.T_w * s.v_phi),
     "azimuth.upper_stop": lambda s: -s.k * max(s.phi - s.Phi_lim + s.a, 0.0),
     "azimuth.lower_stop": lambda s: s.k * max(-s.Phi_lim + s.a - s.phi, 0.0),
+    "azimuth.detent": lambda s: s.amplitude * sin(s.waves * s.phi + s.phase),
+    "azimuth.periodic_torque": lambda s: s.amplitude * sin(s.rate * s.t + s.phase),
     "azimuth.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
     "azimuth.gyroscopic": lambda s: -s.K * s.v_psi * s.w_M * sin(s.psi),
     "azimuth.coriolis": lambda s: s.c * sin(2 * s.psi) * s.v_psi * s.v_phi,
@@ -166,7 +170,7 @@ class PlainRig:
         self.p, self.case = p, case
         self.name = case.name if active else ""
         self.u = commands()
-        self._arrived = self._way() if self.name.endswith((".delay", ".slew_limit")) else None
+        self._arrived = self._way() if self.name.endswith((".delay", ".slew_limit", "_input.backlash")) else None
         self.t, self.s = self._run()
 
     def y(self) -> np.ndarray:
@@ -195,6 +199,7 @@ class PlainRig:
             "scale": lambda: one * v.scale,
             "count_slip": lambda: one + v.jump * np.array([ramp(t, v.t_s) for t in self.t]),
             "cross_alignment": lambda: one + v.eps * other,
+            "cyclic": lambda: one + v.amplitude * np.sin(v.waves * one + v.phase),
             "quantization": lambda: v.q * np.floor(one / v.q + 0.5),
         }
         return np.asarray(maps[kind]()) if kind in maps else one
@@ -217,13 +222,15 @@ class PlainRig:
         return self.u[int(k * STEP_S / SAMPLE_S + 1e-9)]
 
     def _way(self) -> list[tuple[float, float]]:
-        """Inputs for each fine step behind a delay or a slew limit, which both fall on fine steps or are averaged over one."""
+        """Inputs for each fine step behind a delay, a play or a slew limit, which fall on fine steps or are averaged over one."""
         fine = [self.u[int(k * STEP_S / SAMPLE_S + 1e-9)] for k in range(round(0.4 / STEP_S))]
         place, kind = self.name.split(".")
         moved = [place in ("main_input", "loop"), place in ("tail_input", "loop")]
         if kind == "delay":
             late = round(self.case.values["tau"] / STEP_S)
             source = [fine[max(k - late, 0)] for k in range(len(fine))]
+        elif kind == "backlash":
+            source = list(zip(*(play(column, self.case.values["width"]) for column in np.array(fine).T), strict=True))
         else:
             source = list(zip(*(slewed([row[j] for row in fine], self.case.values["r"]) for j in (0, 1)), strict=True))
         if place.endswith("sensor"):
