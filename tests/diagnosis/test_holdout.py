@@ -6,7 +6,8 @@ import pytest
 
 from diagnosis.case import make_case
 from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.holdout import Holdout, worse
+from diagnosis.fit import fit
+from diagnosis.holdout import Holdout, takes_nothing, worse
 from diagnosis.instants import happens
 from diagnosis.kit import make_kit
 from diagnosis.result import Result
@@ -90,6 +91,34 @@ def test_the_steps_of_a_sensor_are_not_refuted_by_predictions(plant: BoundPlant,
 
     assert refuted("phi_sensor.quantization", 0.036) == 0.0
     assert refuted("tail_input.offset", 3.0) > 1.5
+
+
+@pytest.mark.parametrize(("there", "idle"), [(True, False), (False, True)])
+def test_what_takes_nothing_of_the_hold_outs_error_is_seen(
+    plant: BoundPlant, fly: Fly, there: bool, idle: bool
+) -> None:
+    # Truth: a spring that the hold-out has, or has not; what is named is a spring a tenth as stiff as one that would show.
+    case = make_case(make_kit(plant), [fly(57, SPRING if there else None, rig_seed=57)])
+    base = nominal_fit(case)
+    named = SPRING if there else {"azimuth.cable_spring": {"k": 4e-5, "angle_0": 0.0, "h": 0.0}}
+    sprung = (
+        fit(case, base.supposed.with_effects(named))
+        if there
+        else replace(base, supposed=base.supposed.with_effects(named))
+    )
+    assert sprung is not None
+    holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
+    weighed = Weighed((Tried(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
+    assert takes_nothing(holdout, weighed) is idle
+
+
+def test_a_push_is_not_asked_what_it_takes_of_another_log(plant: BoundPlant, fly: Fly) -> None:
+    case = make_case(make_kit(plant), [fly(58, rig_seed=57)])
+    base = nominal_fit(case)
+    push = {"azimuth.disturbance": {"torque": 2e-3, "t_0": 12.0, "duration": 1.0}}
+    pushed = replace(base, supposed=base.supposed.with_effects(push))
+    holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
+    assert not takes_nothing(holdout, Weighed((Tried(tuple(push), pushed, 1.0),), (0.9,), 0.1, 0.0, 1.0))
 
 
 @pytest.mark.parametrize(("instant_s", "event"), [(12.0, True), (0.0, False)])

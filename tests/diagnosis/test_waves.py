@@ -1,0 +1,45 @@
+"""What swings as a sine: where a fit of it begins, and what the diagnosis calls it."""
+
+import pytest
+
+from diagnosis.case import make_case
+from diagnosis.engine import Material, diagnose, nominal_fit
+from diagnosis.ground import ground_of
+from diagnosis.kit import make_kit
+from diagnosis.waves import wave_starts
+from sim.bind import BoundPlant
+from sim.effects.api import library
+from tests.diagnosis.conftest import Fly
+
+# Truth: 9 and 14 waves a turn, 5 rad/s by the log's clock.
+CYCLIC = {"phi_sensor.cyclic": {"amplitude": 0.003, "waves": 14.0, "phase": 0.7}}
+DETENT = {"azimuth.detent": {"amplitude": 0.001, "waves": 9.0, "phase": -1.0}}
+PERIODIC = {"elevation.periodic_torque": {"amplitude": 0.001, "rate": 5.0, "phase": 2.0}}
+
+
+@pytest.mark.parametrize("truth", [CYCLIC, DETENT, PERIODIC])
+def test_a_sine_begins_near_its_waves(plant: BoundPlant, fly: Fly, truth) -> None:
+    # A start must be within a sixth of a wave over the whole way, which is 1 rad, or 15 s to either side: 1 rad a rad, 0.07 rad/s.
+    ((name, values),) = truth.items()
+    case = make_case(make_kit(plant), [fly(61, truth, rig_seed=61)])
+    starts = wave_starts(ground_of(case, nominal_fit(case)), library(plant)[name])
+    symbol, reach = ("rate", 0.07) if "rate" in values else ("waves", 1.0)
+    assert min(abs(start[symbol] - values[symbol]) for start in starts) < reach
+
+
+def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
+    case = make_case(make_kit(plant), [fly(62)])
+    assert wave_starts(ground_of(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []
+
+
+@pytest.mark.parametrize("truth", [CYCLIC, PERIODIC])
+def test_a_sine_is_no_springy_part(plant: BoundPlant, fly: Fly, truth) -> None:
+    # Both were told as a flexible mode before the library had sines.
+    ((name, values),) = truth.items()
+    logs = [fly(seed, truth, rig_seed=63) for seed in (63, 64)]
+    found = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None])).diagnosis
+    assert found.found == (name,)
+    symbol = "rate" if "rate" in values else "waves"
+    assert found.effects[0].parameters[symbol].value == pytest.approx(values[symbol], rel=0.01)
+    size = found.effects[0].parameters["amplitude"].value
+    assert abs(size) == pytest.approx(values["amplitude"], rel=0.1)
