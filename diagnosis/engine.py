@@ -11,7 +11,7 @@ from diagnosis.detect import Detection, detect, form_scores
 from diagnosis.doubt import doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
-from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, takes_nothing, worse
+from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.kit import make_kit
@@ -166,10 +166,7 @@ def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> 
 
 def borne_out(detection: Detection, judged: Judged) -> Detection:
     """A small gap whose explanations do not hold, be it on the hold-out, is explained by nothing: evidence of 0 nats."""
-    if detection.largest > PLAIN_TO_SEE:
-        return detection
-    idle = judged.holdout is not None and takes_nothing(judged.holdout, judged.weighed)
-    return replace(detection, p=1.0) if judged.weighed.nameless or idle else detection
+    return replace(detection, p=1.0) if detection.largest <= PLAIN_TO_SEE and judged.weighed.nameless else detection
 
 
 def nominal_fit(case: Case) -> Fit:

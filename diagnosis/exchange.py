@@ -31,6 +31,24 @@ def exchange(case: Case, found: dict[frozenset[str], Tried], worth: Set[str]) ->
         best = found[frozenset(better.effects)] = better
 
 
+def twins_tried(case: Case, found: dict[frozenset[str], Tried]) -> None:
+    """Effects that data hardly tell from the best single one, where they are not `found` yet, fitted in its place.
+
+    Looks are taken from a plant without any effect, whose numbers are bent to take its part: there only one of a few that are alike
+    may promise much.
+    """
+    best = max(found.values(), key=lambda entry: entry.evidence, default=None)
+    if best is None or len(best.effects) != 1:
+        return
+    (name,) = best.effects
+    own = case.kit.effects[name].twins
+    twins = {t for t in case.kit.candidates if t in own or name in case.kit.effects[t].twins}
+    untried = {twin for twin in twins if frozenset((twin,)) not in found}
+    begun = [entry for entry in each(lambda job: at_its_place(case, job), _instead(case, best, name, untried)) if entry]
+    ends = [entry for entry in each(lambda entry: refined(case, entry), begun) if entry]
+    keep_better(found, [*begun, *ends])
+
+
 def _exchanged(case: Case, best: Tried, found: dict[frozenset[str], Tried], worth: Set[str]) -> Tried | None:
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
     jobs = [job for jobs in each(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]

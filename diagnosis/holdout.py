@@ -89,25 +89,42 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
 
 
 def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
-    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown.
-
-    Where forms see next to nothing beside it, `left` nats, air as restless as it takes it to be may be all that is left.
-    Effects that happen at an instant, which is another one in each log, and frames that are lost at random are not asked.
-    """
-    named = () if weighed.nameless or not weighed.tried else weighed.tried[0].effects
-    if not named or not all(_lasts(holdout.case, weighed.tried[0], name) for name in named):
+    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave, or hardly takes any of it, maybe
+    none: as much of it is unknown. `left` are the nats that forms still gain beside it."""
+    if weighed.nameless or not weighed.tried:
         return weighed, ()
-    told = holdout.shrinkage(holdout.predicted(weighed.tried[0]))
-    most = 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
-    floor = _floor(holdout.case, weighed.tried[0], told)
-    floor = floor if left > LEFT_NATS else _in_air(holdout.case, weighed.tried[0], floor)
-    far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
-    if told.fraction is None or most > PARTLY or far < FAR:
+    first = weighed.tried[0]
+    told = holdout.shrinkage(holdout.predicted(first))
+    if told.fraction is None or not (_idle(holdout, first, told) or _leaves_most(holdout, first, told, left)):
         return weighed, ()
-    gone = max(told.fraction, 0.0)
+    gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
     share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
-    note = f"{' + '.join(named)} takes {share}: something else is missing"
+    note = f"{' + '.join(first.effects)} takes {share}: something else is missing"
     return weighed.with_unknown(max(min(1.0 - gone, UNNAMED), weighed.unknown)), (note,)
+
+
+def _idle(holdout: Holdout, tried: Tried, told: Shrinkage) -> bool:
+    """Whether a hypothesis surely takes less than IDLE of the error away, and maybe none of it: a way of the training logs alone.
+
+    Events, each of which is another one in each log, and the steps of a sensor, which make no prediction better, are not asked.
+    """
+    if any(seen_in_readings(name) or _is_event(holdout.case, tried, name) for name in tried.effects):
+        return False
+    return told.fraction_ci95 is not None and told.fraction_ci95[0] <= 0.0 and told.fraction_ci95[1] < IDLE
+
+
+def _leaves_most(holdout: Holdout, tried: Tried, told: Shrinkage, left: float) -> bool:
+    """Whether a hypothesis surely leaves most of the error, far above what the sensors leave.
+
+    Where forms see next to nothing beside it, air as restless as it takes it to be may be all that is left. Events are not asked, nor
+    frames that are lost at random.
+    """
+    if any(name == LOST_FRAMES or _is_event(holdout.case, tried, name) for name in tried.effects):
+        return False
+    floor = _floor(holdout.case, tried, told)
+    floor = floor if left > LEFT_NATS else _in_air(holdout.case, tried, floor)
+    far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
+    return far >= FAR and (told.fraction_ci95 is None or told.fraction_ci95[1] <= PARTLY)
 
 
 def _floor(case: Case, tried: Tried, told: Shrinkage) -> dict[str, float]:
@@ -129,9 +146,9 @@ def _in_air(case: Case, tried: Tried, floor: Mapping[str, float]) -> dict[str, f
     return {name: float(np.hypot(rms, moved.get(str(model.outputs[name]), 0.0))) for name, rms in floor.items()}
 
 
-def _lasts(case: Case, tried: Tried, name: str) -> bool:
-    """Whether an effect does the same in each log: no frames lost at random, no event but one that was before all logs."""
-    return name != LOST_FRAMES and not happens(case.kit.effects[name], tried.fit.supposed.effects[name])
+def _is_event(case: Case, tried: Tried, name: str) -> bool:
+    """Whether an effect happens at an instant that is another one in each log: not where it was before all logs."""
+    return happens(case.kit.effects[name], tried.fit.supposed.effects[name])
 
 
 def worse(holdout: Holdout, weighed: Weighed) -> float:
@@ -143,23 +160,6 @@ def worse(holdout: Holdout, weighed: Weighed) -> float:
         return 0.0
     predicted = holdout.predicted(weighed.tried[0])
     return error(holdout.case, predicted, "after") / _without(holdout, predicted)
-
-
-def takes_nothing(holdout: Holdout, weighed: Weighed) -> bool:
-    """Whether what is named surely takes less than IDLE of the hold-out's error away, and maybe none of it.
-
-    Effects that happen at an instant, which is another one in each log, and the steps of a sensor are not asked.
-    """
-    first = weighed.tried[0] if weighed.tried else None
-    if first is None or not all(_foreseen(holdout.case, first, name) for name in first.effects):
-        return False
-    ci95 = holdout.shrinkage(holdout.predicted(first)).fraction_ci95
-    return ci95 is not None and ci95[0] <= 0.0 and ci95[1] < IDLE
-
-
-def _foreseen(case: Case, tried: Tried, name: str) -> bool:
-    """Whether an effect that is there lowers the error of predictions."""
-    return not seen_in_readings(name) and not happens(case.kit.effects[name], tried.fit.supposed.effects[name])
 
 
 def helpful(holdout: Holdout, first: Tried) -> Tried:

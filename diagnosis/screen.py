@@ -25,7 +25,7 @@ MOST_STARTS = 8
 SMALL = 0.05
 # Of the largest input, at which a limit may lie; beyond it the corner alone is reached.
 PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05, 1.2)
-FRICTIONS = ("coulomb", "load_friction")
+FRICTIONS = ("coulomb", "load_friction", "friction_asymmetry")
 FARTHEST = 30.0  # of a size's reference that a first look may propose
 
 

@@ -20,12 +20,25 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{axis}.friction_asymmetry",
             depends=f"torque(sgn {angle}_dot)",
-            parameters=(EffectParameter("difference", entry.torque_unit, -0.5 * size, 0.5 * size, 0.005 * size, 0.0),),
+            parameters=(
+                EffectParameter(
+                    "difference",
+                    entry.torque_unit,
+                    -0.5 * size,
+                    0.5 * size,
+                    0.005 * size,
+                    0.0,
+                    (-0.005 * size, 0.005 * size),
+                ),
+            ),
             equation=f"- (b_c + difference/2 sgn({angle}')) sgn({angle}')",
             story="The bearing rubs harder one way than the other.",
             source="Coulomb friction by direction",
             edit=lambda model, difference, axis=axis: _edit(model, difference, axis),
-            twins={f"{axis}.offset_force": "while the axis moves, both are one constant torque"},
+            twins={
+                f"{axis}.offset_force": "while the axis moves, both are one constant torque",
+                f"{axis}.coulomb": "what rubs one way only is half as much both ways beside a pull",
+            },
         )
 
 

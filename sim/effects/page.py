@@ -27,11 +27,12 @@ source = "found in log 7"
 ```
 
 Effects act in one of three ways. Those on the **equations** are added to the model in SymPy, so the kernel, its Jacobians and the
-derivatives by the effect's own parameters follow. Those on the **way of the inputs** (lost frames, delay, steps, play, slew limit, lag, in this
-order, then the equations) and on the **way of an output** (play, lag, delay, steps) are stages with memory: exact switching times, a ramp
-or an exponential as a staircase of the same mean over at most 2.5 ms, an output between samples as the cubic through values and rates. A
-dead band and the like that share an input with a lag or a slew limit become stages too, in front of it. A controller is designed on the
-plant with those effects on its equations that bring no states; what delays, lags, hysteresis and springy parts cost is left to the flight.
+derivatives by the effect's own parameters follow. Those on the **way of the inputs** (lost frames, delay, steps, play, slew limit, lag,
+in this order, then the equations) and on the **way of an output** (play, lag, delay, steps) are stages with memory: exact switching
+times, a ramp or an exponential as a staircase of the same mean over at most 2.5 ms, an output between samples as the cubic through
+values and rates. A dead band and the like that share an input with a lag or a slew limit become stages too, in front of it. A controller
+is designed on the plant with those effects on its equations that bring no states; what delays, lags, hysteresis and springy parts cost
+is left to the flight.
 
 Each parameter is given with its bounds, in parentheses a size that one may meet, and behind the arrow the value at which the effect
 vanishes; without an arrow it only shapes the effect. An effect of one's own is one file in `sim/effects/` and one row in its
