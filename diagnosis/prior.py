@@ -64,10 +64,11 @@ def _odds(name: str, tried: Tried) -> float:
 
 
 def at_its_end(name: str, tried: Tried) -> bool:
-    """Whether a fitted size of an effect went as far from zero as it may."""
+    """Whether a fitted size of an effect went as far from zero as it may, or a sine has as few waves or as many as it may."""
     values = tried.fit.supposed.effects[name]
-    sizes = [entry.parameter for entry in tried.fit.free if entry.effect == name and entry.parameter.is_size]
-    return any(values[size.symbol] in {size.lower, size.upper} - {size.zero} for size in sizes)
+    own = [entry.parameter for entry in tried.fit.free if entry.effect == name]
+    numbers = [parameter for parameter in own if parameter.is_size or parameter.symbol == "waves"]
+    return any(values[number.symbol] in {number.lower, number.upper} - {number.zero} for number in numbers)
 
 
 def _left_by_losses(name: str, tried: Tried) -> bool:

@@ -75,6 +75,13 @@ def shape_starts(effect: Effect) -> list[dict[str, float]]:
     return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
 
 
+def _starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+    """Values of an effect's shapes to start from; those of a sine are sought, and where none is likely there are none."""
+    if swings(effect):
+        return wave_starts(ground, effect)
+    return instants(ground, effect) or shape_starts(effect)
+
+
 def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     """Effects in the kit's equations whose first order counts: all in one pass for each of their starts."""
     kit, supposed = case.kit, ground.fit.supposed
@@ -82,7 +89,7 @@ def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
     for name in names:
         effect = kit.effects[name]
         if not _limited(effect):
-            starts[name] = instants(ground, effect) or wave_starts(ground, effect) or shape_starts(effect)
+            starts[name] = _starts(ground, effect)
     found = []
     for turn in range(max((len(values) for values in starts.values()), default=0)):
         now = {name: values[turn] for name, values in starts.items() if turn < len(values)}

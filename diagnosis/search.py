@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
 from diagnosis.abreast import each
 from diagnosis.calm import calmed
@@ -17,7 +16,6 @@ from diagnosis.inputs import LOST_FRAMES
 from diagnosis.screen import Look, look
 from diagnosis.trial import Job, Tried, keep_better, once_more, refined, rough, tried_as
 
-Array = NDArray[np.float64]
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
 WORTH_A_PLACE = 0.1  # of the best look under calm air
@@ -161,30 +159,28 @@ def _certain(tried: Tried, found: Mapping[frozenset[str], Tried]) -> bool:
 
 
 def certainties(fit: Fit) -> dict[str, float]:
-    """How far each effect's size is from zero, in standard deviations, its own shapes held where they are.
+    """How far each effect's size is from zero, in standard deviations; that of one alone with its shapes held where they are.
 
     Of no size, an effect has no shape: a spring whose rest lies beyond all that was flown may be a little softer and rest further away,
-    and is no less there for that.
+    and is no less there for that. Beside others its shapes may take their part.
     """
     count = len(fit.supposed.theta)
-    spreads = {name: _spread_of_sizes(fit, name) for name in {entry.effect for entry in fit.free}}
-    sizes: dict[str, float] = {}
-    for row, entry in enumerate(fit.free, count):
-        if entry.parameter.is_size and entry.stated is None:
-            away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
-            certainty = abs(away) / max(float(spreads[entry.effect][row]) * entry.scale, 1e-300)
-            sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
-    return sizes
-
-
-def _spread_of_sizes(fit: Fit, name: str) -> Array:
-    """Standard deviations (k,) of all numbers with the shapes of one effect held, 0 for those."""
-    count = len(fit.supposed.theta)
-    held = [row for row, entry in enumerate(fit.free, count) if entry.effect == name and not entry.parameter.is_size]
+    alone = len({entry.effect for entry in fit.free if entry.stated is None}) == 1
+    held = [
+        row
+        for row, entry in enumerate(fit.free, count)
+        if alone and entry.stated is None and not entry.parameter.is_size
+    ]
     kept = np.setdiff1d(np.arange(len(fit.information)), held)
     spread = np.zeros(len(fit.information))
     spread[kept] = np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information[np.ix_(kept, kept)])), 0.0))
-    return spread
+    sizes: dict[str, float] = {}
+    for entry, sd in zip(fit.free, spread[count:], strict=True):
+        if entry.parameter.is_size and entry.stated is None:
+            away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
+            certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
+            sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
+    return sizes
 
 
 def _grown(case: Case, best: Sequence[Tried], names: Sequence[str], worth: Set[str]) -> list[Job]:

@@ -1,6 +1,8 @@
 """Where a sine may begin: frequencies at which something swings an axis, whatever the axis does, from the scores of steps in time; and
 how many waves of a way it follows, from the answers to sines and cosines of the way."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,8 @@ RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
 APART_RAD_S = 0.3
 COUNTS, APART = 48, 0.12  # numbers of waves that are tried, and how far apart those chosen are, as a share
 MOST = 3
+NEAR_PERIODS = 3.0  # by which frequencies differ over a whole log for one not to be drawn to the other
+ITS_OWN, MOST_PARTS = 0.3, 5  # share of the motion that repeats with a frequency, or with a second to fifth of it
 
 
 def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
@@ -24,7 +28,10 @@ def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
     if target is None:
         return []
     if "rate" in effect.parameter:
-        symbol, found = "rate", likely_waves(ground, target)
+        symbol, found = (
+            "rate",
+            tuple(rate for rate in likely_waves(ground, target) if not _repeats(ground, target, rate)),
+        )
     else:
         symbol, found = "waves", _likely_counts(ground, target, effect.parameter["waves"])
     return [{symbol: value, "phase": phase} for value in found for phase in effect.parameter["phase"].starts]
@@ -33,6 +40,30 @@ def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
 def swings(effect: Effect) -> bool:
     """Whether an effect is a sine of something."""
     return "phase" in effect.parameter
+
+
+def _foreign(ground: Ground, speed: int, rates: Sequence[float]) -> tuple[float, ...]:
+    """Frequencies that are not the motion's own, nor so near to one that a fit would end there."""
+    end = max(float(tape.t_s[-1] - tape.t_s[0]) for tape in ground.tapes)
+    own = [rate for rate in rates if _repeats(ground, speed, rate)]
+    return tuple(rate for rate in rates if all(abs(rate - other) > NEAR_PERIODS * 2.0 * np.pi / end for other in own))
+
+
+def _repeats(ground: Ground, speed: int, rate: float) -> bool:
+    """Whether the motion itself repeats with a frequency or with a whole part of it: what repeats alike is then rather the motion's own."""
+    return max(_share(ground, speed, rate / part) for part in range(1, MOST_PARTS + 1)) > ITS_OWN
+
+
+def _share(ground: Ground, state: int, rate: float) -> float:
+    """The largest share of a state's variance in one flight that swings at a frequency."""
+    shares = []
+    for tape, run in zip(ground.tapes, ground.runs, strict=True):
+        rows = np.flatnonzero((tape.row >= 0) & np.isfinite(run.filtered[np.maximum(tape.row, 0), state]))
+        x, phase = run.filtered[tape.row[rows], state], rate * tape.t_s[rows]
+        wave = np.stack([np.sin(phase), np.cos(phase), np.ones(len(phase))], axis=1)
+        left = x - wave @ np.linalg.lstsq(wave, x, rcond=None)[0]
+        shares.append(1.0 - float(np.var(left)) / max(float(np.var(x)), 1e-300))
+    return max(shares)
 
 
 def _likely_counts(ground: Ground, target: int, waves: EffectParameter) -> tuple[float, ...]:
