@@ -1,5 +1,7 @@
 """What one believes of effects before any log: the common ones come before the rare, a size of the wrong sign is no such effect."""
 
+from collections.abc import Collection
+
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.trial import Tried
 
@@ -24,6 +26,7 @@ ONE_WAY = {
     "downwash": "a",
     "load_friction": "c",
 }
+ONE_WAY_ALONE = 1.6  # by which friction one way only goes behind friction both ways
 MANY_SHAPES = 0.8  # by which friction that falls with speed goes behind dry friction, which is among its forms
 LONG_PULSE_S = 5.0  # a disturbance is a push; what lasts longer is rather something that changed
 UNSEEN_LOSSES_S = (
@@ -38,9 +41,11 @@ OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another n
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
 
 
-def prior_odds(tried: Tried) -> float:
-    """Log of how much less probable a hypothesis is before the data than one of as many common effects."""
-    return sum(_odds(name, tried) for name in tried.effects)
+def prior_odds(tried: Tried, frictionless: Collection[str] = ()) -> float:
+    """Log of how much less probable a hypothesis is before the data than one of as many common effects; `frictionless` are the axes
+    that have no dry friction as stated."""
+    one_way = sum(name.endswith(".friction_asymmetry") and name.split(".")[0] in frictionless for name in tried.effects)
+    return sum(_odds(name, tried) for name in tried.effects) - ONE_WAY_ALONE * one_way
 
 
 def _odds(name: str, tried: Tried) -> float:

@@ -70,6 +70,13 @@ def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
     )
 
 
+def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
+    # Truth: twice the friction one way only is the same both ways beside a pull, which gravity's own moment takes over.
+    one_way, both = tried(azimuth__friction_asymmetry={"difference": 4e-4}), tried(azimuth__coulomb={"b": 2e-4})
+    assert prior_odds(one_way, ["azimuth"]) < prior_odds(both, ["azimuth"]) - 1.0
+    assert prior_odds(one_way, ["elevation"]) == prior_odds(both, ["elevation"])
+
+
 def seen(largest: float) -> Detection:
     """A gap of that many nats that chance makes once in a million."""
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
