@@ -28,10 +28,7 @@ def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
     if target is None:
         return []
     if "rate" in effect.parameter:
-        symbol, found = (
-            "rate",
-            tuple(rate for rate in likely_waves(ground, target) if not _repeats(ground, target, rate)),
-        )
+        symbol, found = "rate", _foreign(ground, target, likely_waves(ground, target))
     else:
         symbol, found = "waves", _likely_counts(ground, target, effect.parameter["waves"])
     return [{symbol: value, "phase": phase} for value in found for phase in effect.parameter["phase"].starts]
@@ -58,12 +55,15 @@ def _share(ground: Ground, state: int, rate: float) -> float:
     """The largest share of a state's variance in one flight that swings at a frequency."""
     shares = []
     for tape, run in zip(ground.tapes, ground.runs, strict=True):
-        rows = np.flatnonzero((tape.row >= 0) & np.isfinite(run.filtered[np.maximum(tape.row, 0), state]))
-        x, phase = run.filtered[tape.row[rows], state], rate * tape.t_s[rows]
+        own = tape.row >= 0
+        x = run.filtered[tape.row[own], state]
+        x, phase = x[np.isfinite(x)], rate * tape.t_s[own][np.isfinite(x)]
+        if not len(x):
+            continue
         wave = np.stack([np.sin(phase), np.cos(phase), np.ones(len(phase))], axis=1)
         left = x - wave @ np.linalg.lstsq(wave, x, rcond=None)[0]
         shares.append(1.0 - float(np.var(left)) / max(float(np.var(x)), 1e-300))
-    return max(shares)
+    return max(shares, default=0.0)
 
 
 def _likely_counts(ground: Ground, target: int, waves: EffectParameter) -> tuple[float, ...]:
