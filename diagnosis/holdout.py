@@ -25,6 +25,8 @@ NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
 PARTLY = 0.6  # of the hold-out's error that what is named must be able to take away,
 FAR = 2.5  # where some output's error is still that many floors
 IDLE = 0.25  # of the hold-out's error that an effect must be able to take away for it not to be a way of the training logs alone
+# Probability of an unknown effect then: of three spent cases one was outside the library, two had effects that a re-tune hides.
+NOT_BORNE_OUT = 0.6
 HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
@@ -95,12 +97,14 @@ def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tu
         return weighed, ()
     first = weighed.tried[0]
     told = holdout.shrinkage(holdout.predicted(first))
-    if told.fraction is None or not (_idle(holdout, first, told) or _leaves_most(holdout, first, told, left)):
+    idle = _idle(holdout, first, told)
+    if told.fraction is None or not (idle or _leaves_most(holdout, first, told, left)):
         return weighed, ()
     gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
     share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
     note = f"{' + '.join(first.effects)} takes {share}: something else is missing"
-    return weighed.with_unknown(max(min(1.0 - gone, UNNAMED), weighed.unknown)), (note,)
+    unknown = NOT_BORNE_OUT if idle else min(1.0 - gone, UNNAMED)
+    return weighed.with_unknown(max(unknown, weighed.unknown)), (note,)
 
 
 def _idle(holdout: Holdout, tried: Tried, told: Shrinkage) -> bool:

@@ -110,7 +110,7 @@ def test_what_takes_nothing_of_the_hold_outs_error_is_seen(
     holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
     weighed = Weighed((Tried(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
     after, notes = partly(holdout, weighed, 0.0)
-    assert (after.unknown > 0.9, len(notes) == 1) == (idle, idle)
+    assert (after.nameless, len(notes) == 1) == (idle, idle)
 
 
 def test_a_push_is_not_asked_what_it_takes_of_another_log(plant: BoundPlant, fly: Fly) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.rig.test_flash import needs_stm32flash
 from tests.test_project import ROOT
 from twinlaw.command import main
 
@@ -13,17 +14,27 @@ PLANT = str(ROOT / "plants" / "ce150.toml")
 
 def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(tmp_path: Path) -> None:
     # Truth: the host's own C over 750 steps; of all rows the fuzzy law takes longest, near half a second for its self-test alone.
-    out = ["--out", str(tmp_path)]
-    table = ["--table", str(tmp_path / "controller.json")]
-    assert main(["design", "--plant", PLANT, "--controller", "fuzzy", *out]) == 0
-    assert main(["build", *table, *out]) == 0
-    assert main(["flash", "--port", "emulated", *out]) == 0
+    out, table = _built(tmp_path)
     assert main(["validate", "--plant", PLANT, "--steps", "300", *table, *out]) == 0
     validation = json.loads((tmp_path / "validation.json").read_text())
     designed = json.loads((tmp_path / "controller.json").read_text())
     assert validation["table_digest"] == designed["digest"]
     assert (tmp_path / "validation.csv").is_file()
     assert not (tmp_path / "firmware.a2l").exists()
+
+
+@needs_stm32flash
+def test_its_image_is_flashed_like_the_scheduled_ones(tmp_path: Path) -> None:
+    out, _ = _built(tmp_path)
+    assert main(["flash", "--port", "emulated", *out]) == 0
+
+
+def _built(folder: Path) -> tuple[list[str], list[str]]:
+    """The fuzzy law's table and image in `folder`, as options of what comes next: where to, and which table."""
+    out, table = ["--out", str(folder)], ["--table", str(folder / "controller.json")]
+    assert main(["design", "--plant", PLANT, "--controller", "fuzzy", *out]) == 0
+    assert main(["build", *table, *out]) == 0
+    return out, table
 
 
 def test_verbs_of_the_scheduled_law_alone_say_so_in_one_line(
