@@ -25,7 +25,8 @@ NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
 PARTLY = 0.6  # of the hold-out's error that what is named must be able to take away,
 FAR = 2.5  # where some output's error is still that many floors
 IDLE = 0.25  # of the hold-out's error that an effect must be able to take away for it not to be a way of the training logs alone
-# Probability of an unknown effect then: of three spent cases one was outside the library, two had effects that a re-tune hides.
+HARDLY = 0.01  # and that it must surely take away then
+# Probability of an unknown effect then: of five spent cases three were outside the library, two had effects that a re-tune hides.
 NOT_BORNE_OUT = 0.6
 HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
@@ -108,13 +109,13 @@ def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tu
 
 
 def _idle(holdout: Holdout, tried: Tried, told: Shrinkage) -> bool:
-    """Whether a hypothesis surely takes less than IDLE of the error away, and maybe none of it: a way of the training logs alone.
+    """Whether a hypothesis surely takes less than IDLE of the error away, and not surely HARDLY: a way of the training logs alone.
 
     Events, each of which is another one in each log, and the steps of a sensor, which make no prediction better, are not asked.
     """
     if any(seen_in_readings(name) or _is_event(holdout.case, tried, name) for name in tried.effects):
         return False
-    return told.fraction_ci95 is not None and told.fraction_ci95[0] <= 0.0 and told.fraction_ci95[1] < IDLE
+    return told.fraction_ci95 is not None and told.fraction_ci95[0] <= HARDLY and told.fraction_ci95[1] < IDLE
 
 
 def _leaves_most(holdout: Holdout, tried: Tried, told: Shrinkage, left: float) -> bool:
