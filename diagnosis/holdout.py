@@ -92,8 +92,8 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
 
 
 def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
-    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave, or hardly takes any of it, maybe
-    none: as much of it is unknown. `left` are the nats that forms still gain beside it."""
+    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown; or
+    hardly takes any of it, maybe none: NOT_BORNE_OUT. `left` are the nats that forms still gain beside it."""
     if weighed.nameless or not weighed.tried:
         return weighed, ()
     first = weighed.tried[0]
