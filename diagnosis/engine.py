@@ -47,7 +47,6 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = _seen(bound, material)
     if seen.detection.p > ALARM:
         return no_gap(seen, material, _holdout(seen, material))
-    seen.case.kit.prepare_bristles()
     demand_wiring(seen.case, seen.retuned.fit, nominal_fit)
     seen, found = _explained(seen)
     if found is None:

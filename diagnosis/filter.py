@@ -23,8 +23,17 @@ SOURCES = tuple(c_text(path) for path in (SIM_C / "events.c", C_DIR / "filter.c"
 HEADERS = tuple(c_text(path) for folder in (C_DIR, SIM_C) for path in sorted(folder.glob("*.h")))
 DECLARATIONS = next(header.text for header in HEADERS if header.name == "filter.h")
 # Unlike the simulation's kernels nothing must be equal to the bit here. Unrolled, and with equations packed two and two, a library takes a
-# third longer to compile and is no faster.
-FLAGS = (*FAST_FLAGS, "-ffp-contract=fast", "-fno-unroll-loops", "-fno-slp-vectorize")
+# third longer to compile and is no faster; nor is it with equations inside each of their callers, or the compiler searching all their
+# branches for values that are at hand, which take another third.
+FLAGS = (
+    *FAST_FLAGS,
+    "-ffp-contract=fast",
+    "-fno-unroll-loops",
+    "-fno-slp-vectorize",
+    "-DMODEL_CODE=static __attribute__((noinline, unused))",
+    "-mllvm",
+    "-memdep-block-number-limit=20",
+)
 Array = NDArray[np.float64]
 # What is added at a slice of a tape's instants (steps, ..., columns): made when it is asked for, so that none is ever whole.
 Disturbances = Callable[[slice], Array]

@@ -59,8 +59,8 @@ class Variant:
 @dataclass(frozen=True, eq=False)
 class Kit:
     """A nominal plant with its library: `names` are effects on its equations without a state or an axis of their own, `wide_names`
-    those with, less `bristles`, whose states say what friction does near rest: every hypothesis may suppose them, and each state makes
-    a pass longer. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
+    those with, less `bristles`, whose states say what friction does near rest and are no gap. `outputs` are the plant's outputs, then
+    the states that a log may carry; `states` the plant's own."""
 
     bound: BoundPlant
     effects: Mapping[str, Effect]
@@ -102,32 +102,37 @@ class Kit:
         return _variant(self, ())
 
     def prepare(self) -> None:
-        """Begin to open the variants that every diagnosis asks for, in the order in which it does; who needs one sooner waits for it."""
-        lags = [name for name in self.effects if is_lag(name)]
-        for effects in ((), self.wide_names, self.names[:1], *([lag] for lag in lags)):
-            ahead(self.variant, effects)
+        """Begin to open all variants, the one that takes longest first; who needs one sooner waits for it."""
+        for effects in ((), self.whole, self.narrow):
+            ahead(_variant, self, effects)
 
-    def prepare_bristles(self) -> None:
-        """The same with the variant that is asked for where there is a gap."""
-        ahead(self.variant, self.bristles)
+    @property
+    def narrow(self) -> tuple[str, ...]:
+        """Effects that bring no state, and lags, which many hypotheses suppose."""
+        return (*self.names, *filter(is_lag, self.effects))
+
+    @property
+    def whole(self) -> tuple[str, ...]:
+        """All effects that any variant carries."""
+        return (*self.narrow, *self.wide_names, *self.bristles)
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
-        return name in self.names or name in self.wide_names or name in self.bristles or is_lag(name)
+        return name in self.whole
 
     def variant(self, effects: Iterable[str]) -> Variant:
-        """The fastest variant that carries all of `effects` that any carries, and one lag; of the wide ones none, one or all, since each
-        brings states and each choice is a library of its own."""
-        wanted = {name for name in effects if self.carried(name)}
-        behind = sorted(filter(is_lag, wanted))
-        wide = [name for name in self.wide_names if name in wanted]
-        bristles = () if wanted.isdisjoint(self.bristles) else self.bristles
-        beside = (*self.names, *(self.wide_names if len(wide) > 1 else wide), *bristles)
-        return _variant(self, (*(beside if wanted.difference(behind) else ()), *behind[:1]))
+        """The fastest of three that carries all of `effects` that any carries: the plant alone, with `narrow`, with all.
+
+        States of effects that are off sleep, and take next to no time.
+        """
+        wanted = set(effects).intersection(self.whole)
+        if not wanted:
+            return self.plain
+        return _variant(self, self.narrow if wanted.issubset(self.narrow) else self.whole)
 
 
 def is_lag(name: str) -> bool:
-    """Whether an effect is the lag of a sensor, which its own variant carries as a state."""
+    """Whether an effect is the lag of a sensor, which the filter carries as a state, and the simulation on the way of the signal."""
     return name.endswith("_sensor.lag")
 
 
@@ -172,7 +177,10 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
 
 
 def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
-    """What is noted of a variant with these effects, all switched on."""
+    """What is noted of a variant with these effects, all switched on.
+
+    The states come in the order of how often several are awake at once: the filter leaves whole blocks of sleepers alone.
+    """
     behind = [name for name in names if is_lag(name)]
     switched = [name for name in names if name not in behind]
     effects = library(bound)
@@ -183,6 +191,9 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
         model = switched_model(bound.plant.model, tuple(switched))
         for name in behind:
             model = lagged(model, name)
+        brought = model.states[len(bound.model.states) :]
+        late = brought[len(brought) - len(behind) :]
+        model = replace(model, states=(*bound.model.states, *late, *brought[: len(brought) - len(behind)]))
         model = observed(model, bound.model)
         equations = equations_text(model)
     parameters = [str(symbol) for symbol in model.parameter_symbols]
@@ -190,7 +201,7 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
         "library": str(build_filter(model.name, equations)),
         "parameters": parameters,
         "p": [values.get(name, 1.0) for name in parameters],
-        "switches": {name: parameters.index(switch_name(effects[name])) for name in switched},
+        "switches": {name: parameters.index(switch_name(effects[name])) for name in names},
         "states": [str(state) for state in model.states],
         "sizes": {"states": len(model.states), "outputs": len(model.outputs)},
         "axes": [axis.name for axis in model.axes],

@@ -59,7 +59,8 @@ def _limits(model: Model) -> dict[str, list[sympy.Expr]]:
 
 
 def _index_tables(model: Model) -> list[str]:
-    """Which states are an axis' position and velocity or have a kink at 0, which constants are limits.
+    """Which states are an axis' position and velocity or have a kink at 0, which constants are limits, which parameter a state sleeps
+    without (-1: it never does).
 
     An axis without a position has no stops; its velocity stands in, which no infinite limit stops.
     """
@@ -71,6 +72,8 @@ def _index_tables(model: Model) -> list[str]:
     }
     places = itertools.count()
     tables |= {name: [next(places) for _ in limits] for name, limits in _limits(model).items()}
+    parameter = {symbol: place for place, symbol in enumerate(model.parameter_symbols)}
+    tables["STATE_SWITCH"] = [parameter[model.sleepers[s]] if s in model.sleepers else -1 for s in model.states]
     return [f"static const int {name}[] = {{{', '.join(map(str, values or [0]))}}};" for name, values in tables.items()]
 
 
@@ -116,7 +119,7 @@ def _rates(model: Model, constants: Constants) -> str:
     for place, axis in enumerate(model.axes):
         row = model.states.index(axis.velocity)
         lines.append(f"dx[{row}] = move[{place}]*((torque[{place}] - friction_{place})*inverse_inertia_{place});")
-    head = f"ALWAYS_INLINE void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
+    head = f"MODEL_CODE void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
     return _function(f"{head} num *dx, num *torque, num *up, num *down)", lines)
 
 
@@ -126,7 +129,7 @@ def _friction(model: Model, constants: Constants) -> str:
         f"level[{place}]": sympy.sympify(axis.coulomb) * sign / axis.inertia
         for place, (axis, sign) in enumerate(zip(model.axes, model.friction_signs, strict=True))
     }
-    head = f"ALWAYS_INLINE void model_friction({_ARGUMENTS}, const num *sign, num *level)"
+    head = f"MODEL_CODE void model_friction({_ARGUMENTS}, const num *sign, num *level)"
     return _function(head, [*_locals(model), *assignments(targets, constants)])
 
 
@@ -137,7 +140,7 @@ def _rest_rates(model: Model) -> dict[str, sympy.Expr]:
 
 def _outputs(model: Model, constants: Constants) -> str:
     targets = {f"y[{row}]": expression for row, expression in enumerate(model.outputs.values())}
-    head = "ALWAYS_INLINE void model_outputs(num t_s, const num *x, const num *c, num *y)"
+    head = "MODEL_CODE void model_outputs(num t_s, const num *x, const num *c, num *y)"
     lines = [*_locals(model, inputs=False), *assignments(targets, constants)]
     return _function(head, lines)
 
@@ -149,8 +152,8 @@ def _slopes(model: Model, constants: Constants) -> list[str]:
     """
     rates, outputs = model.state_rates(), sympy.Matrix(list(model.outputs.values()))
     by_state, by_parameter, fixed = model.states, model.parameter_symbols, model.switches
-    head = f"ALWAYS_INLINE void model_{{}}_slopes({_ARGUMENTS}, const num *sign, num *{{}})"
-    outputs_head = "ALWAYS_INLINE void model_output_slopes(num t_s, const num *x, const num *c, num *H, num *E)"
+    head = f"MODEL_CODE void model_{{}}_slopes({_ARGUMENTS}, const num *sign, num *{{}})"
+    outputs_head = "MODEL_CODE void model_output_slopes(num t_s, const num *x, const num *c, num *H, num *E)"
     output_slopes = {**_entries("H", outputs, by_state), **_entries("E", outputs, by_parameter, fixed)}
     return [
         *(

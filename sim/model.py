@@ -60,7 +60,8 @@ class Model:
     `rates` covers every state but the velocities of `axes`, whose rates follow from the axes. `signals` are further quantities
     that a log of the plant may carry (the speed of a rotor that has no state), by column name. `places` says where effects can act,
     `starts` where the states that effects brought, the last of `states`, begin: at 0 or where another state is. `switches` are those of
-    the parameters that are 1, or 0 to leave out the terms that vanish with them; the equations have no slopes by them.
+    the parameters that are 1, or 0 to leave out the terms that vanish with them; the equations have no slopes by them. `sleepers` are
+    states that stand still and move nothing while the switch beside them is 0.
     """
 
     name: str
@@ -75,6 +76,7 @@ class Model:
     places: Places = field(default_factory=Places)
     starts: Mapping[sympy.Symbol, sympy.Expr] = field(default_factory=dict)
     switches: tuple[sympy.Symbol, ...] = ()
+    sleepers: Mapping[sympy.Symbol, sympy.Symbol] = field(default_factory=dict)
 
     @cached_property
     def parameter_symbols(self) -> tuple[sympy.Symbol, ...]:

@@ -23,7 +23,8 @@
 #define PENDING 32 /* measurements whose slopes are multiplied at a time */
 
 typedef double block __attribute__((vector_size(BLOCK * sizeof(double)), may_alias));
-#define WIDTH ((N + BLOCK - 1) / BLOCK * BLOCK)
+#define ROW ((N + BLOCK - 1) / BLOCK) /* blocks */
+#define WIDTH (ROW * BLOCK)
 typedef double matrix[N][WIDTH] __attribute__((aligned(sizeof(block)))); /* N by N, its rows filled up with zeros to whole blocks */
 
 /* Entries that are identically zero are never written, so these are emptied once a run. */
@@ -37,13 +38,20 @@ typedef struct {
     plant_body body;
     int64_t pieces;
     jacobians j;
-    matrix P;
+    matrix P, A, square, F, FP, PF; /* the last five are worked with within a step */
+    /* States of effects that are off: their rows and columns of matrices are 0, but F's are those of 1, and are left alone. */
+    bool sleeps[N], empty[ROW];
+    int order[N], awake; /* the states that do not sleep */
     int pending;
     /* By blocks of columns: slopes of the state, whitened slopes not yet multiplied, the lower half of their products, and those with
      * the innovations; what the plant's equations say of the columns. Columns beyond the request's are 0. */
     block S[BLOCKS][N], waiting[BLOCKS][PENDING], gram[BLOCKS][MAX_COLUMNS], pull[BLOCKS];
     block E[N_OUTPUTS][BLOCKS], D[N][BLOCKS];
 } filter_state;
+
+/* What never sleeps the compiler knows. */
+#define AWAKE(i) (STATE_SWITCH[i] < 0 || !at->sleeps[i])
+#define FILLED(b) (!at->empty[b])
 
 static int blocks(const filter_request *request) { return (request->columns + BLOCK - 1) / BLOCK; }
 
@@ -60,10 +68,20 @@ static void start(filter_state *at, filter_request *request)
     at->request = request;
     at->j = (jacobians){{0.0}, {0.0}, {0.0}, {0.0}};
     model_constants(request->p, at->c);
+    at->awake = 0;
+    for (int b = 0; b < ROW; b++)
+        at->empty[b] = true;
     for (int i = 0; i < N; i++) {
+        at->sleeps[i] = STATE_SWITCH[i] >= 0 && request->p[STATE_SWITCH[i] < 0 ? 0 : STATE_SWITCH[i]] == 0.0;
+        at->empty[i / BLOCK] &= at->sleeps[i];
+        if (!at->sleeps[i])
+            at->order[at->awake++] = i;
         at->body.x[i] = request->x0[i];
-        for (int j = 0; j < WIDTH; j++)
-            at->P[i][j] = i == j ? request->p0[i] : 0.0;
+        for (int j = 0; j < WIDTH; j++) {
+            at->A[i][j] = at->square[i][j] = at->FP[i][j] = at->PF[i][j] = 0.0;
+            at->F[i][j] = i == j;
+            at->P[i][j] = i == j && !at->sleeps[i] ? request->p0[i] : 0.0;
+        }
         for (int b = 0; b < blocks(request); b++)
             at->S[b][i] = (block){0.0};
     }
@@ -122,8 +140,8 @@ static void correct_slopes(filter_state *at, const double *H, const block *E, co
         for (int i = 0; i < N; i++)
             if (H[i] != 0.0)
                 slope -= H[i] * at->S[b][i];
-        for (int i = 0; i < N; i++)
-            at->S[b][i] += K[i] * slope;
+        for (int n = 0; n < at->awake; n++)
+            at->S[b][at->order[n]] += K[at->order[n]] * slope;
         if (place < 0)
             continue;
         slope *= scale;
@@ -142,21 +160,22 @@ static void correct(filter_state *at, int64_t step, int output, double predicted
 {
     filter_request *const r = at->request;
     const double variance = r->r[step * N_OUTPUTS + output];
-    double PH[WIDTH] = {0.0}, s = variance;
-    for (int j = 0; j < N; j++)
-        if (H[j] != 0.0)
-            for (int i = 0; i < WIDTH; i++)
-                PH[i] += at->P[j][i] * H[j];
-    for (int i = 0; i < N; i++)
-        s += H[i] * PH[i];
+    double PH[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0}, s = variance;
+    for (int n = 0; n < at->awake; n++)
+        UNROLLED for (int b = 0; b < ROW; b++)
+            if (H[at->order[n]] != 0.0 && FILLED(b))
+                ((block *)PH)[b] += ((block *)at->P[at->order[n]])[b] * H[at->order[n]];
+    for (int n = 0; n < at->awake; n++)
+        s += H[at->order[n]] * PH[at->order[n]];
     const double nu = r->y[step * N_OUTPUTS + output] - predicted, scale = 1.0 / sqrt(s);
-    double K[N];
-    for (int i = 0; i < N; i++)
+    double K[N] = {0.0};
+    for (int n = 0; n < at->awake; n++) {
+        const int i = at->order[n];
         K[i] = PH[i] / s;
-    for (int i = 0; i < N; i++) {
         at->body.x[i] += K[i] * nu;
-        for (int j = 0; j < WIDTH; j++)
-            at->P[i][j] -= K[i] * PH[j];
+        UNROLLED for (int b = 0; b < ROW; b++)
+            if (FILLED(b))
+                ((block *)at->P[i])[b] -= K[i] * ((block *)PH)[b];
     }
     if (r->K)
         for (int i = 0; i < N; i++) {
@@ -200,11 +219,16 @@ static void measure(filter_state *at, int64_t step)
             r->filtered[row * N + i] = at->body.x[i];
 }
 
-/* to = left times right, where `has` says which entries of `left` can be other than 0: known to the compiler, which leaves out the rest. */
-ALWAYS_INLINE void product(const matrix left, const int has[N][N], const matrix right, matrix to)
+/* to = left times right, where `has` says which entries of `left` can be other than 0: known to the compiler, which leaves out the rest.
+ * Rows of states that sleep are not touched. */
+ALWAYS_INLINE void product(const filter_state *at, const matrix left, const int has[N][N], const matrix right, matrix to)
 {
     UNROLLED for (int i = 0; i < N; i++) {
-        UNROLLED for (int b = 0; b < WIDTH / BLOCK; b++) {
+        if (!AWAKE(i))
+            continue;
+        UNROLLED for (int b = 0; b < ROW; b++) {
+            if (!FILLED(b))
+                continue;
             block sum = {0.0};
             UNROLLED for (int m = 0; m < N; m++)
                 if (has[i][m])
@@ -215,29 +239,32 @@ ALWAYS_INLINE void product(const matrix left, const int has[N][N], const matrix 
 }
 
 /* F = 1 + h A + h^2 A^2 / 2 */
-static void transition(const double *slopes, double h_s, matrix F)
+static void transition(filter_state *at, double h_s)
 {
-    matrix A = {{0.0}}, square;
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < N; k++)
-            A[i][k] = slopes[i * N + k];
-    product(A, A_HAS, A, square);
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < WIDTH; k++)
-            F[i][k] = (i == k) + h_s * (A[i][k] + 0.5 * h_s * square[i][k]);
+    UNROLLED for (int i = 0; i < N; i++)
+        UNROLLED for (int k = 0; k < N; k++)
+            if (A_HAS[i][k])
+                at->A[i][k] = at->j.A[i * N + k];
+    product(at, at->A, A_HAS, at->A, at->square);
+    UNROLLED for (int i = 0; i < N; i++) {
+        if (!AWAKE(i))
+            continue;
+        UNROLLED for (int k = 0; k < N; k++)
+            if (F_HAS[i][k])
+                at->F[i][k] = (i == k) + h_s * (at->A[i][k] + 0.5 * h_s * at->square[i][k]);
+    }
 }
 
 /* P = F P F' + noise */
-static void spread(filter_state *at, const matrix F, const double *noise)
+static void spread(filter_state *at, const double *noise)
 {
-    matrix FP, PF = {{0.0}};
-    product(F, F_HAS, at->P, FP);
-    for (int i = 0; i < N; i++)
-        for (int k = 0; k < N; k++)
-            PF[k][i] = FP[i][k];
-    product(F, F_HAS, PF, at->P);
+    product(at, at->F, F_HAS, at->P, at->FP);
+    for (int n = 0; n < at->awake; n++)
+        for (int m = 0; m < at->awake; m++)
+            at->PF[at->order[n]][at->order[m]] = at->FP[at->order[m]][at->order[n]];
+    product(at, at->F, F_HAS, at->PF, at->P);
     for (int i = 0; i < N; i++) {
-        for (int k = 0; k < i; k++)
+        for (int k = 0; AWAKE(i) && k < i; k++)
             at->P[k][i] = at->P[i][k];
         at->P[i][i] += noise[i];
     }
@@ -249,17 +276,21 @@ static void move_slopes(filter_state *at, double h_s)
     const filter_request *const r = at->request;
     const double *const A = at->j.A;
     UNROLLED for (int i = 0; i < N; i++)
-        if (D_HAS[i])
+        if (D_HAS[i] && AWAKE(i))
             gather(r, at->j.D + i * N_PARAMETERS, at->D[i]);
     for (int b = 0; b < blocks(r); b++) {
-        block *const S = at->S[b], rates[N];
+        block *const S = at->S[b], rates[N] = {{0.0}};
         UNROLLED for (int i = 0; i < N; i++) {
+            if (!AWAKE(i))
+                continue;
             rates[i] = at->D[i][b];
             UNROLLED for (int m = 0; m < N; m++)
                 if (A_HAS[i][m])
                     rates[i] += A[i * N + m] * S[m];
         }
         UNROLLED for (int i = 0; i < N; i++) {
+            if (!AWAKE(i))
+                continue;
             block second = {0.0};
             UNROLLED for (int m = 0; m < N; m++)
                 if (A_HAS[i][m])
@@ -324,11 +355,10 @@ static void advance(filter_state *at, int64_t step)
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
     double x[N], middle[N], noise[N], level[AXES] = {0.0}, sign[AXES];
     bool rests[AXES], held[AXES];
-    matrix F;
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
-        noise[i] = r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0);
+        noise[i] = AWAKE(i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0) : 0.0;
     for (int a = 0; a < AXES; a++)
         sign[a] = 1.0;
     model_friction(t_s, at->body.x, at->u, at->c, sign, level);
@@ -350,8 +380,8 @@ static void advance(filter_state *at, int64_t step)
     if (r->columns)
         model_parameter_slopes(t_s + 0.5 * h_s, middle, at->u, at->c, at->body.sign, j->D);
     empty_rows(rests, j->A, N);
-    transition(j->A, h_s, F);
-    empty_rows(rests, F[0], WIDTH);
+    transition(at, h_s);
+    empty_rows(rests, at->F[0], WIDTH);
     /* The mean stays where friction holds it, however unsure its speed is: parameters move nothing there. */
     empty_rows(held, j->A, N);
     empty_rows(held, j->D, N_PARAMETERS);
@@ -363,11 +393,11 @@ static void advance(filter_state *at, int64_t step)
             noise[AXIS_VELOCITY[a]] = 0.0;
     }
     stir(at, rests, noise);
-    spread(at, F, noise);
+    spread(at, noise);
     if (r->F)
         for (int i = 0; i < N; i++)
             for (int k = 0; k < N; k++)
-                r->F[(step * N + i) * N + k] = F[i][k];
+                r->F[(step * N + i) * N + k] = at->F[i][k];
 }
 
 /* Returns the number of instants done; fewer than asked when the state left all bounds, or rattles in nearly every step. */

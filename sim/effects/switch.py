@@ -39,7 +39,14 @@ def _edited(model: Model, effect: Effect) -> Model:
         symbol if parameter.zero is None else parameter.zero + on * (symbol - parameter.zero)
         for parameter, symbol in zip(effect.parameters, effect.symbols, strict=True)
     ]
-    return effect.edit(model, *sizes)
+    return sleeping(model, effect.edit(model, *sizes), on)
+
+
+def sleeping(before: Model, model: Model, on: sympy.Symbol) -> Model:
+    """The model whose states that `before` had not stand still while the switch is 0."""
+    brought = [state for state in model.states if state not in before.states]
+    rates = {**model.rates, **{state: on * model.rates[state] for state in brought}}
+    return replace(model, rates=rates, sleepers={**model.sleepers, **dict.fromkeys(brought, on)})
 
 
 def _with_inputs(model: Model, effects: Iterable[Effect]) -> Model:
