@@ -102,8 +102,8 @@ class Kit:
         return _variant(self, ())
 
     def prepare(self) -> None:
-        """Begin to open all variants, the one that takes longest first; who needs one sooner waits for it."""
-        for effects in ((), self.whole, self.narrow):
+        """Begin to open all variants, in the order in which they are asked for; who needs one sooner waits for it."""
+        for effects in ((), self.narrow, self.whole):
             ahead(_variant, self, effects)
 
     @property
