@@ -8,16 +8,18 @@ import pytest
 from diagnosis.calm import calmed
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
-from diagnosis.exchange import exchange
-from diagnosis.fit import Fit, fit
+from diagnosis.exchange import exchange, twins_tried
+from diagnosis.fit import Fit, Free, fit
 from diagnosis.ground import ground_of
+from diagnosis.hypothesis import Supposed
 from diagnosis.kit import make_kit
 from diagnosis.places import place_shares
 from diagnosis.screen import look
-from diagnosis.search import LEAST_GAIN, Search
+from diagnosis.search import LEAST_GAIN, Search, certainties
 from diagnosis.trial import Job, Tried, evidence, once_more, refined, rough
 from diagnosis.weigh import Weighed
 from sim.bind import BoundPlant
+from sim.effects.api import library
 from sim.effects.effect import Values
 from tests.diagnosis.conftest import Fly
 
@@ -58,6 +60,33 @@ def test_an_effect_is_exchanged_for_its_like(plant: BoundPlant, fly: Fly) -> Non
     assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
     assert best.fit.supposed.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
     assert best.evidence > wrong.evidence + 20.0
+
+
+def test_the_twin_of_the_best_is_tried_in_its_place(plant: BoundPlant, fly: Fly) -> None:
+    # A lag of the elevation's sensor, of which the search so far knows no more than the delay that is alike.
+    case = make_case(make_kit(plant), [fly(44, {"psi_sensor.lag": {"tau": 0.06}}, air=False)])
+    late = fitted(case, nominal_fit(case), {"psi_sensor.delay": {"tau": 0.05, "jitter": 0.0}})
+    found = {frozenset(late.effects): late}
+    twins_tried(case, found)
+    best = max(found.values(), key=lambda entry: entry.evidence)
+    assert best.effects == ("psi_sensor.lag",)
+    assert best.fit.supposed.effects["psi_sensor.lag"]["tau"] == pytest.approx(0.06, abs=0.003)
+
+
+def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: BoundPlant) -> None:
+    # A spring of stiffness 1 known to 0.1 where its rest is known, and to 7 where it is not: each makes up for the other.
+    spring, push = (library(plant)[name] for name in ("azimuth.cable_spring", "azimuth.offset_force"))
+    k, angle_0, offset = spring.parameter["k"], spring.parameter["angle_0"], push.parameter["offset"]
+    both = np.array([[100.0, 99.99], [99.99, 100.0]])
+    values = {spring.name: {"k": 1.0, "angle_0": 0.5, "h": 0.0}}
+    free = (Free(spring.name, k, 1.0), Free(spring.name, angle_0, 1.0))
+    supposed = Supposed(np.zeros(0), values, np.zeros(2))
+    assert certainties(Fit(supposed, 0.0, 0.0, free, both, np.zeros(2)))[spring.name] == pytest.approx(10.0)
+    beside = Supposed(np.zeros(0), {**values, push.name: {"offset": 1.0}}, np.zeros(2))
+    three = np.block([[both, np.zeros((2, 1))], [np.zeros((1, 2)), np.full((1, 1), 25.0)]])
+    found = certainties(Fit(beside, 0.0, 0.0, (*free, Free(push.name, offset, 1.0)), three, np.zeros(3)))
+    assert found[spring.name] == pytest.approx(0.1414, abs=1e-3)
+    assert found[push.name] == pytest.approx(5.0)
 
 
 def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: Fly) -> None:

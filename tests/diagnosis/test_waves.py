@@ -1,12 +1,15 @@
 """What swings as a sine: where a fit of it begins, and what the diagnosis calls it."""
 
+import numpy as np
 import pytest
 
 from diagnosis.case import make_case
 from diagnosis.engine import Material, diagnose, nominal_fit
 from diagnosis.ground import ground_of
+from diagnosis.instants import target_of
 from diagnosis.kit import make_kit
-from diagnosis.waves import wave_starts
+from diagnosis.waves import likely_waves, wave_starts
+from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effects.api import library
 from tests.diagnosis.conftest import Fly
@@ -30,6 +33,32 @@ def test_a_sine_begins_near_its_waves(plant: BoundPlant, fly: Fly, truth) -> Non
 def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
     case = make_case(make_kit(plant), [fly(62)])
     assert wave_starts(ground_of(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []
+
+
+def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly: Fly) -> None:
+    # A spring beside whose force the model swings wrongly wherever the arm swings, and nothing else: a sine in time would take its part.
+    log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, rig_seed=61)
+    ground = ground_of(case := make_case(make_kit(plant), [log]), nominal_fit(case))
+    effect = library(plant)["elevation.periodic_torque"]
+    target = target_of(case, effect)
+    assert target is not None
+    likely = likely_waves(ground, target)
+    begun = {start["rate"] for start in wave_starts(ground, effect)}
+    assert begun < set(likely)
+    # Independent of the code: the share of the arm's speed, by differences, that a sine and a cosine of a frequency explain.
+    assert min(swung(log, rate) for rate in set(likely) - begun) > 0.3 > max(swung(log, rate) for rate in begun)
+
+
+def swung(log: RunLog, rate_rad_s: float) -> float:
+    """The largest share of the elevation's speed that repeats with a frequency, or with a second to fifth of it."""
+    speed = np.gradient(np.convolve(log.y[:, 0], np.ones(11) / 11, "valid"), 0.01)
+    t_s = log.t_s[5:-5]
+    shares = []
+    for part in range(1, 6):
+        wave = np.column_stack([np.sin(rate_rad_s / part * t_s), np.cos(rate_rad_s / part * t_s), np.ones(len(t_s))])
+        left = speed - wave @ np.linalg.lstsq(wave, speed, rcond=None)[0]
+        shares.append(1.0 - np.var(left) / np.var(speed))
+    return float(max(shares))
 
 
 @pytest.mark.parametrize("truth", [CYCLIC, PERIODIC])
