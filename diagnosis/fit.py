@@ -100,6 +100,12 @@ def likelihood(runs: Sequence[Pass]) -> float:
     return sum(run.log_likelihood for run in runs)
 
 
+def likelihood_of(case: Case, supposed: Supposed) -> float:
+    """The log likelihood of what is supposed, -inf where the filter left all bounds."""
+    runs = passes(case, supposed)
+    return -np.inf if runs is None else likelihood(runs)
+
+
 def log_prior(case: Case, supposed: Supposed, free: Sequence[Free]) -> float:
     """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from diagnosis.case import Case
-from diagnosis.fit import Fit, fit, likelihood
-from diagnosis.hypothesis import Supposed, passes
+from diagnosis.fit import Fit, fit, likelihood_of
+from diagnosis.hypothesis import Supposed
 from diagnosis.screen import FRICTIONS
 from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import with_unrest
@@ -77,7 +77,7 @@ def _likeliest(case: Case, supposed: Supposed, effect: Effect, value: float) -> 
     cost hundreds of nats, and no other air makes up for them.
     """
     reference = effect.size.reference
-    first = [(_value(case, _with(supposed, effect, size)), size) for size in (reference, reference / FOLD**2)]
+    first = [(likelihood_of(case, _with(supposed, effect, size)), size) for size in (reference, reference / FOLD**2)]
     if max(first)[0] <= value:
         return supposed, value
     size = max(first)[1]
@@ -101,9 +101,4 @@ def _with(supposed: Supposed, effect: Effect, size: float) -> Supposed:
 def _settled(case: Case, supposed: Supposed) -> tuple[Supposed, float]:
     """The same in the air that its innovations then show, with its log likelihood."""
     tried = with_unrest(case, supposed)
-    return tried, _value(case, tried)
-
-
-def _value(case: Case, supposed: Supposed) -> float:
-    runs = passes(case, supposed)
-    return float("-inf") if runs is None else likelihood(runs)
+    return tried, likelihood_of(case, tried)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.case import Case
-from diagnosis.fit import Fit, likelihood
-from diagnosis.hypothesis import Supposed, passes
+from diagnosis.fit import Fit, likelihood_of
+from diagnosis.hypothesis import Supposed
 
 LEAST, MOST = -5.0, 1.5
 FIRST_STEP = 0.3
@@ -16,7 +16,7 @@ LITTLE = 0.1  # nats that the top of the parabola, (below - above)^2 / (8 |bend|
 
 def with_unrest(case: Case, supposed: Supposed, first: float = FIRST_STEP) -> Supposed:
     """The same with the unrest that the innovations show."""
-    return _likeliest(case, supposed, _value(case, supposed), first)
+    return _likeliest(case, supposed, likelihood_of(case, supposed), first)
 
 
 def unrest_of(case: Case, found: Fit, first: float = FIRST_STEP) -> Supposed:
@@ -38,7 +38,7 @@ def _along(case: Case, supposed: Supposed, value: float, axis: int, step: float)
         changed = supposed.unrest.copy()
         changed[axis] = float(np.clip(unrest, LEAST, MOST))
         tried = replace(supposed, unrest=changed)
-        return tried, _value(case, tried)
+        return tried, likelihood_of(case, tried)
 
     middle = (supposed, value)
     below, above = at(supposed.unrest[axis] - step), at(supposed.unrest[axis] + step)
@@ -54,8 +54,3 @@ def _along(case: Case, supposed: Supposed, value: float, axis: int, step: float)
         return middle
     top = at(middle[0].unrest[axis] + 0.5 * step * (below[1] - above[1]) / bend)
     return top if top[1] > middle[1] else middle
-
-
-def _value(case: Case, supposed: Supposed) -> float:
-    runs = passes(case, supposed)
-    return -np.inf if runs is None else likelihood(runs)
