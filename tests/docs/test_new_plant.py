@@ -5,12 +5,15 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+PACKAGES = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
 PAGE = ROOT / "docs" / "new-plant.md"
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 
@@ -32,14 +35,14 @@ def test_the_page_is_made_of_files_a_diff_programs_and_their_output() -> None:
     found = blocks()
     assert PAGE.read_text("utf-8").count("```") == 2 * len(found)
     assert [block.file for block in found if block.file] == ["sim/plants/dc_motor.py", "plants/dc_motor.toml"]
-    assert {block.language for block in found} == {"python", "diff", "toml", "text"}
+    assert {block.language for block in found} == {"python", "diff", "toml", "text", "sh"}
 
 
 def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
-    for package in ("records", "toolchain", "sim"):
+    for package in PACKAGES:
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "plants").mkdir()
-    programs, shown = [], []
+    programs, commands, shown = [], [], []
     for block in blocks():
         if block.file:
             (tmp_path / block.file).write_text(block.text, encoding="utf-8")
@@ -47,9 +50,13 @@ def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
             run(["git", "apply", "--unidiff-zero", "-"], tmp_path, block.text)
         elif block.language == "python":
             programs.append(block.text)
+        elif block.language == "sh":
+            commands.append(block.text)
         else:
             shown.append(block.text)
     printed = run([sys.executable, "-W", "error", "-"], tmp_path, "".join(programs))
+    twinlaw = f"twinlaw() {{ {sys.executable} -c 'import sys; from twinlaw.command import main; sys.exit(main())' \"$@\"; }}\n"
+    printed += run(["bash", "-e", "-o", "pipefail"], tmp_path, twinlaw + "".join(commands))
     assert printed == "".join(shown)
 
 
