@@ -85,7 +85,8 @@ def _twins(case: Case, weighed: Weighed | None) -> Iterator[str]:
     for other in alike(weighed, first):
         for name in other.effects:
             for own in first.effects:
-                reason = case.kit.effects[own].twins.get(name)
+                effects = case.kit.effects
+                reason = effects[own].twins.get(name) or effects[name].twins.get(own)
                 if reason:
                     yield f"{own} and {name}: {reason}"
 

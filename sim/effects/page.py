@@ -35,8 +35,15 @@ is designed on the plant with those effects on its equations that bring no state
 is left to the flight.
 
 Each parameter is given with its bounds, in parentheses a size that one may meet, and behind the arrow the value at which the effect
-vanishes; without an arrow it only shapes the effect. An effect of one's own is one file in `sim/effects/` and one row in its
-`__init__.py`.
+vanishes; without an arrow it only shapes the effect. Bounds of sizes are shares and multiples of what is usual at the place, a
+command, a torque, a speed, a turn, which the plant's equations state (`Places`): what is larger is no flaw of a rig but another
+rig. Within them the diagnosis takes every size for likely, so they are wide; the sources below are of the equations, and of the
+sizes where one is named.
+
+An effect of one's own is one file in `sim/effects/`, made known to `FAMILIES` in its `__init__.py`, in the order in which it acts.
+It then is in the library of every plant that has its place, in the simulation, the diagnosis and this page (`python -c "from
+sim.effects.page import *; print(effects_page(), end='')"`). Before any log it counts as rare; `diagnosis/prior.py` names those that
+are common.
 """
 
 
@@ -71,22 +78,30 @@ def _parameter(entry: EffectParameter) -> str:
 
 def _words() -> list[str]:
     """Story, source and twins, once for each kind of effect."""
-    kinds: dict[str, Effect] = {}
+    kinds: dict[str, dict[str, Effect]] = {}
     for model in MODELS.values():
+        here: dict[str, dict[str, Effect]] = {}
         for effect in effects_for(model()).values():
-            kinds.setdefault(_kind(effect), effect)
-    lines = ["", "## What they are", ""]
-    for kind, effect in sorted(kinds.items()):
-        lines.append(f"- **{kind}**: {effect.story} Source: {effect.source}.{_twins(effect.twins)}")
+            here.setdefault(_kind(effect), {})[effect.name] = effect
+        kinds = {**here, **kinds}
+    lines = ["", "## What they are", "", "Of each kind those of the first plant above that has it.", ""]
+    for kind, effects in sorted(kinds.items()):
+        first = next(iter(effects.values()))
+        twins = {name: reason for effect in effects.values() for name, reason in effect.twins.items()}
+        lines.append(f"- **{kind}**: {first.story} Source: {first.source}.{_twins(twins)}")
     return lines
 
 
 def _kind(effect: Effect) -> str:
-    return f"{effect.kind} (sensor)" if effect.place.endswith("_sensor") else effect.kind
+    where = next((end for end in ("sensor", "rotor", "loop") if effect.place.endswith(end)), "")
+    return f"{effect.kind} ({where})" if where else effect.kind
 
 
 def _twins(twins: Mapping[str, str]) -> str:
-    return "".join(f" Hard to tell from `{name}`: {reason}." for name, reason in twins.items())
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in twins.items():
+        by_reason.setdefault(reason, []).append(f"`{name}`")
+    return "".join(f" Hard to tell from {', '.join(names)}: {reason}." for reason, names in by_reason.items())
 
 
 def _cell(text: str) -> str:
