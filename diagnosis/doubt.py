@@ -7,6 +7,8 @@ import numpy as np
 
 from diagnosis.case import Case
 from diagnosis.contradiction import Contradiction, contradiction, parted_gain
+from diagnosis.fit import fit
+from diagnosis.hypothesis import Supposed
 from diagnosis.instants import is_event
 from diagnosis.misfit import ignorance
 from diagnosis.search import Search
@@ -14,6 +16,7 @@ from diagnosis.weigh import UNNAMED, Weighed
 
 WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
+ROUNDS = 4
 KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
 OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
 REFUTED = 1.4  # times the mean square error of the hold-out without it, beyond which a cause is refuted
@@ -64,6 +67,16 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
             "the plant file states"
         )
     return Doubt(tuple(sentences), forbids)
+
+
+def contradicting(case: Case, supposed: Supposed, names: Sequence[str]) -> tuple[str, ...]:
+    """Which of logs that seem to be of the plant as `supposed`, without a gap, contradicts the others; nothing where none does."""
+    together = fit(case, supposed, rounds=ROUNDS)
+    apart = None if together is None else contradiction(case, together)
+    if together is None or apart is None or apart.gain <= WORTH_TELLING:
+        return ()
+    apart = replace(apart, gain=min(apart.gain, parted_gain(case, together)))
+    return (_contradiction(apart, names),) if apart.gain > WORTH_TELLING else ()
 
 
 def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from diagnosis.answer import gap, no_gap
 from diagnosis.case import Case, make_case
 from diagnosis.detect import Detection, detect, form_scores
-from diagnosis.doubt import doubt
+from diagnosis.doubt import contradicting, doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
 from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
@@ -46,20 +46,31 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
     if seen.detection.p > ALARM:
-        return no_gap(seen, material, _holdout(seen, material))
-    demand_wiring(seen.case, seen.retuned.fit, nominal_fit)
+        return _nothing(seen, material, _holdout(seen, material))
+    demand_wiring(seen.case, seen.retuned.fit, nominal_fit, "the logs to explain")
     seen, found = _explained(seen)
     if found is None:
-        return no_gap(seen, material, _holdout(seen, material))
+        return _nothing(seen, material, _holdout(seen, material))
     beyond = retune(seen.case, seen.retuned.fit)
     seen = replace(seen, detection=confirmed_by(seen.detection, found, beyond))
     if seen.detection.p > ALARM:
-        return no_gap(seen, material, _holdout(seen, material))
+        return _nothing(seen, material, _holdout(seen, material))
     judged = _judged(seen, material, found, beyond)
     seen = replace(seen, detection=borne_out(seen.detection, judged))
     if seen.detection.p > ALARM:
-        return no_gap(seen, material, judged.holdout)
+        return _nothing(seen, material, judged.holdout)
     return gap(seen, material, judged)
+
+
+def _nothing(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
+    """The answer where no gap shows, with what logs that were not fitted say to that. Raises BadInput where they are wired otherwise."""
+    if seen.checked is None:
+        return no_gap(seen, material, holdout)
+    together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
+    told = contradicting(together, seen.retuned.fit.supposed, [*material.names, *material.holdout_names])
+    if told:
+        demand_wiring(seen.checked, nominal_fit(seen.checked), nominal_fit, "the hold-out")
+    return no_gap(seen, replace(material, notes=(*material.notes, *told)), holdout)
 
 
 def _seen(bound: BoundPlant, material: Material) -> Seen:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.fit import SCATTERS
 from diagnosis.hypothesis import Supposed, coefficients
+from diagnosis.kit import Kit, Variant
 from sim.effects.build import paths_with
 from sim.effects.effect import Values
 from sim.paths import Held, OutputStage, Trace, pass_inputs, pass_output
@@ -23,7 +24,7 @@ UNSEEN = 1e8  # variance of a reading that only asks
 class Flown:
     """The plant of `case` under `supposed` at time `t_s` in state `x` (states of its variant,).
 
-    `x0` holds the plant's own states first; what effects brought and x0 lacks starts at 0. Axes `locked` stay where they stand. With a
+    `x0` holds the plant's own states first; what effects brought and x0 lacks starts at rest. Axes `locked` stay where they stand. With a
     `seed` the supposed unrest shakes the axes and delays scatter as supposed; without, all is as on average. `lost` is set once the
     state has left all bounds; then nothing moves any more.
     """
@@ -55,8 +56,7 @@ class Flown:
         self._ways = [(place, [s for s in on_output if s.output == place]) for place in range(self._outputs)]
         self._memory: dict[int, Any] = {}
         self._make_request(coefficients(case, variant, supposed), locked)
-        own = np.append(x0, np.zeros(max(0, variant.filter.states - len(x0))))
-        self._arrays["x0"][:] = own[: variant.filter.states]
+        self._arrays["x0"][:] = _begun(kit, variant, x0)
         self._ask(1)
         self._y = self._behind(np.array([t_s]))
 
@@ -151,6 +151,13 @@ class Flown:
 def without_scatter(values: Values) -> Values:
     """The numbers of an effect that does the same each time."""
     return {symbol: 0.0 if symbol == SCATTERS else value for symbol, value in values.items()}
+
+
+def _begun(kit: Kit, variant: Variant, x0: Array) -> Array:
+    """The states that a rig begins with, what effects brought with them: what is read late begins where it is, all else at rest."""
+    begun = dict(zip(variant.states, x0.tolist(), strict=False))
+    late = {f"{name}_read": begun.get(name, 0.0) for name in kit.bound.model.outputs}
+    return np.array([begun.get(state, late.get(state, 0.0)) for state in variant.states])
 
 
 def _shaken(case: Case, supposed: Supposed, locked: tuple[str, ...]) -> Array:

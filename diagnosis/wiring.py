@@ -32,17 +32,18 @@ class Wiring:
     output_signs: Sequence[float]
 
 
-def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit]) -> None:
+def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where: str) -> None:
     """Raise BadInput where turning one column's sign, or swapping two columns, lets the plant as stated follow the logs.
 
     `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
+    `where` says which logs they are.
     """
     found = likelier_wiring(case, fitted) if _is_strained(nominal) else None
     if found is not None:
         wiring, gain = found
         raise BadInput(
             what="columns",
-            where="the logs to explain",
+            where=where,
             got=f"{wiring.what}: read so, the plant follows them {gain:.0f} nats better",
             expected="columns that are what they are called",
             remedy=wiring.remedy,

@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis.case import Case, make_case
 from diagnosis.contradiction import contradiction
-from diagnosis.doubt import UNNAMED, Doubt
+from diagnosis.doubt import UNNAMED, Doubt, contradicting
 from diagnosis.engine import nominal_fit
 from diagnosis.kit import Kit, make_kit
 from diagnosis.misfit import ignorance
@@ -42,6 +42,15 @@ def test_two_parts_of_one_flight_agree_and_flights_of_two_plants_do_not(kit: Kit
     differing = make_case(kit, [part(flight, slice(0, 1500)), part(fly(42, SPRING), slice(0, 1500))])
     assert gain_of_own_numbers(differing) > 100.0
     assert contradiction(make_case(kit, [flight]), nominal_fit(agreeing)) is None
+
+
+def test_a_hold_out_of_another_rig_is_told_though_each_is_as_stated(kit: Kit, fly: Fly) -> None:
+    # Every rig is within its stated spread; the third log is of another one.
+    one, same, other = (fly(seed, rig_seed=rig) for seed, rig in ((71, 71), (72, 71), (73, 74)))
+    alike, unlike = make_case(kit, [one, same]), make_case(kit, [one, other])
+    assert contradicting(alike, nominal_fit(alike).supposed, ["train", "hold"]) == ()
+    (told,) = contradicting(unlike, nominal_fit(make_case(kit, [one])).supposed, ["train", "hold"])
+    assert "these logs contradict each other" in told
 
 
 def test_a_plant_knows_its_own_flights_and_nothing_of_a_random_walk(kit: Kit, fly: Fly) -> None:

@@ -61,6 +61,13 @@ def test_it_moves_as_the_simulation_does(
     assert np.abs(own - simulated).max() <= 1.01 * STEP_RAD
 
 
+def test_a_lagging_sensor_begins_where_the_arm_is(plant: BoundPlant, case: Case) -> None:
+    # Else its first readings would be those of a jump that nothing made, by which it could be told from a delay.
+    x0 = equilibrium(plant, 0.3).x0
+    rig = Flown(case, _supposed(case, {"psi_sensor.lag": {"tau": 0.1}}), x0)
+    assert rig.measured()[0] == pytest.approx(0.3, abs=STEP_RAD)
+
+
 def test_unrest_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case, law: HostLaw) -> None:
     x0 = equilibrium(plant, 0.0).x0
     restless = nothing_supposed(case, -1.0)

@@ -39,7 +39,7 @@ def swapped(log: RunLog, block: str) -> RunLog:
 
 
 def demanded(case: Case) -> None:
-    demand_wiring(case, nominal_fit(case), nominal_fit)
+    demand_wiring(case, nominal_fit(case), nominal_fit, "the logs to explain")
 
 
 def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(kit: Kit, fly: Fly) -> None:
@@ -47,7 +47,7 @@ def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(kit: Kit, 
         raise AssertionError("asked")
 
     case = make_case(kit, [fly(31, seconds=SECONDS)])
-    demand_wiring(case, nominal_fit(case), never)
+    demand_wiring(case, nominal_fit(case), never, "the logs to explain")
 
 
 @pytest.mark.parametrize(
