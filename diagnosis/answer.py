@@ -20,7 +20,7 @@ from diagnosis.sparse import suggestion
 from diagnosis.trial import Tried
 from diagnosis.unknown import Suspect, suspects
 from diagnosis.weigh import Weighed, alike
-from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
+from records.diagnosis import Diagnosis, Hypothesis, Unknown
 
 
 def gap(seen: Seen, material: Material, judged: Judged) -> Result:
@@ -60,11 +60,10 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
-    blamed, blind = suspects(seen.detection.by_form), cannot_tell(case, seen.looks)
+    blind = cannot_tell(case, seen.looks)
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,
-        places=(PlaceShare(blamed[0].place, 1.0),) if blamed else (),
         firmware=material.firmware,
         shrinkage=None if holdout is None else holdout.shrinkage(predicted),
         next_experiment=revealing_experiment(case, seen.retuned.fit.supposed) if blind else None,

@@ -46,9 +46,9 @@ def unsure_when(tape: Tape, output: int, jitter_s: float, stated: float) -> Tape
 
     What the readings showed of noise beyond the variance that is `stated` is no more than that then, as far as its mean goes.
     """
-    if jitter_s <= 0.0:
-        return tape
     seen = np.flatnonzero(np.isfinite(tape.read[:, output]))
+    if jitter_s <= 0.0 or not len(seen):
+        return tape
     r = tape.r.copy()
     further = (rates(tape.t_s[seen], tape.read[seen, output]) * jitter_s) ** 2
     known = min(max(tape.single[output] - stated, 0.0), float(np.mean(further)))
