@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.integrity_dead import dead_findings, read_again
 from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from diagnosis.integrity_held import held_findings
+from diagnosis.integrity_seams import seam_findings
 from records.log import RunLog
 from sim.columns import reference_name
 
@@ -73,7 +75,10 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     yield from _missing_numbers(log, name)
     yield from _constant(log, name)
     yield from _copies(log, name)
-    yield from held_findings(log, name)
+    again = read_again(log)
+    yield from seam_findings(log, name, steps, again)
+    held = list(held_findings(log, name))
+    yield from held or dead_findings(log, name, again, steps)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 

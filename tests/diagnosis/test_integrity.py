@@ -229,18 +229,97 @@ def test_logs_that_hold_the_same_angle_with_another_input_are_not_of_one_plant(
 def test_a_million_rows_are_examined_and_their_defects_found() -> None:
     log, times = clean(), 500
     n = 2001 * times
+    rows = np.resize(
+        np.concatenate([np.arange(2001), np.arange(2001)[::-1]]), n
+    )  # there and back: one recording has no seams
     noise = np.random.default_rng(6).integers(-1, 2, (n, 2)) * TURN_STEP_RAD
     long = replace(
         log,
         t_s=np.arange(n) * 0.01,
-        u=np.tile(log.u, (times, 1)) + 1e-3 * noise,
-        y=np.tile(log.y, (times, 1)) + noise,
-        extra={name: np.tile(values, times) for name, values in log.extra.items()},
+        u=log.u[rows] + 1e-3 * noise,
+        y=log.y[rows] + noise,
+        extra={name: values[rows] for name, values in log.extra.items()},
     )
     long.y[777_777, 0] += 1.0
     found = _examined(long)
     assert np.flatnonzero(found.logs[0].excluded).tolist() == [777_777]
     assert not found.refusals
+
+
+def _one_after_another(*logs: RunLog) -> RunLog:
+    """Several logs in one file, the time of which goes on."""
+    y, u = np.concatenate([log.y for log in logs]), np.concatenate([log.u for log in logs])
+    return replace(logs[0], t_s=0.01 * np.arange(len(y)), y=y, u=u, extra={})
+
+
+def test_several_recordings_in_one_file_are_refused_with_their_seams() -> None:
+    log = clean()
+    (found,) = _examined(_one_after_another(log, log, log)).refusals
+    assert (found.kind, found.start_s, found.end_s) == ("seam", pytest.approx(20.01), pytest.approx(40.02))
+    leaps = np.abs(log.y[0] - log.y[-1]) / TURN_STEP_RAD
+    assert f"psi_rad by {leaps[0]:.0f} steps and phi_rad by {leaps[1]:.0f} steps" in found.sentence
+    assert "and so at 40.02 s" in found.sentence
+    assert "cut it there" in found.remedy
+
+
+@pytest.mark.parametrize("columns", [[0], [1]])
+def test_one_output_that_jumps_alone_is_a_count_slip_and_no_seam(columns: list[int]) -> None:
+    log = clean()
+    y = log.y.copy()
+    y[900:, columns] -= 200 * TURN_STEP_RAD
+    assert not _kinds(_examined(replace(log, y=y, extra={}))) & {"seam", "dead_stretch"}
+
+
+def test_a_leap_of_all_outputs_over_missing_rows_or_repeated_readings_is_no_seam() -> None:
+    # From 7 s on both axes are under way: 20 rows later both are far from where they were, as honest motion.
+    log, rows = clean(), np.arange(2001)
+    fastest = int(np.argmax(np.abs(log.y[20:] - log.y[:-20]).min(axis=1)))
+    lost = (rows > fastest) & (rows < fastest + 20)
+    assert (np.abs(log.y[fastest + 20] - log.y[fastest]) > 40 * TURN_STEP_RAD).all()
+    assert _kinds(_examined(rows_of(log, ~lost))) == {"missing_rows"}
+    held = replace(log, y=log.y[np.where(lost, fastest, rows)])
+    assert "seam" not in _kinds(_examined(held))
+
+
+def test_noise_of_a_count_in_a_log_at_rest_is_no_seam() -> None:
+    log = clean()
+    counts = np.zeros((2001, 2))
+    counts[::150], counts[1000:] = 2.0, 1.0
+    assert "seam" not in _kinds(_examined(replace(log, y=counts * TURN_STEP_RAD, extra={})))
+
+
+@pytest.mark.parametrize("rows", [30, 300])
+def test_a_reading_that_stops_is_noted_from_when_to_when_with_its_jumps(rows: int) -> None:
+    log = clean()
+    psi = log.y[:, 0].copy()
+    psi[600 : 600 + rows] = 0.0
+    jumps = [abs(psi[599]) / TURN_STEP_RAD, abs(psi[600 + rows]) / TURN_STEP_RAD]
+    assert min(jumps) > 30.0
+    (found,) = _examined(_column(log, "psi_rad", psi)).findings
+    assert (found.kind, found.column, found.severity) == ("dead_stretch", "psi_rad", "note")
+    assert (found.start_s, found.end_s) == (pytest.approx(6.0), pytest.approx(5.99 + 0.01 * rows))
+    assert f"jumps there by {jumps[0]:.0f} steps, it jumps away by {jumps[1]:.0f} steps" in found.sentence
+
+
+def test_a_reading_that_freezes_amid_motion_is_noted_and_an_axis_that_stops_is_not() -> None:
+    log, rows = clean(), np.arange(2001)
+    phi = log.y[:, 1]
+    fastest = int(np.argmax(np.abs(phi[200:] - phi[:-200])))
+    frozen = np.where((rows >= fastest) & (rows < fastest + 200), phi[fastest], phi)
+    assert _kinds(_examined(_column(log, "phi_rad", frozen))) == {"dead_stretch"}
+    stopped = np.maximum(phi, phi[fastest + 5])  # a stop that takes all speed in one row
+    assert "dead_stretch" not in _kinds(_examined(_column(log, "phi_rad", stopped)))
+
+
+def test_a_link_that_fails_for_a_second_is_noted_by_output_and_is_no_seam() -> None:
+    log, rows = clean(), np.arange(2001)
+    fastest = int(np.argmax(np.abs(log.y[100:] - log.y[:-100]).min(axis=1)))
+    frozen = replace(log, y=log.y[np.where((rows > fastest) & (rows < fastest + 100), fastest, rows)])
+    found = _examined(frozen).findings
+    assert [(finding.kind, finding.column) for finding in found] == [
+        ("dead_stretch", "psi_rad"),
+        ("dead_stretch", "phi_rad"),
+    ]
 
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 3])
