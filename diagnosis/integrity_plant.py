@@ -21,6 +21,10 @@ ON_GRID, OFF_GRID = 0.97, 0.6  # length of the mean phase: 1 for numbers on the 
 BEYOND_STOP_rad = 0.1  # offsets and scales of a sensor may carry an angle this far beyond its stop
 MOST = 0.95  # share of a column's rows that speaks for its unit
 FAR_BEYOND = 1.5  # times the stop's own angle
+LEAST_OF_STOP = 0.2  # that an angle in degrees reaches, where only its size speaks for them
+MOST_rad = 1000.0  # that an axis without stops is counted to
+FULL_percent = 100.5
+WHOLE = 1e-6  # counts that were computed are whole numbers to this
 MACHINE_CLOSE = 1.6  # a rig may need this much more or less than its plant file says
 
 
@@ -63,25 +67,53 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
 
 
 def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:
-    """Degrees or counts where radians should be: by the encoder's grid, or by the stops."""
+    """Degrees or counts where radians should be, where the numbers are an angle of the plant in that unit; else no angle at all."""
     values, step = _some(log.column(column)), facts.steps.get(column, 0.0)
     if not column.endswith("_rad") or values.size < 2 or values.min() == values.max():
         return
-    low, high = facts.stops.get(column, (-np.inf, np.inf))
-    widest = max(abs(low), abs(high))
-    greatest = float(np.quantile(np.abs(values), MOST))  # single rows may be wrong in any unit
-    whole = bool(np.all(values == np.round(values)))
+    widest, greatest = _widest(column, facts), _greatest(values)
+    on_grid = step > 0.0 and _is_on(values, step)
+    whole = bool(np.all(np.abs(values - np.round(values)) < WHOLE))
+    is_beyond = np.isfinite(widest) and greatest > max(FAR_BEYOND * widest, widest + 3.0 * BEYOND_STOP_rad)
+    in_degrees = LEAST_OF_STOP * widest < greatest / DEGREE <= widest + BEYOND_STOP_rad
     unit = None
-    if step > 0.0 and whole and not _is_on(values, step) and greatest > 3.0:
+    if step > 0.0 and whole and not on_grid and 3.0 < greatest <= (min(widest, MOST_rad) + BEYOND_STOP_rad) / step:
         unit = "encoder counts"
-    elif step > 0.0 and _is_on(values, step * DEGREE) and not _is_on(values, step):
+    elif not on_grid and ((step > 0.0 and _is_on(values, step * DEGREE)) or (is_beyond and in_degrees)):
         unit = "degrees"
-    elif np.isfinite(widest) and greatest > max(FAR_BEYOND * widest, widest + 3.0 * BEYOND_STOP_rad):
-        fits = greatest / DEGREE <= widest + BEYOND_STOP_rad
-        unit = "degrees" if fits else "something else than radians"
     if unit is not None:
         sentence = f"{column} is in {unit}: up to {greatest:.4g}"
         yield _slip(log, name, column, sentence, "radians", "convert the column to radians")
+    elif is_beyond:
+        yield _no_angle(log, name, column, facts)
+
+
+def _no_angle(log: RunLog, name: str, column: str, facts: PlantFacts) -> Found:
+    """An output far beyond its stops in no unit that is known: exchanged with another where both would fit, else only that."""
+    widest, greatest = _widest(column, facts), _greatest(_some(log.column(column)))
+    sentence = f"{column} is up to {greatest:.4g}, far beyond its axis' stop at {widest:.4g}"
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    for other in log.columns.outputs:
+        others = _some(log.column(other))
+        fits = greatest <= _widest(other, facts) + BEYOND_STOP_rad if other in facts.stops else False
+        if fits and others.size and _greatest(others) <= widest + BEYOND_STOP_rad:
+            sentence += f", and {other} up to {_greatest(others):.4g}: each would fit in the other's place"
+            expected, remedy = "columns that are what they are called", f"exchange {column} and {other}"
+            return Found(Finding("exchanged_columns", name, column, *span, sentence, REFUSE, 0, expected, remedy))
+    sentence += ": no angle of this plant"
+    remedy = "see whether it is another column, another unit or another plant's log"
+    return Found(Finding("no_angle", name, column, *span, sentence, REFUSE, 0, "an angle within the stops", remedy))
+
+
+def _widest(column: str, facts: PlantFacts) -> float:
+    """The farther of an output's stops from zero; infinite where it has none."""
+    low, high = facts.stops.get(column, (-np.inf, np.inf))
+    return max(abs(low), abs(high))
+
+
+def _greatest(values: Array) -> float:
+    """How far values are from zero, but for single rows, which may be wrong in any unit."""
+    return float(np.quantile(np.abs(values), MOST))
 
 
 def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
@@ -89,10 +121,10 @@ def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
     for column in log.columns.inputs:
         low, high = facts.limits.get(column, (-np.inf, np.inf))
         widest = max(abs(low), abs(high))
-        greatest = float(np.quantile(np.abs(_some(log.column(column))), MOST))
+        greatest = _greatest(_some(log.column(column)))
         if not np.isfinite(widest) or not greatest > 3.0 * widest:
             continue
-        unit = "percent" if greatest <= 10.05 * widest else "another unit"
+        unit = "percent" if greatest <= FULL_percent else "another unit"
         sentence = f"{column} is in {unit}, up to {greatest:.4g} where the plant takes {low:g}..{high:g}"
         yield _slip(log, name, column, sentence, "the unit that the column's name states", "convert the column")
 

@@ -120,6 +120,31 @@ def test_degrees_within_the_stops_are_known_by_the_encoders_grid() -> None:
     assert _kinds(_examined(small), "refuse") == {"unit_slip"}
 
 
+def test_angles_of_radians_beyond_the_stops_are_not_called_degrees_or_counts() -> None:
+    log = clean()
+    phi = log.y[:, 1]
+    on_grid = _column(log, "phi_rad", phi * 40.0)
+    off_grid = _column(log, "phi_rad", phi * 8.0 + np.random.default_rng(5).normal(size=2001))
+    for spoilt in (on_grid, off_grid):
+        assert 1.5 * np.radians(130.0) < np.quantile(np.abs(spoilt.y[:, 1]), 0.95) < 130.0
+    for other in (on_grid, off_grid, _column(log, "psi_rad", log.y[:, 0] * 1e300)):
+        (found,) = _examined(replace(other, extra={})).refusals
+        assert found.kind == "no_angle"
+        assert "no angle of this plant" in found.sentence
+        assert "another plant's log" in found.remedy
+        assert "degrees" not in found.sentence
+        assert "counts" not in found.sentence
+
+
+def test_outputs_that_fit_only_in_each_others_place_are_called_exchanged() -> None:
+    log = clean()
+    wide = log.y * np.array([1.0, 2.0])
+    assert np.quantile(np.abs(wide[:, 1]), 0.95) > 1.5 * np.pi / 4.0
+    assert not _examined(replace(log, y=wide, extra={})).refusals
+    (found,) = _examined(replace(log, y=wide[:, ::-1].copy(), extra={})).refusals
+    assert (found.kind, found.column, found.remedy) == ("exchanged_columns", "psi_rad", "exchange psi_rad and phi_rad")
+
+
 def test_a_log_of_another_plant_is_refused() -> None:
     columns = LogColumns("quanser_aero", ("u_M_V", "u_T_V"), ("theta_rad", "psi_rad"), (), ())
     found = _examined(replace(clean(), columns=columns, extra={}))
@@ -249,13 +274,14 @@ def test_a_million_rows_are_examined_and_their_defects_found() -> None:
 def _one_after_another(*logs: RunLog) -> RunLog:
     """Several logs in one file, the time of which goes on."""
     y, u = np.concatenate([log.y for log in logs]), np.concatenate([log.u for log in logs])
-    return replace(logs[0], t_s=0.01 * np.arange(len(y)), y=y, u=u, extra={})
+    return replace(logs[0], t_s=np.linspace(0.0, 0.01 * (len(y) - 1), len(y)), y=y, u=u, extra={})
 
 
 def test_several_recordings_in_one_file_are_refused_with_their_seams() -> None:
     log = clean()
     (found,) = _examined(_one_after_another(log, log, log)).refusals
-    assert (found.kind, found.start_s, found.end_s) == ("seam", pytest.approx(20.01), pytest.approx(40.02))
+    assert found.kind == "seam"
+    assert [found.start_s, found.end_s] == pytest.approx([20.01, 40.02])
     leaps = np.abs(log.y[0] - log.y[-1]) / TURN_STEP_RAD
     assert f"psi_rad by {leaps[0]:.0f} steps and phi_rad by {leaps[1]:.0f} steps" in found.sentence
     assert "and so at 40.02 s" in found.sentence
@@ -297,7 +323,7 @@ def test_a_reading_that_stops_is_noted_from_when_to_when_with_its_jumps(rows: in
     assert min(jumps) > 30.0
     (found,) = _examined(_column(log, "psi_rad", psi)).findings
     assert (found.kind, found.column, found.severity) == ("dead_stretch", "psi_rad", "note")
-    assert (found.start_s, found.end_s) == (pytest.approx(6.0), pytest.approx(5.99 + 0.01 * rows))
+    assert [found.start_s, found.end_s] == pytest.approx([6.0, 5.99 + 0.01 * rows])
     assert f"jumps there by {jumps[0]:.0f} steps, it jumps away by {jumps[1]:.0f} steps" in found.sentence
 
 
