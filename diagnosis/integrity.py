@@ -11,6 +11,7 @@ import numpy as np
 
 from diagnosis.integrity_between import duplicate_findings, plant_pair_findings
 from diagnosis.integrity_finding import REFUSE, Finding, Found, Rows
+from diagnosis.integrity_inputs import input_findings
 from diagnosis.integrity_plant import PlantFacts, plant_facts, plant_findings
 from diagnosis.integrity_time import Timing, timing, timing_findings
 from diagnosis.integrity_values import Excitation, Saturation, excitations, saturations, value_findings
@@ -18,8 +19,6 @@ from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-
-SATURATED_SHARE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +101,7 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
     if any(entry.finding.severity == REFUSE for entry in own):
         return
     yield from plant_findings(log, name, bound, facts)
-    yield from _saturated(log, name, facts)
+    yield from input_findings(log, name, facts.limits)
     if log.source is not None and log.source.simulated:
         span = (float(log.t_s[0]), float(log.t_s[-1]))
         yield Found(Finding("simulated", name, None, *span, "its source says that these numbers are simulated"))
@@ -113,21 +112,6 @@ def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:
     expected = f"those of {bound.model.name!r}"
     span = (float(log.t_s[0]), float(log.t_s[-1])) if len(log.t_s) else (0.0, 0.0)
     return Found(Finding("other_plant", name, None, *span, got, REFUSE, 0, expected, "give the log's own plant"))
-
-
-def _saturated(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
-    span = (float(log.t_s[0]), float(log.t_s[-1]))
-    for column, shares in saturations(log, facts.limits).items():
-        low, high = facts.limits[column]
-        sides = [(low, shares.lower), (high, shares.upper)]
-        shown = [f"{share:.1%} of the rows at {limit:g}" for limit, share in sides if share > SATURATED_SHARE]
-        if shown:
-            yield Found(Finding("saturated", name, column, *span, f"{column} is at its limits: {', '.join(shown)}"))
-        beyond = (log.column(column) < low - 1e-6 * (high - low)) | (log.column(column) > high + 1e-6 * (high - low))
-        if beyond.any():
-            at = log.t_s[beyond]
-            sentence = f"{column} is beyond the plant's limits {low:g}..{high:g} in {int(beyond.sum())} rows: the plant clips it"
-            yield Found(Finding("beyond_limits", name, column, float(at[0]), float(at[-1]), sentence))
 
 
 def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts) -> LogIntegrity:

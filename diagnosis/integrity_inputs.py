@@ -1,0 +1,67 @@
+"""Inputs at the plant's limits, beyond them, and held by a limit that is not the plant's."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from diagnosis.integrity_finding import Array, Finding, Found, Rows, in_words
+from diagnosis.integrity_values import NEAR_LIMIT, saturations
+from records.log import RunLog
+
+SATURATED_SHARE = 0.02
+CLIPPED_SHARE = 0.05  # of the rows at one extreme
+COMMONER = 10.0  # times than any other value: a staircase has many rows at each of its values
+LEAST_VISITS = 3  # a single long one may be a step that was commanded
+
+
+def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
+    """Notes on how each input lies to its limits."""
+    for column, shares in saturations(log, limits).items():
+        low, high = limits[column]
+        u, margin = log.column(column), NEAR_LIMIT * (high - low)
+        sides = [(low, shares.lower, u <= low + margin), (high, shares.upper, u >= high - margin)]
+        shown = [
+            f"{share:.1%} of the rows at {limit:g}{_when(log.t_s, rows)}"
+            for limit, share, rows in sides
+            if share > SATURATED_SHARE
+        ]
+        if shown:
+            yield _note("saturated", log, name, column, f"{column} is at its limits: {', '.join(shown)}")
+        beyond = (u < low - margin) | (u > high + margin)
+        if beyond.any():
+            at, rows = log.t_s[beyond], in_words(int(beyond.sum()), "row")
+            sentence = f"{column} is beyond the plant's limits {low:g}..{high:g} in {rows}: the plant clips it"
+            yield Found(Finding("beyond_limits", name, column, float(at[0]), float(at[-1]), sentence))
+        yield from _clipped(log, name, column, low + margin, high - margin)
+
+
+def _clipped(log: RunLog, name: str, column: str, low: float, high: float) -> Iterator[Found]:
+    """Extremes of an input, within the plant's limits, at which it stands again and again."""
+    u = log.column(column)
+    values, counts = np.unique(u, return_counts=True)
+    for place, how in ((-1, "exceeds"), (0, "falls below")):
+        extreme, count = values[place], int(counts[place])
+        others = np.delete(counts, place)
+        if not (
+            low < extreme < high and others.size and count > CLIPPED_SHARE * len(u) and count > COMMONER * others.max()
+        ):
+            continue
+        if _visits(u == extreme) >= LEAST_VISITS:
+            share = f"where {count / len(u):.1%} of its rows stand"
+            why = "it was cut off before it was logged, or the controller has a limit of its own"
+            yield _note("clipped", log, name, column, f"{column} never {how} {extreme:.5g}, {share}: {why}")
+
+
+def _visits(rows: Rows) -> int:
+    """How many times rows begin to be true."""
+    return int(rows[0]) + int(np.sum(rows[1:] & ~rows[:-1]))
+
+
+def _when(t_s: Array, rows: Rows) -> str:
+    """From when to when, for rows that are one stretch."""
+    at = t_s[rows]
+    return f", all from {at[0]:.6g} s to {at[-1]:.6g} s" if 1 < len(at) < len(t_s) and _visits(rows) == 1 else ""
+
+
+def _note(kind: str, log: RunLog, name: str, column: str, sentence: str) -> Found:
+    return Found(Finding(kind, name, column, float(log.t_s[0]), float(log.t_s[-1]), sentence))
