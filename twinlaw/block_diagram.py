@@ -8,6 +8,7 @@ from sim.places import Places
 
 WIDTH, HEIGHT = 128.0, 44.0  # of a block, px
 COLUMN_GAP, ROW_GAP, EDGE = 46.0, 22.0, 12.0
+SIDE = 22.0  # to the line that goes around all blocks of a column
 PALE, LIT = (245, 247, 249), (230, 125, 40)  # fill without and with the whole share
 LOOP = "loop"
 
@@ -25,13 +26,14 @@ class Block:
 def block_diagram(places: Places, shares: Mapping[str, float]) -> str:
     """The diagram: input, rotor, axis and sensor blocks in columns, arrows where one acts on another, the control loop below."""
     columns = [tuple(group) for group in (places.inputs, places.rotors, places.axes, places.sensors) if group]
-    blocks = _placed(columns, shares)
-    width = 2 * EDGE + len(columns) * WIDTH + (len(columns) - 1) * COLUMN_GAP
+    margin = EDGE + (SIDE if places.loop else 0.0)
+    blocks = _placed(columns, shares, margin)
+    width = 2 * margin + len(columns) * WIDTH + (len(columns) - 1) * COLUMN_GAP
     floor = max(block.y for block in blocks.values()) + HEIGHT
     parts = [_arrow(blocks[a], blocks[b], main) for a, b, main in _edges(places)]
     if places.loop:
         loop = Block(LOOP, (width - WIDTH) / 2, floor + ROW_GAP, shares.get(LOOP, 0.0))
-        parts += [_way_back([blocks[name] for name in columns[-1]], [blocks[name] for name in columns[0]], loop)]
+        parts += _way_back([blocks[name] for name in columns[-1]], [blocks[name] for name in columns[0]], loop)
         blocks[LOOP] = loop
     height = max(block.y for block in blocks.values()) + HEIGHT + EDGE
     drawn = "\n".join([*parts, *(_box(block) for block in blocks.values())])
@@ -41,13 +43,13 @@ def block_diagram(places: Places, shares: Mapping[str, float]) -> str:
     )
 
 
-def _placed(columns: Sequence[Sequence[str]], shares: Mapping[str, float]) -> dict[str, Block]:
+def _placed(columns: Sequence[Sequence[str]], shares: Mapping[str, float], margin: float) -> dict[str, Block]:
     rows = max(map(len, columns))
     blocks = {}
     for column, names in enumerate(columns):
         top = EDGE + (rows - len(names)) * (HEIGHT + ROW_GAP) / 2
         for row, name in enumerate(names):
-            x = EDGE + column * (WIDTH + COLUMN_GAP)
+            x = margin + column * (WIDTH + COLUMN_GAP)
             blocks[name] = Block(name, x, top + row * (HEIGHT + ROW_GAP), shares.get(name, 0.0))
     return blocks
 
@@ -94,12 +96,20 @@ def _arrow(a: Block, b: Block, main: bool) -> str:
     return _LINE.format(points=f"{a.x + WIDTH:g},{a.y + HEIGHT / 2:g} {b.x - 2:g},{b.y + HEIGHT / 2:g}", dash=dash)
 
 
-def _way_back(sensors: Sequence[Block], inputs: Sequence[Block], loop: Block) -> str:
-    """From under the last sensor to the controller, and from there up to the first input."""
-    last, first, height = sensors[-1], inputs[-1], loop.y + HEIGHT / 2
-    down = f"{last.x + WIDTH / 2:g},{last.y + HEIGHT:g} {last.x + WIDTH / 2:g},{height:g} {loop.x + WIDTH + 2:g},{height:g}"
-    up = f"{loop.x:g},{height:g} {first.x + WIDTH / 2:g},{height:g} {first.x + WIDTH / 2:g},{first.y + HEIGHT + 2:g}"
-    return "\n".join(_LINE.format(points=points, dash="") for points in (down, up))
+def _way_back(sensors: Sequence[Block], inputs: Sequence[Block], loop: Block) -> list[str]:
+    """From every sensor around the column to the controller, and from there around the other column to every input."""
+    height = loop.y + HEIGHT / 2
+    right, left = sensors[0].x + WIDTH + SIDE, inputs[0].x - SIDE
+    down = [
+        f"{block.x + WIDTH:g},{block.y + HEIGHT / 2:g} {right:g},{block.y + HEIGHT / 2:g} "
+        f"{right:g},{height:g} {loop.x + WIDTH + 2:g},{height:g}"
+        for block in sensors
+    ]
+    up = [
+        f"{loop.x:g},{height:g} {left:g},{height:g} {left:g},{block.y + HEIGHT / 2:g} {block.x - 2:g},{block.y + HEIGHT / 2:g}"
+        for block in inputs
+    ]
+    return [_LINE.format(points=points, dash="") for points in (*down, *up)]
 
 
 _LINE = '<polyline points="{points}" fill="none" stroke="#57606a" stroke-width="1.3" marker-end="url(#tip)"{dash}/>'
