@@ -1,7 +1,7 @@
 """The diagnosis as the command runs it: reads plant and logs, looks at the logs themselves first, leaves its files."""
 
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Container, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -16,7 +16,7 @@ from diagnosis.shrinkage import Predicted
 from diagnosis.stretches import stretches
 from records.diagnosis import Firmware, diagnosis_text
 from records.errors import BadInput
-from records.files import write_atomic
+from records.files import demand_writable, remove_all, write_atomic
 from records.log import RunLog, load_log
 from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
@@ -26,22 +26,57 @@ from sim.columns import log_columns
 from sim.effects.api import library, without_effects
 from toolchain.memory import keep_freed_memory
 from twinlaw.console import stage
+from twinlaw.diagnosis_retune import moved_most
 from twinlaw.page import Page, page_text
 
 PAGE = "twinlaw.diagnosis_page"
+ANSWER = "diagnosis.json"
 BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with what was found
 
 
 def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], out: Path) -> Result:
     """Diagnose log files against a plant file and write all results into `out`; raises BadInput."""
-    with stage("reading the logs and looking at them"):
-        bound, material = read_material(plant, logs, holdout)
-    with stage("searching for what the model lacks"), through_when_interrupted():
-        Thread(target=_load_ahead, daemon=True).start()
-        result = diagnose(bound, material)
-    for name, text in result_files(result, [path.name for path in logs]).items():
-        write_atomic(out / name, text)
+    with writable(out):
+        with stage("reading the logs and looking at them"):
+            bound, material = read_material(plant, logs, holdout)
+        with stage("searching for what the model lacks"), through_when_interrupted():
+            Thread(target=_load_ahead, daemon=True).start()
+            result = diagnose(bound, material)
+        files = result_files(result, [path.name for path in logs])
+        remove_all(earlier_predictions(out, files))
+        for name, text in files.items():
+            write_atomic(out / name, text)
     return result
+
+
+@contextmanager
+def writable(out: Path) -> Iterator[None]:
+    """Raise BadInput at once where `out` cannot be written; folders made for it are gone again where the body then fails."""
+    absent = _absent(out)
+    try:
+        demand_writable(out / ANSWER)
+        yield
+    except BaseException:  # Ctrl-C too must leave nothing behind
+        for folder in absent:
+            with suppress(OSError):  # of one that holds something by now
+                folder.rmdir()
+        raise
+
+
+def _absent(out: Path) -> list[Path]:
+    """The folders that are to be made for `out`, the innermost first."""
+    with suppress(OSError):  # what may not even be looked at is told by who writes there
+        return [folder for folder in (out, *out.parents) if not folder.exists()]
+    return []
+
+
+def earlier_predictions(out: Path, files: Container[str]) -> list[Path]:
+    """Predictions that a run before left in `out` and that are not among the new `files`; a log of such a name has a sidecar."""
+    return [
+        path
+        for path in out.glob("prediction-*.csv")
+        if path.is_file() and path.name not in files and not path.with_suffix(".toml").exists()
+    ]
 
 
 def _load_ahead() -> None:
@@ -101,7 +136,7 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
     return {
         **predictions,
         "plant.toml": plant_text(result.plant),
-        "diagnosis.json": diagnosis_text(result.diagnosis),
+        ANSWER: diagnosis_text(result.diagnosis),
         "report.html": page_text(_page(result, logs)),
     }
 
@@ -123,8 +158,25 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
     stories = {name: effect.story for name, effect in library(bound).items()}
     places = bound.model.places
     return diagnosis_page.diagnosis_page(
-        bound.plant.name, result.diagnosis, places, stories, curves, logs, result.shape
+        bound.plant.name,
+        result.diagnosis,
+        places,
+        stories,
+        curves,
+        logs,
+        result.shape,
+        moved_most(result),
+        widths(result),
     )
+
+
+def widths(result: Result) -> Mapping[str, float]:
+    """How far apart the bounds of every parameter of the library are, by "place.effect.symbol"."""
+    return {
+        f"{name}.{symbol}": parameter.upper - parameter.lower
+        for name, effect in library(result.case.kit.bound).items()
+        for symbol, parameter in effect.parameter.items()
+    }
 
 
 def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
@@ -141,4 +193,4 @@ def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
     return rows_text(names, columns, None).replace("nan", "")
 
 
-__all__ = ["RunLog", "diagnose_logs", "prediction_text", "read_material", "result_files"]
+__all__ = ["RunLog", "diagnose_logs", "prediction_text", "read_material", "result_files", "widths", "writable"]

@@ -7,9 +7,21 @@ from diagnosis.notes import HIDDEN, UNSEEN
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.block_diagram import block_diagram
+from twinlaw.diagnosis_firmware import differs, firmware_first, firmware_in_words
 from twinlaw.diagnosis_pictures import Predicted, curves, maps, shape_section
+from twinlaw.diagnosis_retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.diagnosis_shrinkage import shrinkage_sections
-from twinlaw.diagnosis_words import chance, listed, percent, plain_text, words
+from twinlaw.diagnosis_words import (
+    alarm_in_words,
+    class_in_words,
+    listed,
+    percent,
+    plain_note,
+    plain_text,
+    shown,
+    sized,
+    words,
+)
 from twinlaw.page import Page, Section, Table
 
 ALWAYS, SELDOM = 3, 0.01  # the first few causes are always shown, further ones from this probability
@@ -27,30 +39,43 @@ def diagnosis_page(
     predicted: Sequence[Predicted],
     logs: Sequence[str],
     shape: Shape | None = None,
+    moved: Sequence[Moved] = (),
+    widths: Mapping[str, float] = {},
 ) -> Page:
     """The whole page; `stories` gives one plain sentence for each effect, `logs` the names of the files that were diagnosed, `shape` the
-    curve of an effect without a name."""
-    sections: list[Section | None] = [_place(diagnosis, places), _causes(diagnosis, stories)]
+    curve of an effect without a name, `moved` the plant's own numbers that moved most, `widths` see `sized`."""
+    firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware),))
+    amiss = differs(diagnosis.firmware)
+    sections: list[Section | None] = [firmware] if amiss else []
+    sections += [_place(diagnosis, places), _causes(diagnosis, stories, moved, widths)]
     if shape is not None:
         sections.append(shape_section(shape, words(diagnosis.unknown.place or "rig"), diagnosis.unknown.form))
     sections.append(_next(diagnosis))
+    retuned = retuned_sentence(diagnosis, moved)
     if diagnosis.shrinkage is not None:
-        sections += shrinkage_sections(diagnosis.shrinkage, bool(diagnosis.found))
+        sections += shrinkage_sections(diagnosis.shrinkage, bool(diagnosis.found), retuned)
+    elif retuned:
+        sections.append(Section("What re-tuning moved", (retuned,)))
     sections += [curves(log) for log in predicted]
-    sections += [maps(diagnosis), _firmware(diagnosis), _unseen(diagnosis), _notes(diagnosis)]
+    sections += [maps(diagnosis), None if amiss else firmware, _unseen(diagnosis), _notes(diagnosis)]
     return Page(
         title=f"{plant}: where the model and the rig part",
         verdict=verdict_sentence(diagnosis),
-        passed=diagnosis.verdict == "no gap",
+        passed=diagnosis.verdict == "no gap" and not amiss,
         facts=(("Logs", ", ".join(logs)),),
         sections=tuple(section for section in sections if section is not None),
     )
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """What was found, in one sentence for a reader who knows nothing but the rig."""
+    """What was found for a reader who knows nothing but the rig: first what the firmware did otherwise, then one sentence on the plant."""
+    return f"{firmware_first(diagnosis.firmware)} {_plant_sentence(diagnosis)}".strip()
+
+
+def _plant_sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "no gap":
-        return "The plant file explains these logs: nothing is missing that they could show."
+        tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
+        return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
     if diagnosis.verdict == "cannot tell":
         return "These logs hold too little motion to tell whether the plant file lacks anything."
     if not diagnosis.found:
@@ -71,7 +96,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 def _nothing_added(diagnosis: Diagnosis) -> str:
     """The verdict on a gap for which no effect was added: other parameters, an effect that did not help, or none that fits."""
     unknown, first = diagnosis.unknown, diagnosis.effects[0] if diagnosis.effects else None
-    retuned = _parameters_alone(diagnosis)
+    retuned = parameters_alone(diagnosis)
     moved = [note.partition(" is ")[0].removeprefix("parameter ") for note in diagnosis.notes if MOVED in note]
     if moved and retuned > max(unknown.probability, first.probability if first else 0.0):
         return f"The rig has other parameters than the plant file states, and nothing else is missing: {listed(moved)}."
@@ -84,20 +109,25 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
     return f"The rig does something{where} that the plant file lacks, and no effect of the library can be named for it."
 
 
-def _parameters_alone(diagnosis: Diagnosis) -> float:
-    """The probability that other parameters explain the gap and nothing is missing."""
-    return 1.0 - diagnosis.unknown.probability - sum(h.probability for h in diagnosis.effects)
+def retuned_sentence(diagnosis: Diagnosis, moved: Sequence[Moved]) -> str:
+    """How much re-tuning alone lowers the hold-out error, and which numbers moved; empty where neither is worth a sentence."""
+    parts = []
+    for output, (stated, now) in lowered(diagnosis).items():
+        name, unit, scale = shown(output)
+        parts.append(f"{name} from {scale * stated:.3g} to {scale * now:.3g} {unit.strip('[]')}".strip())
+    told = f"Re-tuning alone lowers the error of {', of '.join(parts)}. " if parts else ""
+    beside = " beside what was found" if diagnosis.found else ""
+    if moved:
+        told += f"What moved most{beside}, in standard deviations (sd) of what the plant file states: {moved_in_words(moved)}."
+    return told.strip()
 
 
 def _place(diagnosis: Diagnosis, places: Places) -> Section:
     gap = diagnosis.verdict == "gap"
     shares = {entry.place: entry.share for entry in diagnosis.places} if gap else {}
     p = diagnosis.false_alarm_probability
-    alarm = (
-        ""
-        if p is None
-        else f"A rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}."
-    )
+    told = "" if p is None else alarm_in_words(diagnosis.verdict, p)
+    alarm = f"{told[:1].upper()}{told[1:]}." if told else ""
     lit = "The rig as blocks, from the commands on the left to the sensors on the right"
     lit += "; the warmer a block, the more of the gap lies there." if shares else "."
     return Section(
@@ -105,7 +135,9 @@ def _place(diagnosis: Diagnosis, places: Places) -> Section:
     )
 
 
-def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
+def _causes(
+    diagnosis: Diagnosis, stories: Mapping[str, str], moved: Sequence[Moved], widths: Mapping[str, float]
+) -> Section | None:
     if not diagnosis.effects and not diagnosis.unknown.probability:
         return None
     told = [f"{words(name).capitalize()}: {stories[name]}" for name in diagnosis.found if name in stories]
@@ -114,21 +146,25 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
         for h in diagnosis.effects[:1]
         if h.ambiguous_with and diagnosis.found
     ]
-    unknown, retuned = diagnosis.unknown, _parameters_alone(diagnosis)
+    unknown, retuned = diagnosis.unknown, parameters_alone(diagnosis)
     likeliest = max([retuned, *(h.probability for h in diagnosis.effects)])
     if unknown.class_ and not diagnosis.found and unknown.probability > likeliest:
         where = f" {words(unknown.place)}" if unknown.place else ""
         told.append(
-            f"What is missing acts on{where} and is of the form {unknown.class_}; no effect of the library fits it."
+            f"What is missing acts on{where} and is of the form {class_in_words(unknown.class_)}; no effect of the library fits it."
         )
-    rows = [
-        _cause_row(h, set(h.effect.split(" + ")) == set(diagnosis.found))
-        for place, h in enumerate(diagnosis.effects)
-        if place < ALWAYS or h.probability > SELDOM
+    shown_ones = [h for place, h in enumerate(diagnosis.effects) if place < ALWAYS or h.probability > SELDOM]
+    ranked = [
+        (h.probability, _cause_rows(h, set(h.effect.split(" + ")) == set(diagnosis.found), widths)) for h in shown_ones
     ]
     if retuned > SELDOM:
-        rows.append(("other parameters alone", "see the notes", percent(retuned), "", ""))
-    rows.append(("none of the library", unknown.class_ or "", percent(unknown.probability), "", ""))
+        # Beside an effect other numbers move than without it.
+        own = "" if diagnosis.found else moved_in_words(moved)
+        ranked.append((retuned, [("other parameters alone", "", percent(retuned), own, "")]))
+    ranked.sort(key=lambda entry: -entry[0])
+    rows = [row for _, lines in ranked for row in lines]
+    class_ = class_in_words(unknown.class_ or "")
+    rows.append(("none of the library", class_, percent(unknown.probability), "", ""))
     return Section(
         "What causes it",
         told,
@@ -136,13 +172,21 @@ def _causes(diagnosis: Diagnosis, stories: Mapping[str, str]) -> Section | None:
     )
 
 
-def _cause_row(hypothesis: Hypothesis, found: bool) -> tuple[str, ...]:
-    size = ", ".join(
-        f"{name} = {e.value:.4g} ± {e.sd:.1g} {e.unit if e.unit != '-' else ''}".strip()
-        for name, e in hypothesis.parameters.items()
-    )
-    name = hypothesis.effect + (" (found)" if found else "")
-    return name, hypothesis.class_, percent(hypothesis.probability), size, listed(hypothesis.ambiguous_with)
+def _cause_rows(hypothesis: Hypothesis, found: bool, widths: Mapping[str, float]) -> list[tuple[str, ...]]:
+    """A row for each effect, those that it is joint with below the first."""
+    rows: list[tuple[str, ...]] = []
+    for place, (name, class_, size) in enumerate(sized(hypothesis, widths)):
+        first = place == 0
+        rows.append(
+            (
+                ("" if first else "with ") + name + (" (found)" if found else ""),
+                class_in_words(class_),
+                percent(hypothesis.probability) if first else "",
+                size,
+                listed(hypothesis.ambiguous_with) if first else "",
+            )
+        )
+    return rows
 
 
 def _next(diagnosis: Diagnosis) -> Section | None:
@@ -163,23 +207,6 @@ def _next(diagnosis: Diagnosis) -> Section | None:
     return Section("What to record next", sentences)
 
 
-def _firmware(diagnosis: Diagnosis) -> Section | None:
-    firmware = diagnosis.firmware
-    if firmware is None:
-        return None
-    again = "Run again on the logged measurements, the controller's own code"
-    if not firmware.replayed:
-        sentence = (
-            f"The controller's code could not be run again on the logs: {firmware.cause or 'its table is not at hand'}."
-        )
-    elif firmware.bit_exact:
-        sentence = f"{again} gives every logged input to the bit: the firmware is cleared."
-    else:
-        cause = firmware.cause or "cause not found"
-        sentence = f"{again} first differs at {firmware.first_difference_s:g} s: {cause}."
-    return Section("Firmware", (sentence,))
-
-
 def _unseen(diagnosis: Diagnosis) -> Section | None:
     """What the notes say of effects that hide in these logs, by place."""
     rows = [_parts(note) for note in diagnosis.notes if note.startswith(UNSEEN)]
@@ -196,5 +223,5 @@ def _parts(note: str) -> tuple[str, str]:
 
 
 def _notes(diagnosis: Diagnosis) -> Section | None:
-    others = [note for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note]
+    others = [plain_note(note) for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note]
     return Section("Notes", others) if others else None

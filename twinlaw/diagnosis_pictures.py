@@ -14,6 +14,7 @@ from twinlaw.plots import BLUE, GREY, ORANGE, RED, SKY, Bars, Curve, Panel, bars
 
 Array = NDArray[np.float64]
 _ZOOM_S = 8.0
+PALE = "#bdc7d1"  # of what was measured, wide and below the predictions
 BAND = ((1.0, "two standard deviations"), (-1.0, ""))
 
 
@@ -30,30 +31,66 @@ class Predicted:
 
 
 def curves(log: Predicted) -> Section:
-    span = worst_span(log)
+    """Measured and predicted in the window that tells most, and where the improved plant is not the re-tuned one the errors of both."""
+    improved = any(not np.array_equal(y, log.after[output], equal_nan=True) for output, y in log.before.items())
+    chosen = worst_of_the_retuned(log) if improved else None
+    span = worst_span(log) if chosen is None else chosen[1]
     panels = []
-    for output, measured in log.measured.items():
-        name, unit, scale = shown(output)
-        lines = (
-            ("measured", measured, GREY, "-"),
-            ("as stated", log.nominal[output], RED, ":"),
-            ("best re-tuned", log.before[output], ORANGE, "--"),
-            ("improved", log.after[output], BLUE, "-"),
-        )
-        panels.append(
-            Panel(
-                f"{name} {unit}",
-                [Curve(log.t_s[span], scale * y[span], label, colour, dash) for label, y, colour, dash in lines],
-            )
+    for output in log.measured:
+        panels.append(_followed(log, output, span, improved))
+        if improved:
+            panels.append(_errors(log, output, span))
+    if chosen is None:
+        told = f"The {_ZOOM_S:g} s in which the stated plant errs most."
+    else:
+        told = (
+            f"The {_ZOOM_S:g} s in which the best re-tuned plant errs most against the improved one, in {shown(chosen[0])[0]}, "
+            "where it gains most. Below each output are the errors of both, on a scale of their own."
         )
     return Section(
         f"Predicted and measured: {log.name}",
         (
-            f"The {_ZOOM_S:g} s in which the stated plant errs most.",
-            "Each curve starts afresh every second from what was measured until then.",
+            told,
+            "Each curve starts afresh every second from what was measured until then; the stated plant may leave the picture.",
         ),
         plots=(stack(panels, "time [s]"),),
     )
+
+
+def _followed(log: Predicted, output: str, span: NDArray[np.bool_], improved: bool) -> Panel:
+    """What was measured as a wide pale line with the predictions on it, scaled for what is near it."""
+    name, unit, scale = shown(output)
+    near = [log.measured[output], log.before[output], *([log.after[output]] if improved else [])]
+    lines = [
+        Curve(log.t_s[span], scale * log.measured[output][span], "measured", PALE, width=5.0),
+        Curve(log.t_s[span], scale * log.nominal[output][span], "as stated", RED, ":"),
+        Curve(log.t_s[span], scale * log.before[output][span], "best re-tuned", ORANGE, width=2.0),
+    ]
+    if improved:
+        lines.append(Curve(log.t_s[span], scale * log.after[output][span], "improved", BLUE, width=1.0))
+    return Panel(f"{name} {unit}", lines, within=_room(scale * np.concatenate([y[span] for y in near])))
+
+
+def _errors(log: Predicted, output: str, span: NDArray[np.bool_]) -> Panel:
+    """Predicted less measured, of the plants without and with what was found."""
+    name, unit, scale = shown(output)
+    lines = (("best re-tuned", log.before, ORANGE, 2.0), ("improved", log.after, BLUE, 1.0))
+    return Panel(
+        f"error of {name}\n{unit}",
+        [
+            Curve(log.t_s[span], scale * (by[output] - log.measured[output])[span], label, colour, width=width)
+            for label, by, colour, width in lines
+        ],
+    )
+
+
+def _room(y: Array) -> tuple[float, float] | None:
+    """The range of y and half of it above and below; None where there is none."""
+    y = y[np.isfinite(y)]
+    if not y.size or y.max() <= y.min():
+        return None
+    spare = 0.5 * float(y.max() - y.min())
+    return float(y.min()) - spare, float(y.max()) + spare
 
 
 def shape_section(shape: Shape, place: str, form: str | None) -> Section:
@@ -79,10 +116,26 @@ def worst_span(log: Predicted) -> NDArray[np.bool_]:
     for output, measured in log.measured.items():
         spread = float(np.std(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
         error += np.nan_to_num((log.nominal[output] - measured) / (spread or 1.0)) ** 2
-    ends = np.searchsorted(log.t_s, log.t_s + _ZOOM_S)
-    total = np.concatenate([[0.0], np.cumsum(error)])
+    return _fullest(log.t_s, error)
+
+
+def worst_of_the_retuned(log: Predicted) -> tuple[str, NDArray[np.bool_]]:
+    """The output in which the improved plant helps most against the best re-tuned one, weighed by what it leaves, and the rows of the
+    window in which it does."""
+    gains = {}
+    for output, measured in log.measured.items():
+        before, after = (np.nan_to_num(by[output] - measured) ** 2 for by in (log.before, log.after))
+        gains[output] = (before - after) / (float(np.mean(after)) or 1.0)
+    output = max(gains, key=lambda name: float(np.sum(gains[name])))
+    return output, _fullest(log.t_s, gains[output])
+
+
+def _fullest(t_s: Array, amount: Array) -> NDArray[np.bool_]:
+    """Rows of the window of `_ZOOM_S` that holds most."""
+    ends = np.searchsorted(t_s, t_s + _ZOOM_S)
+    total = np.concatenate([[0.0], np.cumsum(amount)])
     start = int(np.argmax(total[ends] - total[:-1]))
-    rows = np.zeros(len(log.t_s), dtype=bool)
+    rows = np.zeros(len(t_s), dtype=bool)
     rows[start : ends[start]] = True
     return rows
 

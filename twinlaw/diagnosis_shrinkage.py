@@ -9,6 +9,7 @@ from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, Bars, bars
 
 _PANELS = 4  # columns that are drawn
 _FAR = 30.0  # between the least bar and the largest, from which both are to be seen on a logarithmic scale alone
+_ROOM = 1.15  # of the largest bar, for its number above it
 _COLOURS = (GREY, ORANGE, BLUE, GREEN)
 _KEYS = ("nominal", "before", "after", "floor")
 _BAR_NAMES = {"nominal": "the plant as stated", "before": "the re-tuned plant", "after": "the improved plant"}
@@ -19,19 +20,21 @@ def stages(found: bool) -> tuple[str, str, str, str]:
     return "as stated", "best re-tuned", "with the effect" if found else "improved", "noise floor"
 
 
-def shrinkage_sections(shrinkage: Shrinkage, found: bool) -> list[Section]:
-    """Predictions over 1 s, then the closed loop where it was flown."""
-    sections = [_predictions(shrinkage, found)]
+def shrinkage_sections(shrinkage: Shrinkage, found: bool, retuned: str = "") -> list[Section]:
+    """Predictions over 1 s, then the closed loop where it was flown; `retuned` is a sentence on what the re-tune did."""
+    sections = [_predictions(shrinkage, found, retuned)]
     if shrinkage.closed_loop is not None:
         sections.append(_closed_loop(shrinkage.closed_loop, found))
     return sections
 
 
-def _predictions(shrinkage: Shrinkage, found: bool) -> Section:
+def _predictions(shrinkage: Shrinkage, found: bool, retuned: str) -> Section:
+    purpose = "to find the effect" if found else "to re-tune"
     sentences = [
-        "Errors of free-running predictions over windows of 1 s on logs that were not used to find the effect. "
+        f"Errors of free-running predictions over windows of 1 s on logs that were not used {purpose}. "
         "The lower a bar, the better; below the green one noise decides.",
         "Re-tuned means that parameters moved within what the plant file states of them: that is no gap.",
+        *([retuned] if retuned else []),
     ]
     if shrinkage.fraction is not None and found:
         interval = shrinkage.fraction_ci95
@@ -44,11 +47,12 @@ def _predictions(shrinkage: Shrinkage, found: bool) -> Section:
     if shrinkage.agreement:
         sentences.append(
             "The last table asks of the same predictions what flight simulators are asked: for how much of the time they stay "
-            "within a margin of the readings, how well the two go together (correlation, 1 is perfect), and the fit of Theil "
-            "(100 % is perfect)."
+            "within a margin of the readings, how well the two go together (correlation, 1 is perfect), and how small the error is "
+            "beside the size of what is measured and predicted (fit, 100 % is perfect; Theil's inequality coefficient taken from 1)."
         )
         tables.append(_agreement(shrinkage.agreement, found))
-    return Section("How far the gap shrinks", sentences, tables, (plot,))
+    title = "How far the gap shrinks" if found else "How well the plant predicts the hold-out logs"
+    return Section(title, sentences, tables, (plot,))
 
 
 def _closed_loop(loop: ClosedLoop, found: bool) -> Section:
@@ -69,14 +73,27 @@ def _closed_loop(loop: ClosedLoop, found: bool) -> Section:
 def _four_bars(rms: Sequence[Mapping[str, float]], found: bool) -> tuple[Table, str]:
     """The table and the plot of rms by column, `rms` in the order of the bars."""
     names = stages(found)
+    columns = list(rms[0])[:_PANELS]
     rows, panels = [], []
-    for column in list(rms[0])[:_PANELS]:
+    for column in columns:
         name, unit, scale = shown(column)
         heights = [scale * entry[column] for entry in rms]
         labels = [label.replace(" ", "\n") for label in names]
-        far = min(heights) > 0.0 and max(heights) > _FAR * min(heights)
-        title = f"rms error of {name} {unit}".strip()
-        panels.append(Bars(heights, labels, title, colours=_COLOURS, log_height=far))
+        # What has one unit has one scale, or bars of one length would not be errors of one size.
+        alike = [scale * entry[other] for other in columns if shown(other)[1] == unit for entry in rms]
+        low, high = min(alike), max(alike)
+        far = low > 0.0 and high > _FAR * low
+        axis = f"rms error of {name} {unit}".strip()
+        panels.append(
+            Bars(
+                heights,
+                labels,
+                f"{axis},\nlogarithmic scale" if far else axis,
+                colours=_COLOURS,
+                log_height=far,
+                within=(low, high) if far else (0.0, _ROOM * high),
+            )
+        )
         rows.append((f"{name} {unit}".strip(), *(f"{height:.4g}" for height in heights)))
     lines = [panels[i : i + 2] for i in range(0, len(panels), 2)]
     plots = "\n".join(bars(line, height_in=2.8) for line in lines)

@@ -1,7 +1,10 @@
 """The words of a diagnosis: names, numbers and probabilities as a person who knows only the rig reads them."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
+
+from records.diagnosis import Estimate, Hypothesis
 
 # By the unit at the end of a name: how a person reads it.
 _SHOWN = {
@@ -12,7 +15,28 @@ _SHOWN = {
     "_V": ("V", 1.0),
 }
 _KINDS = {"coulomb": "Coulomb friction", "stribeck": "Stribeck friction", "coriolis": "Coriolis torque"}
+_UNITS = {"-": "", "1": "", "rad rad^-1": "per rad", "m m^-1": "per m"}
+# By the word before the brackets of a class: what of the rig changes.
+_CLASSES = {
+    "torque": "a torque",
+    "thrust": "a thrust",
+    "gain": "a factor",
+    "output": "an error of the reading",
+    "mode": "a vibration",
+    "limit": "a limit",
+    "inertia": "an inertia",
+}
+_SIGNALS = {"1": "nothing (it is constant)", "t": "the time"}
+# Sentences of other parts whose figures say nothing to a reader.
+_PLAINER = (
+    (
+        re.compile(r"takes \d+ % of the hold-out's error away, -\d+ % at most"),
+        "takes none of the hold-out's error away",
+    ),
+    (re.compile(r"would be (\d+) nats likelier"), r"would be e^\1 times likelier"),
+)
 LISTED = 3  # names in one cell
+USUAL = 0.5  # chance from which a gap is no larger than usual
 LEAST_CHANCE = 1e-6  # smaller ones are said to be below it: no model of noise is good for more
 
 
@@ -56,3 +80,69 @@ def shown(name: str) -> tuple[str, str, float]:
         if name.endswith(suffix):
             return name.removesuffix(suffix), f"[{unit}]", scale
     return name, "", 1.0
+
+
+def plain_note(note: str) -> str:
+    """A note without figures that have no meaning."""
+    for pattern, plain in _PLAINER:
+        note = pattern.sub(plain, note)
+    return note
+
+
+def plain_unit(unit: str) -> str:
+    """A unit as one says it: none where a number has none."""
+    return _UNITS.get(unit, unit)
+
+
+def class_in_words(text: str) -> str:
+    """ "torque(psi, sgn psi_dot) on elevation" with "a torque that depends on psi and the direction in which psi moves" behind it."""
+    kind, opened, rest = text.partition("(")
+    if not opened or kind not in _CLASSES:
+        return text
+    signals = [_signal(name.strip()) for name in rest.partition(")")[0].split(",")]
+    return f"{text}: {_CLASSES[kind]} that depends on {' and '.join(signals)}"
+
+
+def _signal(name: str) -> str:
+    if name.startswith("sgn "):
+        of = name.removeprefix("sgn ")
+        return f"the direction in which {of.removesuffix('_dot')} moves" if of.endswith("_dot") else f"the sign of {of}"
+    if name.startswith("d") and name.endswith("/dt"):
+        return f"how fast {name.removeprefix('d').removesuffix('/dt')} changes"
+    if name.endswith("_dot"):
+        return f"how fast {name.removesuffix('_dot')} changes"
+    return _SIGNALS.get(name, name)
+
+
+def sized(hypothesis: Hypothesis, widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
+    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol"."""
+    names, classes = hypothesis.effect.split(" + "), hypothesis.class_.split(" + ")
+    classes += [""] * (len(names) - len(classes))
+    joint = len(names) > 1
+    lines = []
+    for name, class_ in zip(names, classes, strict=False):
+        own = {
+            symbol.removeprefix(f"{name}.") if joint else symbol: entry
+            for symbol, entry in hypothesis.parameters.items()
+            if not joint or symbol.startswith(f"{name}.")
+        }
+        sizes = [_size(symbol, entry, widths.get(f"{name}.{symbol}", math.inf)) for symbol, entry in own.items()]
+        lines.append((name, class_, ", ".join(sizes)))
+    return lines
+
+
+def _size(symbol: str, estimate: Estimate, width: float) -> str:
+    """One parameter; no number where it might as well be any between its bounds."""
+    if estimate.sd > width:
+        return f"{symbol} not told by these data"
+    return f"{symbol} = {estimate.value:.4g} ± {estimate.sd:.1g} {plain_unit(estimate.unit)}".strip()
+
+
+def alarm_in_words(verdict: str, p: float) -> str:
+    """What the chance of a false alarm says."""
+    if verdict != "gap":
+        usual = "what remains is as small as on a rig that is as the plant file states, with its sensors"
+        return usual if p >= USUAL else f"{usual}: {percent(p)} of such rigs show as much"
+    return (
+        f"a rig that is as the plant file states, with its sensors, shows so large a gap with probability {chance(p)}"
+    )

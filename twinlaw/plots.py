@@ -44,15 +44,17 @@ class Curve:
     dash: Any = "-"
     marker: str = ""
     marker_size: float = 4.0
+    width: float = 1.2  # of the line [pt]
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes: curves over a common abscissa, and horizontal lines (value, label) for limits."""
+    """One pair of axes: curves over a common abscissa, and horizontal lines (value, label) for limits; `within` bounds the ordinate."""
 
     ylabel: str
     curves: Sequence[Curve]
     limits: Sequence[tuple[float, str]] = ()
+    within: tuple[float, float] | None = None
 
 
 def stack(panels: Sequence[Panel], xlabel: str, *, panel_height_in: float = 1.9) -> str:
@@ -106,7 +108,7 @@ def _named(axes: Axes) -> list[tuple[Any, str]]:
 
 @dataclass(frozen=True)
 class Bars:
-    """Bars between the `edges` of an abscissa, or one per name where `edges` are names."""
+    """Bars between the `edges` of an abscissa, or one per name where `edges` are names; `within` bounds the ordinate."""
 
     heights: Sequence[float]
     edges: Sequence[tuple[float, float]] | Sequence[str]
@@ -115,6 +117,7 @@ class Bars:
     colours: Sequence[str] = (ORANGE,)
     log: bool = False
     log_height: bool = False
+    within: tuple[float, float] | None = None
 
 
 def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
@@ -179,16 +182,22 @@ def _draw_bars(axes: Axes, panel: Bars) -> None:
     if panel.log_height:
         axes.set_yscale("log")
         _by_factors(axes.yaxis)
-        axes.set_ylim(min(panel.heights) / 3.0, max(panel.heights) * 3.0)
+        low, high = panel.within or (min(panel.heights), max(panel.heights))
+        axes.set_ylim(low / 3.0, high * 3.0)
+    elif panel.within is not None:
+        axes.set_ylim(*panel.within)
 
 
 def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
     for curve in panel.curves:
         style: Any = {"linestyle": curve.dash, "marker": curve.marker or None, "markersize": curve.marker_size}
+        style["linewidth"] = curve.width
         axes.plot(curve.x, curve.y, label=curve.label or None, color=curve.colour, **style)
     for value, label in panel.limits:
         axes.axhline(value, color=GREY, linestyle=":", linewidth=1.0, label=label or None)
     axes.set_ylabel(panel.ylabel)
+    if panel.within is not None:
+        axes.set_ylim(*panel.within)
     if legend and axes.get_legend_handles_labels()[1]:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from sim.loop import fly_law
 from sim.manoeuvres import flight
 from tests.plants import bound
 from twinlaw.command import main
+from twinlaw.diagnosing import earlier_predictions, writable
 
 PLANT = "plants/ce150.toml"
 
@@ -113,3 +115,49 @@ def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files(tmp_path
     )
     assert len(rows) == 801
     assert main(["simulate", "--plant", str(tmp_path / "out" / "plant.toml"), "--out", str(tmp_path / "flown")]) == 0
+
+
+@pytest.mark.parametrize("below", ["file", "file/out", "/proc/xx/out"])
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, log: RunLog, below: str
+) -> None:
+    monkeypatch.setattr("twinlaw.diagnosing.read_material", lambda *_: pytest.fail("began to work"))
+    (tmp_path / "file").write_text("in the way")
+    save_log(tmp_path / "run.csv", log)
+    for each in ([], ["--each"]):
+        out = str(tmp_path / below)
+        assert main(["diagnose", *each, "--plant", PLANT, "--out", out, str(tmp_path / "run.csv")]) == 2
+        line = capsys.readouterr().err
+        assert "output file" in line
+        assert "choose another --out" in line
+    assert (tmp_path / "file").read_text() == "in the way"
+
+
+def interrupted_in(out: Path) -> bool:
+    """Whether `out` was there when the work in it was interrupted."""
+    there = False
+    with suppress(KeyboardInterrupt), writable(out):
+        there = out.is_dir()
+        raise KeyboardInterrupt
+    return there
+
+
+def test_folders_made_for_a_run_that_fails_are_gone_again_and_others_are_left(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    for out in (tmp_path / "mine" / "a" / "b", tmp_path / "mine"):
+        assert interrupted_in(out)
+        assert list(tmp_path.rglob("*")) == [tmp_path / "mine"]
+
+
+def test_predictions_of_an_earlier_run_alone_are_removed(tmp_path: Path) -> None:
+    names = ("prediction-new.csv", "prediction-old.csv", "prediction-log.csv", "prediction-log.toml", "other.csv")
+    for name in names:
+        (tmp_path / name).write_text("")
+    assert earlier_predictions(tmp_path, {"prediction-new.csv"}) == [tmp_path / "prediction-old.csv"]
+
+
+def test_a_run_into_the_folder_of_another_leaves_its_own_predictions_alone(tmp_path: Path, log: RunLog) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "prediction-gone.csv").write_text("t_s\n")
+    assert diagnosed(tmp_path, part(log, slice(0, 1200)), holdout=part(log, slice(1200, 2000))) == 0
+    assert [path.name for path in (tmp_path / "out").glob("prediction-*")] == ["prediction-hold.csv"]

@@ -3,6 +3,8 @@
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,11 +24,25 @@ from records.diagnosis import (
 from records.plant import load_plant
 from sim.bind import bind
 from twinlaw.diagnosis_page import Predicted, diagnosis_page, verdict_sentence
+from twinlaw.diagnosis_pictures import curves, worst_of_the_retuned, worst_span
+from twinlaw.diagnosis_retune import Moved, moved_most
+from twinlaw.diagnosis_shrinkage import shrinkage_sections
+from twinlaw.diagnosis_summary import summary_text
+from twinlaw.diagnosis_words import class_in_words, plain_note
 from twinlaw.page import page_text
 
 ROOT = Path(__file__).resolve().parents[2]
 MOVED = "parameter J_A is +12.0 standard deviations from its stated value: 0.0213 instead of 0.0133"
 STORIES = {"azimuth.cable_spring": "the cable to the board pulls the arm back."}
+
+SHRINKAGE = Shrinkage(
+    {"psi_rad": 0.01, "phi_rad": 0.08},
+    {"psi_rad": 0.01, "phi_rad": 0.05},
+    {"psi_rad": 0.01, "phi_rad": 0.005},
+    {"psi_rad": 0.01, "phi_rad": 0.004},
+    0.97,
+    (0.95, 0.98),
+)
 
 GAP = Diagnosis(
     verdict="gap",
@@ -48,14 +64,7 @@ GAP = Diagnosis(
     ),
     unknown=Unknown(0.02, "azimuth", "torque(phi_dot)"),
     found=("azimuth.cable_spring",),
-    shrinkage=Shrinkage(
-        {"psi_rad": 0.01, "phi_rad": 0.08},
-        {"psi_rad": 0.01, "phi_rad": 0.05},
-        {"psi_rad": 0.01, "phi_rad": 0.005},
-        {"psi_rad": 0.01, "phi_rad": 0.004},
-        0.97,
-        (0.95, 0.98),
-    ),
+    shrinkage=SHRINKAGE,
     next_experiment={"name": "wide azimuth sweep", "expected": {"azimuth.tilt": 0.01}},
     notes=("log a.csv: 3 rows are missing",),
 )
@@ -76,10 +85,19 @@ def predicted(rows: int = 3000) -> Predicted:
     )
 
 
-def text_of(diagnosis: Diagnosis) -> str:
+def text_of(diagnosis: Diagnosis, moved: tuple[Moved, ...] = (), widths: dict[str, float] | None = None) -> str:
     places = bind(load_plant(ROOT / "plants" / "ce150.toml")).model.places
-    page = page_text(diagnosis_page("ce150", diagnosis, places, STORIES, (predicted(),), ("a.csv", "b.csv")))
-    return re.sub(r"\s+", " ", page)
+    page = diagnosis_page(
+        "ce150",
+        diagnosis,
+        places,
+        STORIES,
+        (predicted(),),
+        ("a.csv", "b.csv"),
+        moved=moved,
+        widths=widths or {},
+    )
+    return re.sub(r"\s+", " ", page_text(page))
 
 
 def test_the_page_says_all_that_the_record_holds() -> None:
@@ -120,6 +138,11 @@ def test_the_page_needs_no_network_and_no_script() -> None:
         ),
         ({"verdict": "no gap"}, "explains these logs"),
         ({"verdict": "cannot tell"}, "too little motion"),
+        ({"verdict": "no gap", "shrinkage": None}, "file explains these logs: nothing"),
+        (
+            {"verdict": "no gap", "shrinkage": replace(SHRINKAGE, rms_before={"psi_rad": 0.01, "phi_rad": 0.005})},
+            "once its parameters are re-tuned",
+        ),
         ({"found": ()}, "does something in the azimuth that the plant file lacks"),
         ({"found": (), "unknown": Unknown(0.0)}, "most likely cable spring of the azimuth (93.0 %); but"),
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
@@ -142,9 +165,177 @@ def test_names_from_a_log_are_escaped() -> None:
 
 
 def test_the_curves_show_where_the_stated_plant_errs_most() -> None:
-    from twinlaw.diagnosis_pictures import worst_span
-
     log = predicted()
     shown = log.t_s[worst_span(log)]
     assert shown[0] <= 20.01
     assert shown[-1] >= 23.98
+
+
+def test_the_curves_show_where_the_improved_plant_gains_most_in_the_output_of_the_gap() -> None:
+    log = predicted()
+    wave = log.measured["phi_rad"]
+    off = wave + np.where((log.t_s > 9.0) & (log.t_s < 13.0), 0.1, 0.001)
+    slightly = wave + np.where(log.t_s > 27.0, 0.002, 0.001)
+    log = replace(
+        log,
+        before={"psi_rad": slightly, "phi_rad": off},
+        after=dict.fromkeys(("psi_rad", "phi_rad"), wave + 0.001),
+    )
+    output, rows = worst_of_the_retuned(log)
+    assert output == "phi_rad"
+    assert log.t_s[rows][0] <= 9.01
+    assert log.t_s[rows][-1] >= 12.98
+    told = curves(log)
+    assert "errs most against the improved one, in phi" in told.sentences[0]
+    assert "error of phi" in told.plots[0]
+
+
+def test_what_was_measured_is_seen_below_the_predictions() -> None:
+    drawn = curves(predicted()).plots[0]
+    measured, retuned = drawn.index("stroke-width: 5"), drawn.index("stroke-width: 2;")
+    assert measured < retuned
+
+
+ALONE = replace(
+    GAP,
+    found=(),
+    effects=(replace(GAP.effects[1], probability=0.03),),
+    unknown=Unknown(0.1),
+    shrinkage=None,
+    firmware=None,
+)
+FURTHEST = (Moved("J_A", 12.04), Moved("K_M", -0.4))
+
+
+def test_other_parameters_stand_among_the_hypotheses_with_their_probability_and_how_far_they_moved() -> None:
+    lines = summary_text(ALONE, FURTHEST).splitlines()
+    assert lines[1].split("  ")[0] == "other parameters alone"
+    assert "0.870" in lines[1]
+    assert "J_A +12.0 sd, K_M -0.4 sd" in lines[1]
+    page = text_of(ALONE, FURTHEST)
+    assert re.search(r"other parameters alone</td><td></td><td>87.0.%</td><td>J_A \+12.0 sd, K_M -0.4 sd", page)
+
+
+def test_a_re_tune_that_explains_the_hold_out_is_said_with_its_parameters() -> None:
+    tuned = replace(
+        GAP, verdict="no gap", found=(), effects=(), shrinkage=replace(SHRINKAGE, rms_before=SHRINKAGE.rms_after)
+    )
+    told = summary_text(tuned, FURTHEST)
+    assert "phi 4.58 -> 0.286 deg" in told
+    assert "J_A +12.0 sd" in told
+    page = text_of(tuned, FURTHEST)
+    assert "lowers the error of phi from 4.58 to 0.286 deg" in page
+    assert "J_A +12.0 sd" in page
+
+
+def test_what_moved_is_told_in_standard_deviations_the_furthest_first_and_at_most_three() -> None:
+    bound = bind(load_plant(ROOT / "plants" / "ce150.toml"))
+    parameters = dict(bound.plant.parameters)
+    for name, away in (("K_M", 0.5), ("J_A", -2.0), ("J_E", 1.0), ("K_E", 0.3), ("K_A", 0.01)):
+        entry: Any = parameters[name]
+        parameters[name] = replace(entry, value=entry.value + away * entry.sd, sd=0.1 * entry.sd)
+    lag = {"tau": {"value": 0.02, "sd": 0.0001, "unit": "s"}}
+    result: Any = SimpleNamespace(
+        plant=replace(bound.plant, parameters=parameters, effects={"psi_sensor": {"lag": lag}}),
+        case=SimpleNamespace(
+            kit=SimpleNamespace(bound=bound),
+            stated={"psi_sensor.lag": {"tau": 0.01}},
+            stated_sd={"psi_sensor.lag": {"tau": 0.002}},
+        ),
+    )
+    told = [entry.text for entry in moved_most(result)]
+    assert told == ["tau of psi_sensor.lag +5.0 sd", "J_A -2.0 sd", "J_E +1.0 sd"]
+
+
+def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
+    joint = Hypothesis(
+        "azimuth.flexible_mode + azimuth.coulomb",
+        "mode(torque) on azimuth + torque(sgn phi_dot) on azimuth",
+        0.9,
+        {
+            "azimuth.flexible_mode.gain": Estimate(0.5, 0.1, "-"),
+            "azimuth.flexible_mode.zeta": Estimate(0.2, 0.1, "1"),
+            "azimuth.coulomb.b": Estimate(1e-4, 1e-5, "N m"),
+        },
+    )
+    told = replace(GAP, effects=(joint,), found=(), firmware=None)
+    page = text_of(told)
+    assert page.count("azimuth.flexible_mode") == 1
+    assert "<td>gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1</td>" in page
+    assert "<td>b = 0.0001 ± 1e-05 N m</td>" in page
+    lines = summary_text(told).splitlines()
+    assert "gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1" in lines[1]
+    assert re.match(r"  with azimuth.coulomb +b = ", lines[2])
+
+
+def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
+    dead = Hypothesis(
+        "tail_input.deadzone",
+        "dead band of u_T_V on tail_input",
+        0.9,
+        {"d": Estimate(0.01, 0.001, "V"), "w": Estimate(6e-9, 60.0, "1"), "n": Estimate(19.0, 0.1, "rad rad^-1")},
+    )
+    told, widths = replace(GAP, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
+    for text in (text_of(told, widths=widths), summary_text(told, (), widths)):
+        assert "d = 0.01 ± 0.001 V, w not told by these data, n = 19 ± 0.1 per rad" in text
+
+
+@pytest.mark.parametrize(
+    ("cause", "first", "said"),
+    [
+        ("late_output: the firmware sent its output one sample late", 0.01, "does not do what its table says: the"),
+        ("not_found: none of the firmwares leaves no difference", 19.99, "From 19.99 s on, commands in the log"),
+    ],
+)
+def test_what_the_firmware_did_otherwise_is_said_before_the_plant(cause: str, first: float, said: str) -> None:
+    told = replace(GAP, firmware=Firmware(True, False, first, cause))
+    sentence = verdict_sentence(told)
+    assert 0 <= sentence.index(said) < sentence.index("The rig has")
+    assert said in summary_text(told).splitlines()[0]
+    assert cause.partition(":")[0] not in text_of(told)
+
+
+def test_what_a_replay_says_of_the_log_alone_is_no_finding_of_the_firmware() -> None:
+    told = replace(GAP, firmware=Firmware(True, False, 1.0, "log_rounding: the log rounded its inputs"))
+    assert verdict_sentence(told).startswith("The rig has")
+
+
+def test_without_the_table_or_a_controller_it_is_said_that_nothing_was_run_again() -> None:
+    lost = replace(
+        GAP, firmware=Firmware(False, False, None, "table_not_found: table ab, which the log names, is gone")
+    )
+    for text in (text_of(lost), summary_text(lost)):
+        assert "was not run again, so nothing is known of the firmware: table ab" in text
+    assert "no controller's code was run again" in text_of(replace(GAP, firmware=None)).replace("&#39;", "'")
+
+
+def test_where_nothing_was_found_no_share_of_the_error_is_told() -> None:
+    nothing = replace(GAP, verdict="no gap", false_alarm_probability=1.0, found=(), effects=())
+    nothing = replace(nothing, shrinkage=replace(SHRINKAGE, fraction=0.0, fraction_ci95=(0.0, 0.0)))
+    told = summary_text(nothing)
+    assert "removable" not in told
+    assert "no gap: what remains is as small as on a rig" in told
+    page = text_of(nothing)
+    assert "gap shrinks" not in page
+    assert "How well the plant predicts" in page
+
+
+def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
+    assert class_in_words("torque(domega_M/dt)").endswith("a torque that depends on how fast omega_M changes")
+    assert class_in_words("torque(psi, sgn psi_dot) on elevation").endswith(
+        "depends on psi and the direction in which psi moves"
+    )
+    assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
+    note = "a.b takes 0 % of the hold-out's error away, -68 % at most: something else is missing"
+    assert plain_note(note) == "a.b takes none of the hold-out's error away: something else is missing"
+    kept = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
+    assert plain_note(kept) == kept
+
+
+def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:
+    rms = {"psi_rad": 0.4, "phi_rad": 0.0005}
+    told = Shrinkage(rms, rms, rms, rms, None, None)
+    drawn = shrinkage_sections(told, True)[0].plots[0]
+    assert drawn.count("logarithmic scale") == 2
+    labels = re.findall(r"<text[^>]*>([\d.]+)</text>", drawn)
+    assert labels.count("10") == labels.count("0.1") == 2

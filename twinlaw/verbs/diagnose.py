@@ -16,8 +16,9 @@ from records.diagnosis import diagnosis_text
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw import console, options, sweeping
-from twinlaw.diagnosing import diagnose_logs
+from twinlaw.diagnosing import diagnose_logs, widths, writable
 from twinlaw.diagnosing_each import HEADING, answers, facts, questions, rows
+from twinlaw.diagnosis_retune import moved_most
 from twinlaw.diagnosis_summary import summary_text
 
 SCHEMA = "diagnoses/1"
@@ -43,15 +44,17 @@ def run(chosen: argparse.Namespace) -> int:
             remedy = "add --each to explain every log in it by itself, or name its logs to explain them together"
             raise BadInput("run log", str(path), "a folder", "a log", remedy)
     result = diagnose_logs(chosen.plant, chosen.logs, holdout, chosen.out)
-    print(diagnosis_text(result.diagnosis) if chosen.json else summary_text(result.diagnosis), end="")
+    told = summary_text(result.diagnosis, moved_most(result), widths(result))
+    print(diagnosis_text(result.diagnosis) if chosen.json else told, end="")
     return 0
 
 
 def _each(chosen: argparse.Namespace, holdout: list[Path]) -> int:
     """One answer a question; those that failed are told on stderr, one line each."""
     asked = questions(chosen.plant, chosen.logs, holdout)
-    found = list(answers(asked, chosen.out, sweeping.crew_of(chosen)))
-    told = {"schema": SCHEMA, "answers": facts(found)}
-    write_atomic(chosen.out / "summary.json", json.dumps(told, indent=1) + "\n")
+    with writable(chosen.out):
+        found = list(answers(asked, chosen.out, sweeping.crew_of(chosen)))
+        told = {"schema": SCHEMA, "answers": facts(found)}
+        write_atomic(chosen.out / "summary.json", json.dumps(told, indent=1) + "\n")
     print(json.dumps(told) if chosen.json else console.table(rows(found), HEADING))
     return sweeping.failures([(entry.name, entry.failure) for entry in found])

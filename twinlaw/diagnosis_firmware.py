@@ -1,0 +1,46 @@
+"""What a diagnosis says of the firmware: whether it was run again, whether it did as its table says, and what that makes doubtful."""
+
+from records.diagnosis import Firmware
+
+# What a replay tells of the log, or of how the code was built, and not of what the firmware does.
+_OF_THE_LOG = ("log_rounding", "missing_rows", "begins_in_flight", "fused_multiply_add")
+_ROWS_LACK = "rows that the log lacks"
+
+
+def differs(firmware: Firmware | None) -> bool:
+    """Whether the firmware itself did something else than its table says."""
+    if firmware is None or not firmware.replayed or firmware.bit_exact:
+        return False
+    cause = firmware.cause or ""
+    return cause.partition(":")[0] not in _OF_THE_LOG and _ROWS_LACK not in cause
+
+
+def firmware_in_words(firmware: Firmware | None) -> str:
+    """What running the controller's own code again showed, in one sentence."""
+    if firmware is None:
+        return "No log names a controller's table, so no controller's code was run again."
+    again, cause = "Run again on the logged measurements, the controller's own code", _cause(firmware)
+    if not firmware.replayed:
+        return f"The controller's code was not run again, so nothing is known of the firmware: {cause or 'its table is not at hand'}."
+    if firmware.bit_exact:
+        return f"{again} gives every logged input to the bit: the firmware is cleared."
+    at = "" if firmware.first_difference_s is None else f" first differs at {firmware.first_difference_s:g} s"
+    return f"{again}{at or ' was compared'}: {cause or 'cause not found'}."
+
+
+def firmware_first(firmware: Firmware | None) -> str:
+    """What must be known of the firmware before anything is said of the plant; empty where it does as its table says."""
+    if firmware is None or not differs(firmware):
+        return ""
+    since = "" if firmware.first_difference_s is None else f"From {firmware.first_difference_s:g} s on, "
+    if (firmware.cause or "not_found").startswith("not_found"):
+        told = f"{since}commands in the log are not what the firmware of its table computes"
+        told = told[0].upper() + told[1:]
+        return f"{told}: a cause named in the plant for that span is doubtful."
+    return f"The firmware does not do what its table says: {_cause(firmware)}. What seems to be amiss in the plant may come from that."
+
+
+def _cause(firmware: Firmware) -> str:
+    """The sentence of a cause, without its name for machines."""
+    name, colon, sentence = (firmware.cause or "").partition(": ")
+    return sentence if colon and " " not in name.replace(" + ", "") else firmware.cause or ""
