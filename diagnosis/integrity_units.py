@@ -50,6 +50,8 @@ def rotor_unit(log: RunLog, name: str, bound: BoundPlant, limits: Mapping[str, t
         column = str(state)
         if state in own or column not in log.extra or not column.endswith("_rad_s"):
             continue
+        if not np.isfinite(log.extra[column]).any():
+            continue
         inputs = [u for u in model.inputs if u in model.rates[state].free_symbols]
         if len(inputs) != 1 or not model.rates[state].free_symbols <= {state, *inputs, *model.parameter_symbols}:
             continue

@@ -1,4 +1,7 @@
-"""Long logs by stretches: as many rows as a search can hold, chosen by where and how much moves, never by how the plant fits them."""
+"""Long logs by stretches: as many rows as a search can hold, chosen by where and how much moves, never by how the plant fits them.
+
+Rows that are far denser than a plant needs are thinned first, so that a search sees a minute of it and not a second.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,6 +16,8 @@ Rows = NDArray[np.bool_]
 MOST_READINGS = 40_000  # rows times outputs, of all logs together
 STRETCHES = 8
 LEAST_S = 10.0  # of a stretch, as long as its log may have that much
+DENSE_S = 1e-3  # rows closer than this are thinned, as far as they must be
+COARSEST_S = 4e-3  # and no farther: a tenth of the shortest time constant of a plant
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,19 +38,61 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     """
     if sum(log.y.size for log in logs) <= MOST_READINGS:
         return Stretches(tuple(logs), tuple(names), tuple(used), ())
+    every = [_every(log, rows) for log, rows in zip(logs, _shares(logs), strict=True)]
+    kept = [_one_in(mask, factor) for mask, factor in zip(used, every, strict=True)]
+    shown = [_thinned(log, rows) if factor > 1 else log for log, rows, factor in zip(logs, kept, every, strict=True)]
     parts: list[tuple[RunLog, str, Rows]] = []
     notes = []
-    for log, mask, name, rows in zip(logs, used, names, _shares(logs), strict=True):
+    for log, whole, mask, name, places, rows in zip(shown, logs, used, names, kept, _shares(shown), strict=True):
+        left = mask[places]
+        if log is not whole:
+            apart = f"{whole.sample_period_s * 1e6:.4g} microseconds apart"
+            notes.append(
+                f"{name}: {len(log.t_s)} of its {len(mask)} rows were looked at, spread evenly, as they are {apart}"
+            )
         if rows == len(log.t_s):
-            parts.append((log, name, mask))
+            parts.append((log, name, left))
             continue
         chosen = _chosen(log, rows)
-        parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", mask[part]) for part in chosen]
-        kept = sum(part.stop - part.start for part in chosen)
-        spans = ", ".join(f"{log.t_s[part.start]:.6g}..{log.t_s[part.stop - 1]:.6g} s" for part in chosen)
-        notes.append(f"{name}: {kept} of its {len(log.t_s)} rows were looked at, as {len(chosen)} stretches: {spans}")
+        parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", left[part]) for part in chosen]
+        notes.append(f"{name}: {_kept(log, chosen)}")
     cut, called, masks = zip(*parts, strict=True)
     return Stretches(cut, called, masks, tuple(notes))
+
+
+def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
+    """Which rows are looked at, in words."""
+    rows = sum(part.stop - part.start for part in chosen)
+    spans = ", ".join(f"{log.t_s[part.start]:.6g}..{log.t_s[part.stop - 1]:.6g} s" for part in chosen)
+    how_many = "1 stretch" if len(chosen) == 1 else f"{len(chosen)} stretches"
+    return f"{rows} of its {len(log.t_s)} rows were looked at, as {how_many}: {spans}"
+
+
+def _every(log: RunLog, rows: int) -> int:
+    """The factor by which a log is thinned so that it shows at most `rows`; 1 for rows as far apart as logs usually have them."""
+    if len(log.t_s) <= rows or log.sample_period_s >= DENSE_S:
+        return 1
+    return int(np.clip(-(-len(log.t_s) // rows), 1, max(int(COARSEST_S / log.sample_period_s), 1)))
+
+
+def _one_in(used: Rows, factor: int) -> NDArray[np.int64]:
+    """The first row that may be used of each `factor` rows; where none may be, their first."""
+    padded = np.pad(used, (0, -len(used) % factor)).reshape(-1, factor)
+    return np.asarray(np.arange(len(padded)) * factor + np.argmax(padded, axis=1))
+
+
+def _thinned(log: RunLog, rows: NDArray[np.int64]) -> RunLog:
+    """Some rows of a log, with the mean of the inputs from each to the next."""
+    count = np.diff([*rows, len(log.t_s)])
+    return replace(
+        log,
+        sample_period_s=float(log.t_s[rows[-1]] - log.t_s[rows[0]]) / (len(rows) - 1),
+        t_s=log.t_s[rows],
+        u=np.add.reduceat(log.u, rows, axis=0) / count[:, np.newaxis],
+        y=log.y[rows],
+        extra={name: column[rows] for name, column in log.extra.items()},
+        seq=None,  # its numbers would tell of lost samples
+    )
 
 
 def _shares(logs: Sequence[RunLog]) -> list[int]:
@@ -74,8 +121,9 @@ def _chosen(log: RunLog, rows: int) -> list[slice]:
 
 
 def _travelled(log: RunLog) -> Array:
-    """The way (n,) of all inputs and outputs so far, each in units of how far it is usually from its mean."""
+    """The way (n,) of all inputs and outputs so far, each in units of how far it is usually from its mean; 0 for one never measured."""
     columns = np.column_stack([log.u, log.y])
+    columns = columns[:, np.isfinite(columns).any(axis=0)]
     usual = np.nanstd(columns, axis=0)
     way = np.nan_to_num(np.abs(np.diff(columns, axis=0))) / np.where(usual > 0.0, usual, np.inf)
     return np.asarray(np.concatenate([[0.0], np.cumsum(way.sum(axis=1))]))

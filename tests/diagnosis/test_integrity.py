@@ -279,6 +279,15 @@ def test_logs_that_hold_the_same_angle_with_another_input_are_not_of_one_plant(
     assert [finding.severity for finding in found] == ([] if severity is None else [severity])
 
 
+@pytest.mark.parametrize("column", ["psi_rad", "omega_M_rad_s", "psi_dot_rad_s", "psi_ref_rad"])
+def test_a_column_that_was_never_measured_is_noted_without_warnings(
+    column: str, recwarn: pytest.WarningsRecorder
+) -> None:
+    found = _examined(_column(clean(), column, np.full(2001, np.nan)), holdout=[_other_flight()])
+    assert [(finding.kind, finding.column) for finding in found.findings] == [("not_recorded", column)]
+    assert not [str(warning.message) for warning in recwarn]
+
+
 def test_a_million_rows_are_examined_and_their_defects_found() -> None:
     log, times = clean(), 500
     n = 2001 * times

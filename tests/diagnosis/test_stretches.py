@@ -54,6 +54,54 @@ def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_mo
     assert "1000000 rows" in found.notes[0]
 
 
+def test_rows_far_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
+    n, period_s = 1_000_000, 60e-6
+    t_s = period_s * np.arange(n)
+    y = np.column_stack([np.sin(t_s), np.cos(t_s)])
+    dense = RunLog(log_columns(bound("ce150").model), period_s, "open", t_s, 0.1 * y, y, seq=np.arange(n))
+    mask = np.arange(n) % 3 > 0
+    found = stretches([dense, log_of(1000)], [mask, all_rows(log_of(1000))], ["dense", "short"])
+    seen = found.logs[0]
+    assert (found.names, len(seen.t_s)) == (("dense", "short"), -(-n // 53))
+    assert seen.sample_period_s == pytest.approx(53 * period_s, rel=1e-4)
+    rows = np.searchsorted(dense.t_s, seen.t_s)
+    blocks = np.arange(0, n, 53)
+    np.testing.assert_array_equal(rows, blocks + (blocks % 3 == 0))  # the first of each 53 that may be used
+    assert found.used[0].all()
+    np.testing.assert_array_equal(seen.y, y[rows])
+    assert seen.u[7] == pytest.approx(0.1 * y[rows[7] : rows[8]].mean(axis=0))
+    assert seen.seq is None
+    assert found.notes == (
+        "dense: 18868 of its 1000000 rows were looked at, spread evenly, as they are 60 microseconds apart",
+    )
+
+
+def test_a_long_dense_log_is_thinned_to_what_a_plant_needs_and_shown_by_stretches_of_all_of_it() -> None:
+    n, period_s = 3_000_000, 100e-6
+    t_s = period_s * np.arange(n)
+    y = np.column_stack([np.sin(t_s), np.cos(t_s)])
+    dense = RunLog(log_columns(bound("ce150").model), period_s, "open", t_s, 0.1 * y, y)
+    found = stretches([dense], [all_rows(dense)], ["dense"])
+    assert len(found.logs) == 8
+    assert [log.sample_period_s for log in found.logs] == pytest.approx([0.004] * 8, rel=1e-4)
+    assert found.logs[0].t_s[0] == 0.0
+    assert found.logs[-1].t_s[-1] == pytest.approx(t_s[-1], abs=0.02)
+    assert "as 8 stretches" in found.notes[1]
+
+
+def test_a_log_with_an_output_that_was_never_measured_is_cut_without_warnings(recwarn: pytest.WarningsRecorder) -> None:
+    log = log_of(60_000)
+    log.y[:, 0] = np.nan
+    assert len(stretches([log], [all_rows(log)], ["log"]).logs) == 8
+    assert not [str(warning.message) for warning in recwarn]
+
+
+def test_a_single_stretch_is_called_one() -> None:
+    logs = [log_of(6000) for _ in range(20)]
+    found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
+    assert all("as 1 stretch: " in note for note in found.notes)
+
+
 def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:
     logs = [log_of(6000) for _ in range(20)]
     found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
