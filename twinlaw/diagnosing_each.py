@@ -16,7 +16,8 @@ from jobs.job import Done, Job
 from jobs.keep import Folders
 from records.diagnosis import Diagnosis, parse_diagnosis
 from records.errors import BadInput
-from twinlaw.diagnosing import read_material, result_files
+from records.files import remove_all
+from twinlaw.diagnosing import earlier_predictions, read_material, result_files
 from twinlaw.sweeping import swept
 
 PLANT_NAME = "plant.toml"
@@ -101,7 +102,10 @@ def _logs_in(folder: Path) -> list[Path]:
 def answers(asked: Sequence[Question], out: Path, crew: Crew) -> Iterator[Answered]:
     """The end of each question in order; its files in out/NAME, where whole answers to the same bytes are left as they are."""
     jobs = (Job(entry.name, answer, parcel(entry)) for entry in asked)
-    for done in swept("diagnosed", jobs, len(asked), crew, Folders(out, ANSWER)):
+    for entry, done in zip(asked, swept("diagnosed", jobs, len(asked), crew, Folders(out, ANSWER)), strict=True):
+        if done.failure is None:
+            own = {f"prediction-{path.stem}.csv" for path in entry.holdout}
+            remove_all(earlier_predictions(out / entry.name, own))
         yield Answered(done.name, _read(done), done.failure, done.kept)
 
 

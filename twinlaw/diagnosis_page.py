@@ -16,7 +16,7 @@ from twinlaw.diagnosis_words import (
     class_in_words,
     listed,
     percent,
-    plain_note,
+    plain_notes,
     plain_text,
     shown,
     sized,
@@ -223,5 +223,5 @@ def _parts(note: str) -> tuple[str, str]:
 
 
 def _notes(diagnosis: Diagnosis) -> Section | None:
-    others = [plain_note(note) for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note]
+    others = plain_notes([note for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note])
     return Section("Notes", others) if others else None

@@ -6,7 +6,7 @@ from records.diagnosis import Diagnosis
 from twinlaw import console
 from twinlaw.diagnosis_firmware import firmware_first, firmware_in_words
 from twinlaw.diagnosis_retune import Moved, lowered, moved_in_words, parameters_alone
-from twinlaw.diagnosis_words import alarm_in_words, class_in_words, plain_note, shown, sized
+from twinlaw.diagnosis_words import alarm_in_words, class_in_words, plain_notes, shown, sized
 
 MOST = 5
 
@@ -21,7 +21,12 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     p = diagnosis.false_alarm_probability
     if firmware_first(diagnosis.firmware):
         yield firmware_first(diagnosis.firmware)
-    yield diagnosis.verdict + ("" if p is None else f": {alarm_in_words(diagnosis.verdict, p)}")
+    if p is None:
+        yield diagnosis.verdict
+    elif diagnosis.verdict == "gap":
+        yield f"gap (chance of so large a gap without one: {p:.2g})"
+    else:
+        yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis.verdict, p)}"
     if diagnosis.verdict == "gap":
         yield console.table(_rows(diagnosis, moved, widths))
     if diagnosis.unknown.form:
@@ -36,7 +41,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
         yield f"hold-out: {diagnosis.shrinkage.fraction:.0%} of the removable error gone{within}"
     if diagnosis.firmware is not None:
         yield f"firmware: {firmware_in_words(diagnosis.firmware)}"
-    yield from map(plain_note, diagnosis.notes)
+    yield from plain_notes(diagnosis.notes)
 
 
 def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
@@ -45,7 +50,7 @@ def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, flo
     for h in diagnosis.effects[:MOST]:
         lines = [
             (name if place == 0 else f"  with {name}", f"{h.probability:.3f}" if place == 0 else "", size)
-            for place, (name, _, size) in enumerate(sized(h, widths))
+            for place, (name, _, size) in enumerate(sized(h, widths, " ", 2))
         ]
         ranked.append((h.probability, lines))
     alone = parameters_alone(diagnosis)

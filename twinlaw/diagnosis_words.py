@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 
-from records.diagnosis import Estimate, Hypothesis
+from records.diagnosis import Hypothesis
 
 # By the unit at the end of a name: how a person reads it.
 _SHOWN = {
@@ -82,11 +82,14 @@ def shown(name: str) -> tuple[str, str, float]:
     return name, "", 1.0
 
 
-def plain_note(note: str) -> str:
-    """A note without figures that have no meaning."""
-    for pattern, plain in _PLAINER:
-        note = pattern.sub(plain, note)
-    return note
+def plain_notes(notes: Sequence[str]) -> list[str]:
+    """Each note once, without figures that have no meaning."""
+    plainer = []
+    for note in notes:
+        for pattern, plain in _PLAINER:
+            note = pattern.sub(plain, note)
+        plainer.append(note)
+    return list(dict.fromkeys(plainer))
 
 
 def plain_unit(unit: str) -> str:
@@ -114,8 +117,11 @@ def _signal(name: str) -> str:
     return _SIGNALS.get(name, name)
 
 
-def sized(hypothesis: Hypothesis, widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
-    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol"."""
+def sized(
+    hypothesis: Hypothesis, widths: Mapping[str, float], equals: str = " = ", digits: int = 1
+) -> list[tuple[str, str, str]]:
+    """Each effect of a hypothesis once: its name, its class, and its parameters; `widths` between the bounds by "place.effect.symbol",
+    `digits` of a deviation."""
     names, classes = hypothesis.effect.split(" + "), hypothesis.class_.split(" + ")
     classes += [""] * (len(names) - len(classes))
     joint = len(names) > 1
@@ -126,16 +132,14 @@ def sized(hypothesis: Hypothesis, widths: Mapping[str, float]) -> list[tuple[str
             for symbol, entry in hypothesis.parameters.items()
             if not joint or symbol.startswith(f"{name}.")
         }
-        sizes = [_size(symbol, entry, widths.get(f"{name}.{symbol}", math.inf)) for symbol, entry in own.items()]
+        sizes = [
+            f"{symbol} not told by these data"  # it might as well be any between its bounds
+            if entry.sd > widths.get(f"{name}.{symbol}", math.inf)
+            else f"{symbol}{equals}{entry.value:.4g} ± {entry.sd:.{digits}g} {plain_unit(entry.unit)}".strip()
+            for symbol, entry in own.items()
+        ]
         lines.append((name, class_, ", ".join(sizes)))
     return lines
-
-
-def _size(symbol: str, estimate: Estimate, width: float) -> str:
-    """One parameter; no number where it might as well be any between its bounds."""
-    if estimate.sd > width:
-        return f"{symbol} not told by these data"
-    return f"{symbol} = {estimate.value:.4g} ± {estimate.sd:.1g} {plain_unit(estimate.unit)}".strip()
 
 
 def alarm_in_words(verdict: str, p: float) -> str:

@@ -106,7 +106,9 @@ def test_each_is_answered_as_alone_and_only_once(
 
     before = {path: path.stat().st_mtime_ns for path in out.glob("*/*")}
     (out / "case-7" / "prediction-hold-1.csv").write_text("half a fi")
+    (out / "case-7" / "prediction-hold-0.csv").write_text("of a log that is no longer held out")
     assert main(command) == 2
+    assert not (out / "case-7" / "prediction-hold-0.csv").exists()
     after = {path: path.stat().st_mtime_ns for path in out.glob("*/*")}
     assert {path.parent.name for path in after if after[path] != before[path]} == {"case-7"}
     assert (out / "case-7" / "prediction-hold-1.csv").read_text().startswith("t_s,")

@@ -28,7 +28,7 @@ from twinlaw.diagnosis_pictures import curves, worst_of_the_retuned, worst_span
 from twinlaw.diagnosis_retune import Moved, moved_most
 from twinlaw.diagnosis_shrinkage import shrinkage_sections
 from twinlaw.diagnosis_summary import summary_text
-from twinlaw.diagnosis_words import class_in_words, plain_note
+from twinlaw.diagnosis_words import class_in_words, plain_notes
 from twinlaw.page import page_text
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -264,8 +264,8 @@ def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
     assert "<td>gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1</td>" in page
     assert "<td>b = 0.0001 ± 1e-05 N m</td>" in page
     lines = summary_text(told).splitlines()
-    assert "gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1" in lines[1]
-    assert re.match(r"  with azimuth.coulomb +b = ", lines[2])
+    assert "gain 0.5 ± 0.1, zeta 0.2 ± 0.1" in lines[1]
+    assert re.match(r"  with azimuth.coulomb +b 0.0001 ± 1e-05 N m$", lines[2])
 
 
 def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
@@ -276,8 +276,8 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
         {"d": Estimate(0.01, 0.001, "V"), "w": Estimate(6e-9, 60.0, "1"), "n": Estimate(19.0, 0.1, "rad rad^-1")},
     )
     told, widths = replace(GAP, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
-    for text in (text_of(told, widths=widths), summary_text(told, (), widths)):
-        assert "d = 0.01 ± 0.001 V, w not told by these data, n = 19 ± 0.1 per rad" in text
+    assert "d = 0.01 ± 0.001 V, w not told by these data, n = 19 ± 0.1 per rad" in text_of(told, widths=widths)
+    assert "d 0.01 ± 0.001 V, w not told by these data, n 19 ± 0.1 per rad" in summary_text(told, (), widths)
 
 
 @pytest.mark.parametrize(
@@ -327,9 +327,9 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     )
     assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
     note = "a.b takes 0 % of the hold-out's error away, -68 % at most: something else is missing"
-    assert plain_note(note) == "a.b takes none of the hold-out's error away: something else is missing"
+    assert plain_notes([note, note]) == ["a.b takes none of the hold-out's error away: something else is missing"]
     kept = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
-    assert plain_note(kept) == kept
+    assert plain_notes([kept]) == [kept]
 
 
 def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:
