@@ -1,5 +1,6 @@
 """What a diagnosis says of the firmware: whether it was run again, whether it did as its table says, and what that makes doubtful."""
 
+from diagnosis.firmware_replay import NOT_FOUND
 from records.diagnosis import Firmware
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
@@ -32,11 +33,12 @@ def firmware_first(firmware: Firmware | None) -> str:
     """What must be known of the firmware before anything is said of the plant; empty where it does as its table says."""
     if firmware is None or not differs(firmware):
         return ""
-    since = "" if firmware.first_difference_s is None else f"From {firmware.first_difference_s:g} s on, "
-    if (firmware.cause or "not_found").startswith("not_found"):
-        told = f"{since}commands in the log are not what the firmware of its table computes"
-        told = told[0].upper() + told[1:]
-        return f"{told}: a cause named in the plant for that span is doubtful."
+    if (firmware.cause or NOT_FOUND).startswith(NOT_FOUND):
+        since = "" if firmware.first_difference_s is None else f" from {firmware.first_difference_s:g} s on"
+        return (
+            f"The log holds commands{since} that the firmware of its table does not compute: where they differ, "
+            "a cause named in the plant is doubtful."
+        )
     return f"The firmware does not do what its table says: {_cause(firmware)}. What seems to be amiss in the plant may come from that."
 
 

@@ -284,7 +284,11 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
     ("cause", "first", "said"),
     [
         ("late_output: the firmware sent its output one sample late", 0.01, "does not do what its table says: the"),
-        ("not_found: none of the firmwares leaves no difference", 19.99, "From 19.99 s on, commands in the log"),
+        (
+            "not_found: none of the firmwares leaves no difference",
+            19.99,
+            "The log holds commands from 19.99 s on that the firmware of its table does not",
+        ),
     ],
 )
 def test_what_the_firmware_did_otherwise_is_said_before_the_plant(cause: str, first: float, said: str) -> None:
