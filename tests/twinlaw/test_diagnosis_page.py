@@ -334,6 +334,8 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     assert plain_notes([note, note]) == ["a.b takes none of the hold-out's error away: something else is missing"]
     kept = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
     assert plain_notes([kept]) == [kept]
+    (plain,) = plain_notes(["these logs contradict each other: b would be 250 nats likelier with numbers of its own"])
+    assert plain.endswith("b would be e^250 times likelier with numbers of its own")
 
 
 def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:
