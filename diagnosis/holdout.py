@@ -101,7 +101,7 @@ def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tu
     far = _leaves_most(holdout, first, told, left)
     if told.fraction is None or not (far or _idle(holdout, first, told)):
         return weighed, ()
-    gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else told.fraction_ci95[1]
+    gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else max(told.fraction_ci95[1], 0.0)
     share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
     note = f"{' + '.join(first.effects)} takes {share}: something else is missing"
     unknown = min(1.0 - gone, UNNAMED) if far else NOT_BORNE_OUT

@@ -77,7 +77,7 @@ BAD = {
     "a time twice": (with_times(lambda t: np.repeat(t[::2], 2)), ["t_s", "line 3"]),
     "milliseconds": (with_times(lambda t: 1e3 * t), ["t_s", "seconds"]),
     "microseconds": (with_times(lambda t: 1e6 * t), ["t_s", "seconds"]),
-    "huge angles": (scaled(3, 1e300), ["psi_rad", "radians"]),
+    "huge angles": (scaled(3, 1e300), ["psi_rad", "no angle of this plant"]),
     "huge inputs": (scaled(1, 1e300), ["u_M_V", "unit"]),
     "degrees": (scaled(4, 180.0 / np.pi), ["phi_rad", "degrees"]),
     "percent": (scaled(1, 10.0), ["u_M_V", "percent"]),
