@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
 FAR = 1.0  # mean square of the parameters' steps, in standard deviations, beyond which losses are looked for from the stated ones too
 WORTH = 10.0  # nats below which no frame counts as lost
+OPENING = Lock()
 
 
 def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
@@ -227,8 +229,14 @@ def _judged_by(
     return way(request), arrays["found"], arrays["power"]
 
 
-@cache
 def _library() -> tuple[Any, Any]:
+    """The one interface and library of this process: of threads that open it at once each would make requests that others' refuse."""
+    with OPENING:
+        return _opened()
+
+
+@cache
+def _opened() -> tuple[Any, Any]:
     folder = Path(__file__).parent / "c"
     header = (folder / "lost_frames.h").read_text(encoding="utf-8")
     declarations = "\n".join(line for line in header.splitlines() if not line.startswith("#"))

@@ -1,8 +1,12 @@
 """Commands lost on the line: their share from flights whose truth is known, nothing where none was lost."""
 
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import lost_frames
 from diagnosis.case import Case, make_case
 from diagnosis.engine import nominal_fit
 from diagnosis.fit import Fit, fit
@@ -16,6 +20,19 @@ from tests.diagnosis.conftest import Fly
 
 SHARE = 0.3
 Array = NDArray[np.float64]
+
+
+def test_threads_that_open_the_library_at_once_get_the_same() -> None:
+    # Each pair that cffi makes refuses the requests of every other.
+    lost_frames._opened.cache_clear()
+    together = Barrier(8)
+
+    def opened(_: int) -> object:
+        together.wait()
+        return lost_frames._library()[0]
+
+    with ThreadPoolExecutor(8) as pool:
+        assert len(set(map(id, pool.map(opened, range(8))))) == 1
 
 
 def losses(plant: BoundPlant, log: RunLog) -> tuple[Case, Fit | None]:
