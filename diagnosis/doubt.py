@@ -16,7 +16,7 @@ from diagnosis.weigh import UNNAMED, Weighed
 
 WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
-ROUNDS = 4
+ROUNDS = 4  # of a fit to all logs together
 KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
 OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
 REFUTED = 1.4  # times the mean square error of the hold-out without it, beyond which a cause is refuted

@@ -13,9 +13,7 @@ USUAL_PERCENT = 99.0  # of a column's speeds from row to row are usual ones
 FASTER = 5.0  # times the usual speed; honest logs of two outputs reached 1.5 in both at once
 LEAST_STEPS = 20.0  # encoder steps in a sample period that each output must leap by: a quiet log usually moves by one
 NEAR_ROWS = 5  # to both sides: a mass that is thrown is fast in the next rows too, and a reading that fails comes back
-LONGEST_HELD_S = (
-    0.2  # readings that were repeated so long move on by all that they missed; longer ones are dead stretches
-)
+LONGEST_HELD_S = 0.2  # readings repeated so long move on by all that they missed; longer ones are dead stretches
 SHOWN = 3
 
 

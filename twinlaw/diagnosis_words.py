@@ -27,14 +27,7 @@ _CLASSES = {
     "inertia": "an inertia",
 }
 _SIGNALS = {"1": "nothing (it is constant)", "t": "the time"}
-# Sentences of other parts whose figures say nothing to a reader.
-_PLAINER = (
-    (
-        re.compile(r"takes \d+ % of the hold-out's error away, -\d+ % at most"),
-        "takes none of the hold-out's error away",
-    ),
-    (re.compile(r"would be (\d+) nats likelier"), r"would be e^\1 times likelier"),
-)
+_NATS = re.compile(r"(\d+) nats likelier")  # which say nothing to a reader
 LISTED = 3  # names in one cell
 USUAL = 0.5  # chance from which a gap is no larger than usual
 LEAST_CHANCE = 1e-6  # smaller ones are said to be below it: no model of noise is good for more
@@ -83,13 +76,8 @@ def shown(name: str) -> tuple[str, str, float]:
 
 
 def plain_notes(notes: Sequence[str]) -> list[str]:
-    """Each note once, without figures that have no meaning."""
-    plainer = []
-    for note in notes:
-        for pattern, plain in _PLAINER:
-            note = pattern.sub(plain, note)
-        plainer.append(note)
-    return list(dict.fromkeys(plainer))
+    """Each note once, in words that need no statistics."""
+    return list(dict.fromkeys(_NATS.sub(r"e^\1 times likelier", note) for note in notes))
 
 
 def plain_unit(unit: str) -> str:
