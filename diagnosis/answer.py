@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from diagnosis.case import Case
 from diagnosis.curve import shape_of
 from diagnosis.detect import FormScores
+from diagnosis.error_response import error_responses
 from diagnosis.holdout import Holdout
 from diagnosis.hypothesis import passes
 from diagnosis.improved import estimates, improved_plant
@@ -39,6 +40,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         when=time_map(case, energy),
         regions=region_map(case, energy),
         bands=band_map(case, before, after),
+        error_responses=error_responses(found.ground),
         firmware=material.firmware,
         effects=tuple(
             _hypothesis(case, weighed, tried, probability)

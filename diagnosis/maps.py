@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.case import Case
+from diagnosis.spectra import BANDS_HZ, averages, coherence, power
 from records.diagnosis import Band, Region, Span
 
 Array = NDArray[np.float64]
 SPANS, REGIONS = 12, 8
-BANDS_HZ = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 LEAST_SHARE = 0.02
+KNOWN_TO = 0.25  # of a response, to which it must be known for its band to be named
 
 
 def removed_energy(before: Sequence[Array], after: Sequence[Array]) -> list[Array]:
@@ -48,23 +49,29 @@ def region_map(case: Case, energy: Sequence[Array]) -> tuple[Region, ...]:
 
 
 def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tuple[Band, ...]:
-    """Shares of frequency bands, largest first."""
-    power = np.zeros(len(BANDS_HZ) - 1)
-    for flight, one, other in zip(case.flights, before, after, strict=True):
-        change = np.nan_to_num(one - other)
-        step_s = flight.step_s
-        spectrum = np.sum(np.abs(np.fft.rfft(change, axis=0)) ** 2, axis=1)
-        frequency = np.fft.rfftfreq(len(change), step_s)
-        power += np.histogram(frequency, BANDS_HZ, weights=spectrum)[0]
-    total = power.sum()
-    if total <= 0.0:
+    """Shares of frequency bands in what a hypothesis takes off the innovations (rows, slots), largest first, with their coherence.
+
+    A band is named where some output's coherence gamma^2 of the error with what is taken off supports it: where the random error
+    sqrt((1 - gamma^2) / (2 n gamma^2)) of the response between them (Bendat and Piersol), n frequencies averaged, is KNOWN_TO at most.
+    """
+    steps_s = [flight.step_s for flight in case.flights]
+    errors, gone = _by_slot(before), _by_slot([one - other for one, other in zip(before, after, strict=True)])
+    strength = np.sum([power(parts, steps_s) for parts in gone], axis=0)
+    if strength.sum() <= 0.0:
         return ()
-    bands = [
-        Band(BANDS_HZ[i], BANDS_HZ[i + 1], float(power[i] / total))
-        for i in range(len(power))
-        if power[i] > LEAST_SHARE * total
+    shares = strength / strength.sum()
+    found = np.max([coherence(error, part, steps_s) for error, part in zip(errors, gone, strict=True)], axis=0)
+    supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) * KNOWN_TO**2)
+    rows = [
+        Band(BANDS_HZ[i], BANDS_HZ[i + 1], float(shares[i]), float(found[i]))
+        for i in np.flatnonzero(supported & (shares > LEAST_SHARE)).tolist()
     ]
-    return tuple(sorted(bands, key=lambda row: -row.share))
+    return tuple(sorted(rows, key=lambda row: -row.share))
+
+
+def _by_slot(flights: Sequence[Array]) -> list[list[Array]]:
+    """Innovations (rows, slots) by slot and flight, 0 where nothing was measured."""
+    return [[np.nan_to_num(flight[:, slot]) for flight in flights] for slot in range(flights[0].shape[1])]
 
 
 def _shares(where: Array, energy: Array, edges: Array) -> list[float]:

@@ -35,10 +35,9 @@ def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]])
     kit = ground.case.kit
     model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
     x = np.nan_to_num(by_step(run.x[:, : len(model.states)], tape.row))
-    given = (tape.t_s, *x.T, *tape.u.T, *kit.bound.p)
 
     def value(expression: sympy.Expr) -> Array:
-        return np.broadcast_to(np.asarray(_function(model, expression)(*given), float), tape.t_s.shape)
+        return value_of(model, expression, tape.t_s, x, tape.u, kit.bound.p)
 
     axes = {axis.name: axis for axis in model.axes if axis.position is not None}
     return Signals(
@@ -56,6 +55,12 @@ def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]])
         u={name: value(entry.variable) / entry.size for name, entry in model.places.inputs.items()},
         waves=waves,
     )
+
+
+def value_of(model: Model, expression: sympy.Expr, t_s: Array, x: Array, u: Array, p: Array) -> Array:
+    """An expression's values (steps,) at times t_s with states x (steps, states) and inputs u (steps, inputs)."""
+    found = _function(model, expression)(t_s, *x.T, *u.T, *p)
+    return np.broadcast_to(np.asarray(found, float), t_s.shape)
 
 
 @lru_cache(maxsize=256)

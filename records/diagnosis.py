@@ -45,11 +45,29 @@ class Region:
 
 @dataclass(frozen=True)
 class Band:
-    """How much of the gap lies between two frequencies."""
+    """How much of the gap lies between two frequencies, and the coherence of the model's error with what explains it there."""
 
     from_Hz: float
     to_Hz: float
     share: float
+    coherence: float | None = None
+
+
+@dataclass(frozen=True)
+class ErrorResponse:
+    """An output's answer to an input between two frequencies, G_rig / G_model - 1: its size, one standard deviation, and its phase.
+
+    `coherence` is that of the output's error with what its answers to the inputs explain of it.
+    """
+
+    output: str
+    input: str
+    from_Hz: float
+    to_Hz: float
+    error: float
+    sd: float
+    phase_rad: float
+    coherence: float
 
 
 @dataclass(frozen=True)
@@ -156,6 +174,7 @@ class Diagnosis:
     when: tuple[Span, ...] = ()
     regions: tuple[Region, ...] = ()
     bands: tuple[Band, ...] = ()
+    error_responses: tuple[ErrorResponse, ...] = ()
     firmware: Firmware | None = None
     effects: tuple[Hypothesis, ...] = ()
     unknown: Unknown = Unknown(0.0)
@@ -192,6 +211,7 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
         when=_list(Span, content, "when", where),
         regions=_list(Region, content, "regions", where),
         bands=_list(Band, content, "bands", where),
+        error_responses=_list(ErrorResponse, content, "error_responses", where),
         firmware=_optional(Firmware, content, "firmware", where),
         effects=_list(Hypothesis, content, "effects", where),
         unknown=_record(Unknown, content["unknown"], f"{where}: unknown"),

@@ -7,6 +7,7 @@ from diagnosis.notes import HIDDEN, UNSEEN
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.block_diagram import block_diagram
+from twinlaw.diagnosis_answers import answers_section
 from twinlaw.diagnosis_firmware import differs, firmware_first, firmware_in_words
 from twinlaw.diagnosis_pictures import Predicted, curves, maps, shape_section
 from twinlaw.diagnosis_retune import Moved, lowered, moved_in_words, parameters_alone
@@ -57,7 +58,13 @@ def diagnosis_page(
     elif retuned:
         sections.append(Section("What re-tuning moved", (retuned,)))
     sections += [curves(log) for log in predicted]
-    sections += [maps(diagnosis), None if amiss else firmware, _unseen(diagnosis), _notes(diagnosis)]
+    sections += [
+        maps(diagnosis),
+        answers_section(diagnosis),
+        None if amiss else firmware,
+        _unseen(diagnosis),
+        _notes(diagnosis),
+    ]
     return Page(
         title=f"{plant}: where the model and the rig part",
         verdict=verdict_sentence(diagnosis),

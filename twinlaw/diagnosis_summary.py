@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from records.diagnosis import Diagnosis
 from twinlaw import console
+from twinlaw.diagnosis_answers import largest_answer
 from twinlaw.diagnosis_firmware import firmware_first, firmware_in_words
 from twinlaw.diagnosis_retune import Moved, lowered, moved_in_words, parameters_alone
-from twinlaw.diagnosis_words import alarm_in_words, class_in_words, plain_notes, shown, sized
+from twinlaw.diagnosis_words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
 
 MOST = 5
 
@@ -24,7 +25,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     if p is None:
         yield diagnosis.verdict
     elif diagnosis.verdict == "gap":
-        yield f"gap (chance of so large a gap without one: {p:.2g})"
+        yield f"gap (chance of so large a gap without one: {chance(p)})"
     else:
         yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis.verdict, p)}"
     if diagnosis.verdict == "gap":
@@ -33,6 +34,8 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
         yield f"sparse regression suggests: {diagnosis.unknown.form}"
     if diagnosis.places and diagnosis.verdict == "gap":
         yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
+    if largest_answer(diagnosis):
+        yield largest_answer(diagnosis)
     yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")
     yield from _retuned(diagnosis, moved)
     if diagnosis.found and diagnosis.shrinkage is not None and diagnosis.shrinkage.fraction is not None:

@@ -1,0 +1,120 @@
+"""By how much, and how late, each output answers each input otherwise than the model says, by frequency, with coherence.
+
+A whitened error of the model is
+
+(1)  e = D R + white noise,
+
+R the model's own whitened answer to an input and D = G_rig / G_model - 1 the error of that response (Ljung's model error model).
+Under feedback an input answers the noise before it, so that cross-spectra of e and R are biased; D is sought as a filter of the input's
+past instead, of which noise yet to come knows nothing.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+
+from diagnosis.filter import Disturbances
+from diagnosis.ground import Ground
+from diagnosis.hypothesis import coefficients
+from diagnosis.signals import by_step, value_of
+from diagnosis.spectra import BANDS_HZ, coherence, cross_power, power
+from records.diagnosis import ErrorResponse
+
+Array = NDArray[np.float64]
+ByFlight = Sequence[Array]
+MEMORY_S = 0.6  # of the filter sought: errors that last longer show as errors of slow answers
+BELIEVED = 0.6  # coherence below which a frequency response is not read (Tischler and Remple 2012)
+SURE = 3.0  # standard deviations that an error must be from none
+HARDLY = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
+TINY = 1e-300
+
+
+def error_responses(ground: Ground) -> tuple[ErrorResponse, ...]:
+    """The error responses that the logs support, by output, input and band."""
+    kit = ground.case.kit
+    answers = {str(u): _answers(ground, column) for column, u in enumerate(kit.bound.model.inputs)}
+    found: list[ErrorResponse] = []
+    for output, slot in zip(kit.outputs, ground.case.slots, strict=True):
+        if slot < 0:
+            continue
+        own = {u: [part[:, slot] for part in parts] for u, parts in answers.items()}
+        strength = {u: sum(float(np.sum(part[:, 0] ** 2)) for part in parts) for u, parts in own.items()}
+        moving = {u: own[u] for u in own if strength[u] > HARDLY * max(strength.values())}
+        if moving:
+            found += _of_output(ground, output, moving, [part[:, slot] for part in _by_flight(ground, ground.w)])
+    return tuple(found)
+
+
+def _of_output(
+    ground: Ground, output: str, answers: Mapping[str, ByFlight], errors: ByFlight
+) -> Iterator[ErrorResponse]:
+    """(1) for one output, its answers (rows, taps) by input: all filters at once by least squares, read off by input and band."""
+    steps_s = [flight.step_s for flight in ground.case.flights]
+    X = np.hstack([np.concatenate(parts) for parts in answers.values()])
+    covariance = np.linalg.pinv(X.T @ X)
+    taps = covariance @ (X.T @ np.concatenate(errors))
+    explained = np.split(X @ taps, np.cumsum([len(part) for part in errors])[:-1])
+    believed = coherence(errors, explained, steps_s)
+    for place, (u, parts) in enumerate(answers.items()):
+        own = slice(place * parts[0].shape[1], (place + 1) * parts[0].shape[1])
+        at_once = [part[:, 0] for part in parts]
+        read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), TINY)[:, None]
+        for band in np.flatnonzero(believed > BELIEVED).tolist():
+            error = complex(read[band] @ taps[own])
+            sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
+            if abs(error) > SURE * sd:
+                low, high = BANDS_HZ[band : band + 2]
+                yield ErrorResponse(output, u, low, high, abs(error), sd, float(np.angle(error)), float(believed[band]))
+
+
+def _answers(ground: Ground, column: int) -> list[Array]:
+    """The model's whitened answers to an input's departures from its mean, at once and later, by flight (rows, slots, taps)."""
+    model = ground.case.kit.bound.model
+    lags_s = _lags_s(min(flight.step_s for flight in ground.case.flights))
+    total = np.zeros((len(ground.w), len(lags_s)))
+    for state, rate in enumerate(model.state_rates().subs(dict.fromkeys(model.friction_signs, 0))):
+        if model.inputs[column] in rate.free_symbols:
+            pushes = [_pushes(ground, flight, rate, column, lags_s) for flight in range(len(ground.tapes))]
+            total += ground.answer(pushes, state)
+    return _by_flight(ground, total)
+
+
+def _lags_s(step_s: float) -> Array:
+    """Lags from none on, doubled from a step to the memory's end."""
+    doublings = int(np.ceil(np.log2(max(MEMORY_S / step_s, 2.0))))
+    return step_s * np.append(0.0, 2.0 ** np.arange(doublings + 1))
+
+
+def _pushes(ground: Ground, flight: int, rate: sympy.Expr, column: int, lags_s: Array) -> Disturbances:
+    """What an input's departure from its mean, by each lag later, does to a state over each step (steps, taps)."""
+    case, tape, run = ground.case, ground.tapes[flight], ground.runs[flight]
+    model, p = case.kit.bound.model, coefficients(case, case.kit.plain, ground.fit.supposed)[: case.kit.own]
+    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], tape.row))
+    h = np.append(np.diff(tape.t_s), 0.0)
+    mean = np.mean(tape.u[:, column])
+
+    def rates(departure: Array) -> Array:
+        u = tape.u.copy()
+        u[:, column] = mean + departure
+        return value_of(model, rate, tape.t_s, x, u, p)
+
+    still = rates(np.zeros(len(h)))
+    later = _later(tape.u[:, column] - mean, float(np.median(h[:-1])), lags_s)
+    pushes = np.stack([h * (rates(departure) - still) for departure in later], axis=1)
+    return lambda part: pushes[part]
+
+
+def _later(departure: Array, step_s: float, lags_s: Array) -> Iterator[Array]:
+    """A signal by each lag later, as its mean under the triangle between the lags beside."""
+    ages_s = step_s * np.arange(int(lags_s[-1] / step_s) + 1)
+    for unit in np.eye(len(lags_s)):
+        triangle = np.interp(ages_s, lags_s, unit)
+        yield np.convolve(departure, triangle / max(triangle.sum(), 1.0))[: len(departure)]
+
+
+def _by_flight(ground: Ground, rows: Array) -> list[Array]:
+    """Stacked innovations (rows, ...) by flight (rows, slots, ...)."""
+    parts = np.split(rows, np.cumsum([run.w.size for run in ground.runs])[:-1])
+    return [part.reshape(*run.w.shape, *rows.shape[1:]) for part, run in zip(parts, ground.runs, strict=True)]
