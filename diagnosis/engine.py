@@ -139,7 +139,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     case, retuned = seen.case, seen.retuned
     best = found.tried[0] if found.tried[0].effects else found.tried[-1]
     left = left_beside(form_scores(ground_of(case, best.fit)), best.effects)
-    weighed = weigh(found.tried, retuned, left, None if beyond is None else beyond.score, case.kit.frictionless)
+    retune_score = None if beyond is None else beyond.score
+    weighed = weigh(found.tried, retuned, left, retune_score, case.kit.frictionless, case.kit.steps)
     holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
     told: tuple[str, ...] = ()
     if holdout is not None:

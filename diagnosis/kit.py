@@ -91,6 +91,12 @@ class Kit:
         model, known = self.bound.model, named_values(self.bound.model, self.bound.p)
         return frozenset(axis.name for axis in model.axes if sympy.sympify(axis.coulomb).xreplace(known) == 0)
 
+    @cached_property
+    def steps(self) -> Mapping[str, float]:
+        """Each sensor's step by place, in the unit of what it reads."""
+        sensors, known = self.bound.model.places.sensors, self.bound.plant.sensors
+        return {place: known.get(sensor.output, 0.0) for place, sensor in sensors.items()}
+
     @property
     def own(self) -> int:
         """How many coefficients are the plant's own; they come first in every variant."""

@@ -1,6 +1,6 @@
 """What one believes of effects before any log: the common ones come before the rare, a size of the wrong sign is no such effect."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.trial import Tried
@@ -41,11 +41,12 @@ OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another n
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
 
 
-def prior_odds(tried: Tried, frictionless: Collection[str] = ()) -> float:
+def prior_odds(tried: Tried, frictionless: Collection[str] = (), steps: Mapping[str, float] = {}) -> float:
     """Log of how much less probable a hypothesis is before the data than one of as many common effects; `frictionless` are the axes
-    that have no dry friction as stated."""
+    that have no dry friction as stated, `steps` those of the sensors by place, in the unit of what they read."""
     one_way = sum(name.endswith(".friction_asymmetry") and name.split(".")[0] in frictionless for name in tried.effects)
-    return sum(_odds(name, tried) for name in tried.effects) - ONE_WAY_ALONE * one_way
+    rounding = sum(_is_rounding(name, tried, steps) for name in tried.effects)
+    return sum(_odds(name, tried) for name in tried.effects) - ONE_WAY_ALONE * one_way - NOTHING_NEW * rounding
 
 
 def _odds(name: str, tried: Tried) -> float:
@@ -74,6 +75,13 @@ def at_its_end(name: str, tried: Tried) -> bool:
     own = [entry.parameter for entry in tried.fit.free if entry.effect == name]
     numbers = [parameter for parameter in own if parameter.is_size or parameter.symbol == "waves"]
     return any(values[number.symbol] in {number.lower, number.upper} - {number.zero} for number in numbers)
+
+
+def _is_rounding(name: str, tried: Tried, steps: Mapping[str, float]) -> bool:
+    """Whether a sensor's cyclic error is less than what its own rounding may be: at a steady speed rounding beats with the samples, which
+    swings with the angle too."""
+    place, kind = name.split(".")
+    return kind == "cyclic" and abs(tried.fit.supposed.effects[name]["amplitude"]) < 0.5 * steps.get(place, 0.0)
 
 
 def _left_by_losses(name: str, tried: Tried) -> bool:

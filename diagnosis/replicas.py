@@ -77,7 +77,9 @@ def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Gen
     symbol = str(kit.bound.model.outputs[name])
     column = kit.states.index(symbol) if symbol in kit.states else -1
     way = tape.y[:, place] if column < 0 else ground.runs[index].filtered[np.maximum(tape.row, 0), column]
-    exact = np.nan_to_num(way)[:, None] + rng.uniform(0.0, step, count) + 0.3 * step * _wander(len(way), count, rng)
+    # How far the way itself is off nobody knows: least where a steady speed makes rounding beat with the samples.
+    off = rng.uniform(0.0, 0.3 * step, count) * _wander(len(way), count, rng)
+    exact = np.nan_to_num(way)[:, None] + rng.uniform(0.0, step, count) + off
     error += np.round(exact / step) * step - exact
     sharp = tape.r[:, place] < tape.single[place]
     error[sharp] = rng.uniform(-0.5, 0.5, (int(sharp.sum()), count)) * np.sqrt(12.0 * tape.r[sharp, place, None])

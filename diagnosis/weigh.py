@@ -1,6 +1,6 @@
 """From evidence to probabilities that mean something: tempered by how far the forms of the library may be from the truth."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,9 +62,10 @@ def weigh(
     left: float,
     retune: float | None = None,
     frictionless: Collection[str] = (),
+    steps: Mapping[str, float] = {},
 ) -> Weighed:
     """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them, `retune`
-    is the evidence for parameters beyond their spread, `frictionless` as in prior.py."""
+    is the evidence for parameters beyond their spread, `frictionless` and `steps` as in prior.py."""
     named = [entry for entry in tried if entry.effects]
     if not named:
         return _nameless(nominal, left, retune)
@@ -74,7 +75,7 @@ def weigh(
     formed = max(best - _read_off(named, first, nominal).evidence, 0.0)
     scale = ALIKE + OFF_FORM * formed**OFF_POWER + OFF_SHARE * min(formed, FARTHEST)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
-    scores += [prior_odds(entry, frictionless) for entry in named]
+    scores += [prior_odds(entry, frictionless, steps) for entry in named]
     strain = np.array([_strain(entry) for entry in named])
     scores -= strain - strain.min()
     expected = LEFT_NATS + LEFT_SHARE * whole

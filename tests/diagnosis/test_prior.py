@@ -70,6 +70,16 @@ def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
     )
 
 
+def test_a_cyclic_error_of_less_than_half_a_count_is_the_rounding_itself() -> None:
+    # Truth: rounding to steps of q is a sawtooth of the angle, whose first sine is of q / pi; read at a steady speed, it beats slowly.
+    step_rad = 2e-3
+    small, large = (
+        tried(phi_sensor__cyclic={"amplitude": a, "waves": 5.0, "phase": 0.0}) for a in (step_rad / np.pi, -step_rad)
+    )
+    assert prior_odds(small, steps={"phi_sensor": step_rad}) < prior_odds(large, steps={"phi_sensor": step_rad}) - 5.0
+    assert prior_odds(small, steps={"phi_sensor": 0.0}) == prior_odds(large)
+
+
 def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
     # Truth: twice the friction one way only is the same both ways beside a pull, which gravity's own moment takes over.
     one_way, both = tried(azimuth__friction_asymmetry={"difference": 4e-4}), tried(azimuth__coulomb={"b": 2e-4})
