@@ -41,7 +41,8 @@ class Flight:
 class Case:
     """All flights of one plant, and the slot that each output's innovations take (-1: never measured).
 
-    `stated` are effects that the plant file itself states, by symbol, with `stated_sd`: every hypothesis supposes them. `spread`
+    `stated` are effects that the plant file itself states, by symbol, with `stated_sd`: every hypothesis supposes them. `draws` are those
+    that each run shows otherwise, which none does: the noise fitted to these logs stands for them. `spread`
     (free, free) is a root S of the correlation C = S S' that it states of its coefficients, None where they are independent.
     """
 
@@ -51,6 +52,7 @@ class Case:
     free: NDArray[np.int64]
     stated: Mapping[str, Values] = field(default_factory=dict)
     stated_sd: Mapping[str, Values] = field(default_factory=dict)
+    draws: Mapping[str, Values] = field(default_factory=dict)
     spread: Array | None = None
 
     def added(self, effects: Iterable[str]) -> tuple[str, ...]:
@@ -99,8 +101,9 @@ def make_case(
     entries = {} if stated is None else stated.effects
     values = {name: {symbol: entry.values[0] for symbol, entry in own.items()} for name, own in entries.items()}
     sd = {name: {symbol: entry.sds[0] for symbol, entry in own.items()} for name, own in entries.items()}
+    draws = {name: values.pop(name) for name in list(values) if not kit.effects[name].repeats}
     free = np.flatnonzero(kit.bound.sd > 0.0)
-    return Case(kit, flights, slots, free, values, sd, _spread(kit.bound, free))
+    return Case(kit, flights, slots, free, values, sd, draws, _spread(kit.bound, free))
 
 
 def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:

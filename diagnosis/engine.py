@@ -11,10 +11,11 @@ from diagnosis.detect import Detection, detect, form_scores
 from diagnosis.doubt import contradicting, doubt
 from diagnosis.fit import Fit, fit
 from diagnosis.ground import ground_of
+from diagnosis.gusts import gusts
 from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
-from diagnosis.kit import make_kit
+from diagnosis.kit import is_gust, make_kit
 from diagnosis.lost_frames import with_losses
 from diagnosis.near_rest import needed, yielding
 from diagnosis.result import Judged, Material, Result, Seen
@@ -26,7 +27,7 @@ from diagnosis.trial import Tried, evidence
 from diagnosis.unknown import left_beside
 from diagnosis.unrest import FIRST_STEP, unrest_of
 from diagnosis.usual import with_usual
-from diagnosis.weigh import weigh
+from diagnosis.weigh import Weighed, weigh
 from diagnosis.wiring import demand_wiring
 from records.errors import BadInput
 from sim.bind import BoundPlant
@@ -36,6 +37,7 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
+WELL_EXPLAINED = 0.85  # probability of a name from which the air is not asked
 ASKED = 4  # hypotheses beside which axes may yield
 # Of what the best single effect explains, that yielding axes must explain besides: 0.02 at EMPS, whose friction is dry, 1 and more
 # where rigs do yield.
@@ -137,10 +139,12 @@ def _alone(seen: Seen) -> Alone:
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> Judged:
     """Weigh what was found, and check it on the hold-out."""
     case, retuned = seen.case, seen.retuned
-    best = found.tried[0] if found.tried[0].effects else found.tried[-1]
-    left = left_beside(form_scores(ground_of(case, best.fit)), best.effects)
-    retune_score = None if beyond is None else beyond.score
-    weighed = weigh(found.tried, retuned, left, retune_score, case.kit.frictionless, case.kit.steps)
+    left, weighed = _weighed(seen, found, beyond)
+    if max(weighed.retune, *weighed.probabilities, 0.0) < WELL_EXPLAINED:
+        further = [entry for entry in gusts(case, retuned) if entry.evidence > found.tried[0].evidence]
+        if further:
+            found = replace(found, tried=tuple(sorted((*found.tried, *further), key=lambda entry: -entry.evidence)))
+            left, weighed = _weighed(seen, found, beyond)
     holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
     told: tuple[str, ...] = ()
     if holdout is not None:
@@ -152,6 +156,15 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
         chosen = helpful(holdout, chosen)
         notes = (*notes, *holdout.notes) if chosen is holdout.base else notes
     return Judged(found, beyond, weighed, chosen, holdout, notes)
+
+
+def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
+    """What forms still gain beside the best that was found, and the probabilities; all that swings beside a gust is a form of its own."""
+    best = found.tried[0] if found.tried[0].effects else found.tried[-1]
+    own = [name for name in best.effects if not is_gust(name)]
+    left = left_beside(form_scores(ground_of(seen.case, best.fit)), own)
+    score = None if beyond is None else beyond.score
+    return left, weigh(found.tried, seen.retuned, left, score, seen.case.kit.frictionless, seen.case.kit.steps)
 
 
 def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Holdout | None:

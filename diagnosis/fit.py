@@ -10,7 +10,7 @@ from diagnosis.case import Case
 from diagnosis.filter import Pass
 from diagnosis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
 from diagnosis.inputs import LOST_FRAMES, share_slopes
-from diagnosis.kit import is_lag
+from diagnosis.kit import is_gust, is_lag
 from sim.effects.effect import EffectParameter
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[F
     found = []
     for name, values in supposed.effects.items():
         for parameter in case.kit.effects[name].parameters:
-            if seen_in_readings(name) or parameter.symbol == SCATTERS:
+            if seen_in_readings(name) or is_gust(name) or parameter.symbol == SCATTERS:
                 continue
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))

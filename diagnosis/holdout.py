@@ -10,6 +10,7 @@ from diagnosis.fit import seen_in_readings, unfitted
 from diagnosis.hypothesis import nothing_supposed
 from diagnosis.inputs import LOST_FRAMES
 from diagnosis.instants import happens
+from diagnosis.kit import is_gust
 from diagnosis.predict import WINDOW_S
 from diagnosis.prior import at_its_end
 from diagnosis.retune import Retune
@@ -122,9 +123,9 @@ def _leaves_most(holdout: Holdout, tried: Tried, told: Shrinkage, left: float) -
     """Whether a hypothesis surely leaves most of the error, far above what the sensors leave.
 
     Where forms see next to nothing beside it, air as restless as it takes it to be may be all that is left. Events are not asked, nor
-    frames that are lost at random.
+    what happens at random: lost frames, gusts.
     """
-    if any(name == LOST_FRAMES or _is_event(holdout.case, tried, name) for name in tried.effects):
+    if any(name == LOST_FRAMES or is_gust(name) or _is_event(holdout.case, tried, name) for name in tried.effects):
         return False
     floor = _floor(holdout.case, tried, told)
     floor = floor if left > LEFT_NATS else _in_air(holdout.case, tried, floor)

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from diagnosis.abreast import each
 from diagnosis.case import Case, Flight
 from diagnosis.filter import Noise, Pass
+from diagnosis.gusty import gust_state
 from diagnosis.inputs import commanded
-from diagnosis.kit import Kit, Variant, is_lag
+from diagnosis.kit import Kit, Variant, is_gust, is_lag
 from diagnosis.sensors import sensed
 from diagnosis.start import RUB_S
 from diagnosis.tape import Tape
@@ -73,10 +74,13 @@ def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, f
 
 
 def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed) -> Noise:
-    """The filter's noise: on each axis' speed its unrest, next to none elsewhere."""
+    """The filter's noise: on each axis' speed its unrest, on gusts their own, next to none elsewhere."""
     x0, p0 = start_under(variant, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     q[list(case.kit.velocities)] = 10.0 ** (2.0 * supposed.unrest)
+    for name in filter(is_gust, supposed.effects):
+        place, values = variant.states.index(gust_state(name)), supposed.effects[name]
+        q[place], p0[place] = 2.0 * values["sigma"] ** 2 / values["T"], values["sigma"] ** 2
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
     return Noise(q, np.full(max(1, len(variant.filter.axes)), RUB_S), p0, drive, flight.step_s)
 

@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.fit import GRID_SD, SCATTERS, Fit, seen_in_readings
+from diagnosis.gusts import gust_sd
 from diagnosis.hypothesis import coefficients
 from diagnosis.jitter import jitter_sd, scatters
+from diagnosis.kit import is_gust
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -41,10 +43,12 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    if not fit.supposed.effects:
+    effects = {**fit.supposed.effects, **case.draws}
+    if not effects:
         return plant
     sizes = {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
-    return with_effects(bound, fit.supposed.effects, sd=sizes, source="found by twinlaw diagnose").plant
+    sizes |= {name: dict(case.stated_sd[name]) for name in case.draws}
+    return with_effects(bound, effects, sd=sizes, source="found by twinlaw diagnose").plant
 
 
 def _correlation(case: Case, fit: Fit) -> Correlation | None:
@@ -74,6 +78,11 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
         (name, SCATTERS): case.stated_sd[name][SCATTERS] if name in case.stated else jitter_sd(case, fit.supposed, name)
         for name in fit.supposed.effects
         if scatters(case, name)
+    }
+    sd |= {
+        (name, symbol): deviation
+        for name in filter(is_gust, fit.supposed.effects)
+        for symbol, deviation in gust_sd(case, fit.supposed, name).items()
     }
     return {
         name: {

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 import sim
 from diagnosis.abreast import ahead
 from diagnosis.filter import Filter, build_filter, equations_text, open_filter
+from diagnosis.gusty import gusty
 from diagnosis.lagged import lagged
 from records.errors import BadInput
 from records.files import write_atomic
@@ -72,7 +73,7 @@ class Kit:
     @cached_property
     def candidates(self) -> tuple[str, ...]:
         """Effects that name a gap and are more than another value of one of the plant's own coefficients."""
-        gaps = (name for name, effect in self.effects.items() if effect.names_a_gap)
+        gaps = (name for name, effect in self.effects.items() if effect.names_a_gap and effect.repeats)
         return tuple(name for name in gaps if not redundant(self.bound, self.effects[name]))
 
     @cached_property
@@ -120,7 +121,7 @@ class Kit:
     @property
     def whole(self) -> tuple[str, ...]:
         """All effects that any variant carries."""
-        return (*self.narrow, *self.wide_names, *self.bristles)
+        return (*self.narrow, *self.wide_names, *self.bristles, *filter(is_gust, self.effects))
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
@@ -142,6 +143,11 @@ def is_lag(name: str) -> bool:
     return name.endswith("_sensor.lag")
 
 
+def is_gust(name: str) -> bool:
+    """Whether an effect is a gust, which the filter carries as a state with noise of its own, and the simulation as one draw of it."""
+    return name.endswith(".gust")
+
+
 def make_kit(bound: BoundPlant) -> Kit:
     """The kit of a nominal plant."""
     effects = library(bound)
@@ -156,7 +162,7 @@ def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str,
     """Effects on the equations, by whether they bring a state or an axis."""
     found: dict[str, list[str]] = {"stateless": [], "others": []}
     for name, effect in effects.items():
-        if effect.on_equations:
+        if effect.on_equations and effect.repeats:
             model = combined(bound, [name]).model
             same = len(model.states) == len(bound.model.states) and len(model.axes) == len(bound.model.axes)
             found["stateless" if same else "others"].append(name)
@@ -187,12 +193,12 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
 
     The states come in the order of how often several are awake at once: the filter leaves whole blocks of sleepers alone.
     """
-    behind = [name for name in names if is_lag(name)]
-    switched = [name for name in names if name not in behind]
+    behind, gusts = [name for name in names if is_lag(name)], [name for name in names if is_gust(name)]
+    switched = [name for name in names if name not in (*behind, *gusts)]
     effects = library(bound)
     values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
     values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
-    values |= {coefficient(name, "tau"): effects[name].size.reference for name in behind}
+    values |= {coefficient(name, p.symbol): p.reference for name in (*behind, *gusts) for p in effects[name].parameters}
     with EQUATIONS:
         model = switched_model(bound.plant.model, tuple(switched))
         for name in behind:
@@ -200,6 +206,8 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
         brought = model.states[len(bound.model.states) :]
         late = brought[len(brought) - len(behind) :]
         model = replace(model, states=(*bound.model.states, *late, *brought[: len(brought) - len(behind)]))
+        for name in gusts:
+            model = gusty(model, name)
         model = observed(model, bound.model)
         equations = equations_text(model)
     parameters = [str(symbol) for symbol in model.parameter_symbols]
@@ -242,7 +250,7 @@ def _sources() -> bytes:
     root = Path(sim.__file__).resolve().parent
     here = Path(__file__).resolve().parent
     files = [path for folder in (root, here / "c") for path in folder.rglob("*") if path.suffix in (".py", ".c", ".h")]
-    for path in sorted([*files, *(here / name for name in ("kit.py", "filter.py", "lagged.py"))]):
+    for path in sorted([*files, *(here / name for name in ("kit.py", "filter.py", "gusty.py", "lagged.py"))]):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.digest()
 

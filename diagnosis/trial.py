@@ -11,6 +11,7 @@ from diagnosis.case import Case
 from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
 from diagnosis.hypothesis import Supposed, passes
 from diagnosis.jitter import scatters, with_jitter
+from diagnosis.kit import is_gust
 from diagnosis.screen import Look, holding
 from diagnosis.start import FIRST_UNREST
 from diagnosis.unrest import unrest_of, with_unrest
@@ -18,6 +19,7 @@ from diagnosis.unrest import unrest_of, with_unrest
 Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 WAVE_COST = 5.0  # nats for the choice of a sine's waves among some hundred
+GUST_COST = 10.0  # nats for a gust's size and time, which the fit does not count among its numbers
 SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 FAR = 1.0  # the same for a fit that was refined
@@ -57,6 +59,7 @@ def evidence(found: Fit) -> float:
     shapes = [row for row, is_size in new if not is_size]
     prior -= WAVE_COST * sum(entry.parameter.symbol in ("waves", "rate") for entry in found.free)
     prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.supposed.effects)
+    prior -= GUST_COST * sum(map(is_gust, found.supposed.effects))
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 

@@ -6,7 +6,7 @@ Rates by hand, RK4 with steps of half a millisecond, inputs as functions of cont
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, exp, floor, pi, sin, tanh
+from math import cos, exp, floor, pi, sin, sqrt, tan, tanh
 from types import SimpleNamespace
 from typing import Any
 
@@ -39,6 +39,12 @@ def sgn(x: float) -> float:
 
 def squared(x: float) -> float:
     return x * abs(x)
+
+
+def draught(t: float) -> float:
+    """16 sines, each holding a sixteenth of the power of a process that forgets in one unit of time, a golden section of a turn apart."""
+    slots = [(k, tan(pi * (k + 0.5) / 32)) for k in range(16)]
+    return sqrt(2 / 16) * sum(cos(rate * t + 2 * pi * k * (sqrt(5) - 1) / 2) for k, rate in slots)
 
 
 def ramp(t: float, at: float) -> float:
@@ -118,6 +124,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.detent": lambda s: s.amplitude * sin(s.waves * s.psi + s.phase),
     "elevation.periodic_torque": lambda s: s.amplitude * sin(s.rate * s.t + s.phase),
     "elevation.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
+    "elevation.gust": lambda s: s.sigma * draught(s.t / s.T),
     "elevation.centrifugal": lambda s: s.c * s.v_phi**2 * sin(2 * s.psi),
     "elevation.tail_gyroscopic": lambda s: s.K * s.w_T * s.v_phi,
     "elevation.tail_coupling": lambda s: s.k * s.w_T * abs(s.w_T),
@@ -143,6 +150,7 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.detent": lambda s: s.amplitude * sin(s.waves * s.phi + s.phase),
     "azimuth.periodic_torque": lambda s: s.amplitude * sin(s.rate * s.t + s.phase),
     "azimuth.disturbance": lambda s: s.torque * (ramp(s.t, s.t_0) - ramp(s.t, s.t_0 + s.duration)),
+    "azimuth.gust": lambda s: s.sigma * draught(s.t / s.T),
     "azimuth.gyroscopic": lambda s: -s.K * s.v_psi * s.w_M * sin(s.psi),
     "azimuth.coriolis": lambda s: s.c * sin(2 * s.psi) * s.v_psi * s.v_phi,
     "azimuth.quadratic_reaction": lambda s: -s.k * s.w_M * abs(s.w_M) * cos(s.psi),
