@@ -93,6 +93,7 @@ DRIVE_M = {"main_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
 DRIVE_T = {"tail_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
 RUB_M = {"main_rotor.dry_friction": lambda s: s.c * sgn(s.w_M)}
 RUB_T = {"tail_rotor.dry_friction": lambda s: s.c * sgn(s.w_T)}
+DRAG_T = {"tail_rotor.reverse_drag": lambda s: s.r if s.w_T < 0 else 1.0}
 THRUST_M = {"main_rotor.ground_effect": lambda s: 1 + s.a * exp(-(s.psi + pi / 4) / s.psi_0)}
 THRUST_T = {
     "tail_rotor.reverse_asymmetry": lambda s: s.r if s.w_T < 0 else 1.0,
@@ -260,7 +261,7 @@ class PlainRig:
         drive_M = p["K_M"] * u_M * DRIVE_M.get(name, one)(s)
         drive_T = p["K_T"] * u_T * DRIVE_T.get(name, one)(s)
         s.dw_M = drive_M - damping(p["p_bM"], s.w_M) - RUB_M.get(name, none)(s)
-        s.dw_T = drive_T - damping(p["p_bT"], s.w_T) - RUB_T.get(name, none)(s)
+        s.dw_T = drive_T - damping(p["p_bT"], s.w_T) * DRAG_T.get(name, one)(s) - RUB_T.get(name, none)(s)
         lift = p["l_M"] * odd(p["p_FM"], s.w_M) * THRUST_M.get(name, one)(s)
         push = p["l_T"] * odd(p["p_FT"], s.w_T) * THRUST_T.get(name, one)(s)
         elevation = (
