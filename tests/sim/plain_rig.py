@@ -77,6 +77,7 @@ INPUT_M: dict[str, Callable[[Any], float]] = {
     "main_input.saturation": lambda s: limited(s.u_M, s.limit, s.w),
     "main_input.supply_sag": lambda s: s.u_M * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "main_input.gain": lambda s: s.gain * s.u_M,
+    "loop.gain": lambda s: s.gain * s.u_M,
     "main_input.offset": lambda s: s.u_M + s.offset,
     "main_input.quantization": lambda s: s.q * floor(s.u_M / s.q + 0.5),
 }
@@ -85,6 +86,7 @@ INPUT_T: dict[str, Callable[[Any], float]] = {
     "tail_input.saturation": lambda s: limited(s.u_T, s.limit, s.w),
     "tail_input.supply_sag": lambda s: s.u_T * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "tail_input.gain": lambda s: s.gain * s.u_T,
+    "loop.gain": lambda s: s.gain * s.u_T,
     "tail_input.offset": lambda s: s.u_T + s.offset,
     "tail_input.driver_asymmetry": lambda s: s.u_T * (s.r if s.u_T < 0 else 1.0),
     "tail_input.quantization": lambda s: s.q * floor(s.u_T / s.q + 0.5),
