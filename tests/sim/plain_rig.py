@@ -93,9 +93,9 @@ INPUT_T: dict[str, Callable[[Any], float]] = {
 }
 DRIVE_M = {"main_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
 DRIVE_T = {"tail_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
+DRAG_T = {"tail_rotor.reverse_drag": lambda s: s.r if s.w_T < 0 else 1.0}
 RUB_M = {"main_rotor.dry_friction": lambda s: s.c * sgn(s.w_M)}
 RUB_T = {"tail_rotor.dry_friction": lambda s: s.c * sgn(s.w_T)}
-DRAG_T = {"tail_rotor.reverse_drag": lambda s: s.r if s.w_T < 0 else 1.0}
 THRUST_M = {"main_rotor.ground_effect": lambda s: 1 + s.a * exp(-(s.psi + pi / 4) / s.psi_0)}
 THRUST_T = {
     "tail_rotor.reverse_asymmetry": lambda s: s.r if s.w_T < 0 else 1.0,
@@ -154,7 +154,9 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.rotor_acceleration": lambda s: -s.J * s.dw_M * cos(s.psi),
     "tail_rotor.axial_inflow": lambda s: -s.c * abs(s.w_T) * s.v_phi,
 }
+INERTIA_E = {"elevation.balance_weight": lambda s: s.j * s.b * s.J_E}
 INERTIA_A = {
+    "elevation.balance_weight": lambda s: s.j * s.b * s.J_E * cos(s.psi) ** 2,
     "azimuth.inertia_shape": lambda s: s.J_0 + s.J_1 * cos(s.psi) ** 2,
     "azimuth.inertia_without_cosine": lambda s: s.a * s.J_A * (1 - cos(s.psi)),
 }
@@ -255,7 +257,9 @@ class PlainRig:
     def _rates(self, t: float, x: State, u: tuple[float, float]) -> State:
         p, name = self.p, self.name
         values = self.case.values if name else {}
-        s = SimpleNamespace(t=t, u_M=u[0], u_T=u[1], tau_g=p["tau_gE"], J_A=p["J_A"], Phi_lim=p["Phi_lim"], **values)
+        s = SimpleNamespace(
+            t=t, u_M=u[0], u_T=u[1], tau_g=p["tau_gE"], J_A=p["J_A"], J_E=p["J_E"], Phi_lim=p["Phi_lim"], **values
+        )
         s.b_cE, s.b_cA = p["b_cE"], p["b_cA"]
         s.w_M, s.psi, s.v_psi, s.w_T, s.phi, s.v_phi, s.z = x[:7]
         u_M, u_T = INPUT_M.get(name, lambda s: s.u_M)(s), INPUT_T.get(name, lambda s: s.u_T)(s)
@@ -274,8 +278,9 @@ class PlainRig:
         elevation += p["K_E"] * s.v_phi * s.w_M * sin(s.psi) - p["b_cE"] * sgn(s.v_psi) + TORQUE_E.get(name, none)(s)
         azimuth = (push - p["K_A"] * s.w_M) * cos(s.psi) - p["b_vA"] * s.v_phi - p["b_cA"] * sgn(s.v_phi)
         azimuth += TORQUE_A.get(name, none)(s)
+        tipping = p["J_E"] + INERTIA_E.get(name, none)(s)
         turning = p["J_A"] * cos(s.psi) + INERTIA_A.get(name, none)(s)
-        return [s.dw_M, s.v_psi, elevation / p["J_E"], s.dw_T, s.v_phi, azimuth / turning, *self._extra(s, x, u)]
+        return [s.dw_M, s.v_psi, elevation / tipping, s.dw_T, s.v_phi, azimuth / turning, *self._extra(s, x, u)]
 
     def _extra(self, s: Any, x: State, u: tuple[float, float]) -> list[float]:
         if self.name in HYSTERESIS:

@@ -71,9 +71,9 @@ VALUES: Mapping[str, Mapping[str, float]] = {
 }
 STARTS = {
     "tail_rotor.reverse_asymmetry": TAIL_BACKWARDS,
+    "tail_rotor.reverse_drag": TAIL_BACKWARDS,
     "elevation.creep": SLOW,
     "azimuth.creep": SLOW,
-    "tail_rotor.reverse_drag": TAIL_BACKWARDS,
     "elevation.upper_stop": NEAR_STOPS,
     "azimuth.upper_stop": NEAR_STOPS,
     "azimuth.lower_stop": NEAR_LOWER_STOP,
@@ -206,9 +206,9 @@ def test_all_effects_at_next_to_no_size_have_derivatives_by_their_sizes() -> Non
         "main_input.saturation",
         "tail_input.saturation",
         "tail_rotor.reverse_asymmetry",
+        "tail_rotor.reverse_drag",
     }
 
-        "tail_rotor.reverse_drag",
 
 def test_values_are_changed_without_touching_the_equations(everything: BoundPlant) -> None:
     other = with_values(everything, {"azimuth.cable_spring": {"k": 0.003}})
