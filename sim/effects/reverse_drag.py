@@ -19,7 +19,7 @@ def effects(model: Model) -> Iterator[Effect]:
             continue
         yield Effect(
             name=f"{place}.reverse_drag",
-            depends=f"drag(sgn omega_{rotor.letter})",
+            depends=f"torque(omega_{rotor.letter}, sgn omega_{rotor.letter})",
             parameters=(EffectParameter("r", "-", 0.2, 3.0, 1.2, 1.0),),
             equation="omega' = drive - r drag for omega < 0",
             story="Turning backwards, the propeller meets another drag than forwards: the same command turns it at another speed.",
