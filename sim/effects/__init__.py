@@ -34,6 +34,7 @@ from sim.effects import (
     lag,
     level_axis,
     load_friction,
+    missed_counts,
     quadratic_drag,
     quantization,
     reaction,
@@ -55,6 +56,7 @@ from sim.model import Model
 FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
     sensor_map.effects,
     flexible_mode.effects,
+    missed_counts.effects,
     coulomb.effects,
     stribeck.effects,
     load_friction.effects,

@@ -165,6 +165,10 @@ HYSTERESIS = {
     for axis, v in (("elevation", "v_psi"), ("azimuth", "v_phi"))
     for kind in ("cable_hysteresis", "presliding", "bristles")
 }
+MISSED = {
+    "psi_sensor.missed_counts": lambda s: -s.a * abs(s.u_M) / 10 * s.v_psi,
+    "phi_sensor.missed_counts": lambda s: -s.a * abs(s.u_T) / 10 * s.v_phi,
+}
 LAGS = {"main_input.lag": "u_M", "tail_input.lag": "u_T"}
 MODES = {"elevation.flexible_mode": ("psi", "v_psi"), "azimuth.flexible_mode": ("phi", "v_phi")}
 PLACE = {"psi_sensor": 0, "phi_sensor": 1, "elevation": 0, "azimuth": 1}
@@ -194,6 +198,8 @@ class PlainRig:
         v = SimpleNamespace(**self.case.values)
         if kind == "flexible_mode":
             return np.asarray(one + v.gain * self.s[:, 6])
+        if kind == "missed_counts":
+            return np.asarray(one + self.s[:, 6])
         if kind == "lag":
             return lagged(one, v.tau, self.s[0, 2 if PLACE[place] == 0 else 5])
         if kind == "backlash":
@@ -283,6 +289,8 @@ class PlainRig:
         return [s.dw_M, s.v_psi, elevation / tipping, s.dw_T, s.v_phi, azimuth / turning, *self._extra(s, x, u)]
 
     def _extra(self, s: Any, x: State, u: tuple[float, float]) -> list[float]:
+        if self.name in MISSED:
+            return [MISSED[self.name](s)]
         if self.name in HYSTERESIS:
             return [HYSTERESIS[self.name](s)]
         if self.name in LAGS:
