@@ -54,7 +54,8 @@ class Effect:
     it in plain text; `story` tells it to someone who knows the rig alone. `twins` are effects that data can hardly or not tell apart
     from it, each with the reason. Where `smooth` is false a fit needs the parameters' `starts` as a grid. `same_as` is the nominal
     plant's parameter that does the same where it is not 0. Where `names_a_gap` is false the nominal plant leaves open whether it is
-    there: a diagnosis supposes it where the logs ask for it, and calls that no gap.
+    there: a diagnosis supposes it where the logs ask for it, and calls that no gap. Where `followed` is false it has a phase that no filter
+    can follow: plants and simulations carry it, a diagnosis does not look for it and says so.
 
     It acts in one of three ways. `edit` changes the equations: edit(model, *symbols). `applied` says what arrives of the inputs at the
     equations, without memory: applied(*symbols) -> {input: expression}. `on_input` and `on_output` give a stage with memory on the way
@@ -75,6 +76,7 @@ class Effect:
     twins: Mapping[str, str] = field(default_factory=dict)
     same_as: str = ""
     names_a_gap: bool = True
+    followed: bool = True
 
     @property
     def place(self) -> str:

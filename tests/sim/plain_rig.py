@@ -116,6 +116,7 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.weight_shift": lambda s: -s.Delta * ramp(s.t, s.t_1) * cos(s.psi),
     "elevation.balance_weight": lambda s: -s.tau_g * s.b * cos(s.psi),
     "elevation.offset_force": lambda s: -s.offset,
+    "main_rotor.imbalance": lambda s: s.a * s.J_E * s.w_M**2 * sin(s.z),
     "elevation.wind": lambda s: s.c * cos(s.phi - s.Phi_w),
     "azimuth.tilt": lambda s: -s.e * s.m * cos(s.phi - s.Phi_0) * sin(s.psi),
     "elevation.upper_stop": lambda s: -s.k * max(s.psi - pi / 4 + s.a, 0.0),
@@ -152,6 +153,7 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.coriolis": lambda s: s.c * sin(2 * s.psi) * s.v_psi * s.v_phi,
     "azimuth.quadratic_reaction": lambda s: -s.k * s.w_M * abs(s.w_M) * cos(s.psi),
     "azimuth.rotor_acceleration": lambda s: -s.J * s.dw_M * cos(s.psi),
+    "tail_rotor.imbalance": lambda s: s.a * s.J_A * cos(s.psi) * s.w_T**2 * sin(s.z),
     "tail_rotor.axial_inflow": lambda s: -s.c * abs(s.w_T) * s.v_phi,
 }
 INERTIA_E = {"elevation.balance_weight": lambda s: s.j * s.b * s.J_E}
@@ -169,6 +171,7 @@ MISSED = {
     "psi_sensor.missed_counts": lambda s: -s.a * abs(s.u_M) / 10 * s.v_psi,
     "phi_sensor.missed_counts": lambda s: -s.a * abs(s.u_T) / 10 * s.v_phi,
 }
+TURNS = {"main_rotor.imbalance": ("w_M", 2), "tail_rotor.imbalance": ("w_T", 5)}
 LAGS = {"main_input.lag": "u_M", "tail_input.lag": "u_T"}
 MODES = {"elevation.flexible_mode": ("psi", "v_psi"), "azimuth.flexible_mode": ("phi", "v_phi")}
 PLACE = {"psi_sensor": 0, "phi_sensor": 1, "elevation": 0, "azimuth": 1}
@@ -224,6 +227,9 @@ class PlainRig:
             first[6] = self.u[0][0 if LAGS[self.name] == "u_M" else 1]
         if self.name in MODES:
             first[7] = self.case.start[2 if MODES[self.name][0] == "psi" else 5]
+        if self.name in TURNS:  # in the midst of shaking, about the same mean velocity
+            speed, velocity = TURNS[self.name]
+            first[velocity] -= self.case.values["a"] * first[0 if speed == "w_M" else 3]
         states, count = [first], round(0.4 / STEP_S)
         for k in range(count):
             states.append(self._step(BEGIN_S + k * STEP_S, states[-1], self._input(k)))
@@ -291,6 +297,8 @@ class PlainRig:
     def _extra(self, s: Any, x: State, u: tuple[float, float]) -> list[float]:
         if self.name in MISSED:
             return [MISSED[self.name](s)]
+        if self.name in TURNS:
+            return [getattr(s, TURNS[self.name][0])]
         if self.name in HYSTERESIS:
             return [HYSTERESIS[self.name](s)]
         if self.name in LAGS:
