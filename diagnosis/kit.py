@@ -60,8 +60,8 @@ class Variant:
 @dataclass(frozen=True, eq=False)
 class Kit:
     """A nominal plant with its library: `names` are effects on its equations without a state or an axis of their own, `wide_names`
-    those with, less `bristles`, whose states say what friction does near rest and are no gap. `outputs` are the plant's outputs, then
-    the states that a log may carry; `states` the plant's own."""
+    those with, less `bristles`, whose states say what friction does near rest and are no gap, and less those that no filter can
+    follow. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
 
     bound: BoundPlant
     effects: Mapping[str, Effect]
@@ -159,7 +159,7 @@ def make_kit(bound: BoundPlant) -> Kit:
 
 
 def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str, Any]:
-    """Effects on the equations, by whether they bring a state or an axis."""
+    """Effects on the equations that a filter can follow, by whether they bring a state or an axis."""
     found: dict[str, list[str]] = {"stateless": [], "others": []}
     for name, effect in effects.items():
         if effect.on_equations and effect.repeats:

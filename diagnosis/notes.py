@@ -7,6 +7,7 @@ import numpy as np
 from diagnosis.case import Case
 from diagnosis.fit import Fit, Free, away, size_scale
 from diagnosis.hypothesis import coefficients
+from diagnosis.kit import is_gust
 from diagnosis.screen import Look
 from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed, alike
@@ -17,6 +18,7 @@ IMITATED = 0.995
 BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
 HIDDEN = "effects of the library would go unseen in these logs"
 UNSEEN = "too little excitation to see"
+UNFOLLOWED = "not looked for, as no filter knows where a rotor stands in its turn"
 IMITATION = "a re-tune of the plant's own parameters imitates these, so these data cannot tell them"
 
 
@@ -28,6 +30,7 @@ def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed 
         *_twins(case, weighed),
         *_imitated(looks, chosen),
         *_unseen(case, looks, chosen),
+        *_unfollowed(case),
     )
 
 
@@ -116,6 +119,12 @@ def _unseen(case: Case, looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
         parts = [f"{never} of any size"] if never else []
         parts += [f"{kind} below {size}" for kind, size in sizes.items() if size is not None]
         yield f"{UNSEEN} at the {place}: {'; '.join(parts)}"
+
+
+def _unfollowed(case: Case) -> Iterator[str]:
+    names = [name for name, effect in case.kit.effects.items() if not (effect.repeats or is_gust(name))]
+    if names:
+        yield f"{UNFOLLOWED}: {', '.join(names)}"
 
 
 def _up_to(case: Case, name: str, ratio: float) -> str | None:

@@ -26,5 +26,8 @@ def effects(model: Model) -> Iterator[Effect]:
             story="The driver's bridge is stronger in one direction than in the other.",
             source="an H bridge that brakes one way and coasts the other",
             applied=lambda r, u=u: {u: u * (1 + (r - 1) * (1 - sympy.sign(u)) / 2)},
-            twins={f"{place.replace('input', 'rotor')}.reverse_asymmetry": "both scale what a reversed rotor does"},
+            twins={
+                f"{place.replace('input', 'rotor')}.reverse_asymmetry": "both scale what a reversed rotor does",
+                f"{place.replace('input', 'rotor')}.reverse_drag": "both change at what speed a reversed rotor turns",
+            },
         )

@@ -104,6 +104,13 @@ def knee(expression: Expression, width: Expression) -> Expression:
     return beyond + (positive(expression + width) - beyond) ** 2 * width / (4 * (width**2 + NOTHING))
 
 
+def lever(model: Model, name: str) -> Expression:
+    """How far out an axis that gravity turns holds its weight, as a share of the furthest: cos(psi) of an arm that is level at 0."""
+    place = model.places.axes[name]
+    assert place.gravity is not None
+    return -place.gravity / place.gravity_moment
+
+
 def step(at_s: Expression) -> Expression:
     """0 before the time `at_s` and 1 after it, straight in between over EDGE_S, half way up at `at_s`."""
     way = (TIME - at_s) / EDGE_S + sympy.Rational(1, 2)

@@ -1,6 +1,6 @@
 """A driver whose gain or zero is off.
 
-(1)  u -> gain u
+(1)  u -> gain u, of one input or of all that one battery feeds
 (2)  u -> u + offset
 """
 
@@ -11,7 +11,7 @@ from sim.model import Model
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eqs (1) and (2) on each input."""
+    """Eqs (1) and (2) on each input, (1) on all together where there are several."""
     for place, entry in model.places.inputs.items():
         u = entry.variable
         yield Effect(
@@ -25,6 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             twins={
                 f"{model.places.driven_by(u)}.warmup": "once warm, the drive is down by a constant share",
                 f"parameters of {model.places.driven_by(u)}": "identical: the gain from input to torque is one number",
+                "loop.gain": "the battery's gain is that of all inputs together",
             },
         )
         yield Effect(
@@ -39,3 +40,23 @@ def effects(model: Model) -> Iterator[Effect]:
             applied=lambda offset, u=u: {u: u + offset},
             twins={f"{place}.deadzone": "while the input keeps its sign, both add or take away a constant"},
         )
+    if len(model.places.inputs) > 1:
+        yield _battery(model)
+
+
+def _battery(model: Model) -> Effect:
+    inputs = {place: entry.variable for place, entry in model.places.inputs.items()}
+    names = " and ".join(map(str, inputs.values()))
+    return Effect(
+        name="loop.gain",
+        depends=f"gain of {names}",
+        parameters=(EffectParameter("gain", "-", 0.2, 3.0, 0.9, 1.0),),
+        equation="u -> gain u, every input",
+        story="All drivers give the same constant share more or less than they are told, as on another battery.",
+        source="one supply feeds all drivers",
+        applied=lambda gain: {u: gain * u for u in inputs.values()},
+        twins={
+            **{f"{place}.gain": "together they are the battery's gain" for place in inputs},
+            "parameters": "identical: the gain from each input to its torque is one number",
+        },
+    )

@@ -2,14 +2,18 @@
 
 (1)  tau_gE cos(Psi)  ->  tau_gE cos(Psi + delta)
 (2)  tau_gE -> tau_gE + Delta from the time t_1 on, within EDGE_S
-(3)  tau_gE -> tau_gE (1 + b)
+(3)  tau_gE -> tau_gE (1 + b),   inertia J -> J (1 + j b),   on the level axis + j b J h^2,  h = cos(Psi)
+
+Eq (3) with j = 0 is a moment alone. A weight that sits elsewhere also changes the inertia, of the azimuth by the square of how far the
+arm reaches out: j is above 0 where it hangs on the heavy side, below 0 for a counterweight.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import EDGE_S, axis_of, short, step, with_torque
+from sim.effects.edits import EDGE_S, axis_of, lever, short, step, with_axis, with_torque
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
@@ -34,11 +38,13 @@ def effects(model: Model) -> Iterator[Effect]:
                 f"{entry.angle.removesuffix('_rad')}_sensor.offset": "gravity sees the true angle: both shift one against the other",
             },
         )
-        yield from _weights(axis, entry)
+        yield from _weights(model, axis, entry)
 
 
-def _weights(axis: str, entry: AxisPlace) -> Iterator[Effect]:
-    angle, size = short(entry.angle), entry.torque_size
+def _weights(model: Model, axis: str, entry: AxisPlace) -> Iterator[Effect]:
+    angle, size, inertia = short(entry.angle), entry.torque_size, axis_of(model, axis).inertia
+    level, reach = model.places.level, str(lever(model, axis)).replace(entry.angle, angle)
+    beside = f", that of the {level} + j b J {reach}^2" if level else ""
     yield Effect(
         name=f"{axis}.weight_shift",
         depends="torque(t)",
@@ -56,13 +62,25 @@ def _weights(axis: str, entry: AxisPlace) -> Iterator[Effect]:
     yield Effect(
         name=f"{axis}.balance_weight",
         depends=f"torque({angle})",
-        parameters=(EffectParameter("b", "-", -0.5, 0.5, 0.03, 0.0),),
-        equation="gravity moment times (1 + b)",
+        parameters=(
+            EffectParameter("b", "-", -0.5, 0.5, 0.03, 0.0),
+            EffectParameter("j", "-", -0.7, 0.7, 0.0, refining=True),
+        ),
+        equation=f"gravity moment times (1 + b), inertia J times (1 + j b){beside}",
         story="The balancing weight sits elsewhere than when the plant was measured.",
         source="seed 000 eq (10), counterweights",
-        edit=lambda model, b: _with_moment(model, b * model.places.axes[axis].gravity_moment, axis),
-        twins={f"parameters of {axis}": "identical: it is another value of the gravity moment"},
+        edit=lambda model, b, j: _reweighted(model, b, j * b * inertia, axis),
+        twins={f"parameters of {axis}": "identical: it is another value of the gravity moment and of the inertia"},
     )
+
+
+def _reweighted(model: Model, b: sympy.Symbol, inertia: sympy.Expr, axis: str) -> Model:
+    model = _with_moment(model, b * model.places.axes[axis].gravity_moment, axis)
+    model = with_axis(model, axis, lambda tilting: replace(tilting, inertia=tilting.inertia + inertia))
+    if not model.places.level:
+        return model
+    further = inertia * lever(model, axis) ** 2
+    return with_axis(model, model.places.level, lambda level: replace(level, inertia=level.inertia + further))
 
 
 def _turned(model: Model, delta: sympy.Symbol, axis: str) -> Model:
@@ -72,6 +90,4 @@ def _turned(model: Model, delta: sympy.Symbol, axis: str) -> Model:
 
 
 def _with_moment(model: Model, more: sympy.Expr, axis: str) -> Model:
-    entry = model.places.axes[axis]
-    assert entry.gravity is not None
-    return with_torque(model, axis, entry.gravity / entry.gravity_moment * more)
+    return with_torque(model, axis, -lever(model, axis) * more)

@@ -1,15 +1,19 @@
-"""What turns the azimuth of a rig that does not stand still and level.
+"""What turns the arm of a rig that does not stand still and level.
 
-(1)  torque - m sin(Phi - Phi_0)                the base is not level
+(1)  torque - m sin(Phi - Phi_0) (1 - e + e h)          the base is not level
+     and on the tilting axis + e m cos(Phi - Phi_0) dh/dPsi,   h = cos(Psi) the share of its length that the arm reaches out
 (2)  torque + c s |s|, s = cos(Phi - Phi_w) - T_w Phi'      a steady draught past an arm that moves
-(3)  torque + offset on any axis, written - offset
+(3)  tilting axis + c cos(Phi - Phi_w)                      the same draught, which lifts the arm or presses it down
+(4)  torque + offset on any axis, written - offset
+
+Eq (1) has the potential - m cos(Phi - Phi_0) (1 - e + e h): e = 0 is the plain sine of a level arm, e = 1 a rigid arm at any height.
 """
 
 from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, short, with_torque
+from sim.effects.edits import axis_of, lever, short, with_torque
 from sim.effects.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
@@ -18,12 +22,13 @@ TURN = 6.3  # a whole turn either way: no fit that starts within half a turn is 
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eqs (1) and (2) on the level axis, (3) on every axis."""
+    """Eqs (1) and (2) on the level axis, (3) on the one beside it that tilts, (4) on every axis."""
     for axis, entry in model.places.axes.items():
         yield _offset(axis, entry)
         if entry.level:
-            yield _tilt(axis, entry)
+            yield _tilt(model, axis, entry)
             yield _wind(axis, entry)
+            yield _lift(model, axis)
 
 
 def _offset(axis: str, entry: AxisPlace) -> Effect:
@@ -36,28 +41,43 @@ def _offset(axis: str, entry: AxisPlace) -> Effect:
         story="Something pulls the axis one way all the time.",
         source="a constant torque",
         edit=lambda model, offset: with_torque(model, axis, -offset),
-        twins={f"{axis}.friction_asymmetry": "while the axis moves, both are one constant torque"},
+        twins={
+            f"{axis}.friction_asymmetry": "while the axis moves, both are one constant torque",
+            **({} if entry.level else {f"{axis}.wind": "while the arm hardly turns, both are a constant torque"}),
+        },
     )
 
 
-def _tilt(axis: str, entry: AxisPlace) -> Effect:
-    size, angle = entry.torque_size, short(entry.angle)
+def _tilt(model: Model, axis: str, entry: AxisPlace) -> Effect:
+    size, angle, over = entry.torque_size, short(entry.angle), model.places.axes[model.places.tilting]
+    reach = lever(model, model.places.tilting)
+    rises = sympy.diff(reach, axis_of(model, model.places.tilting).position)
+    h, slope = (str(part).replace(over.angle, short(over.angle)) for part in (reach, rises))
     return Effect(
         name=f"{axis}.tilt",
         depends=f"torque({angle})",
         parameters=(
             EffectParameter("m", entry.torque_unit, -size, size, 0.05 * size, 0.0),
             EffectParameter("Phi_0", "rad", -TURN, TURN, 0.0, starts=(0.0, -1.57)),
+            EffectParameter("e", "1", 0.0, 1.0, 0.0, refining=True),
         ),
-        equation=f"- m sin({angle} - Phi_0)",
+        equation=f"- m sin({angle} - Phi_0) (1 - e + e {h}), on the {model.places.tilting} + e m cos({angle} - Phi_0) ({slope})",
         story="The base is not level: the arm wants to swing to the low side.",
         source="pendulum on a tilted base",
-        edit=lambda model, m, Phi_0: with_torque(model, axis, -m * sympy.sin(axis_of(model, axis).position - Phi_0)),
+        edit=lambda model, m, Phi_0, e: _tilted(model, axis, m, Phi_0, e),
         twins={
             f"{axis}.wind": "both pull to one side, and a fast wind hardly damps",
             f"{axis}.cable_spring": "within a half turn, a sine is nearly straight",
         },
     )
+
+
+def _tilted(model: Model, axis: str, m: sympy.Symbol, Phi_0: sympy.Symbol, e: sympy.Symbol) -> Model:
+    tilting = model.places.tilting
+    turned, reach = axis_of(model, axis).position - Phi_0, lever(model, tilting)
+    model = with_torque(model, axis, -m * sympy.sin(turned) * (1 - e + e * reach))
+    rises = sympy.diff(reach, axis_of(model, tilting).position)
+    return with_torque(model, tilting, e * m * sympy.cos(turned) * rises)
 
 
 def _wind(axis: str, entry: AxisPlace) -> Effect:
@@ -86,3 +106,21 @@ def _stream(model: Model, name: str, Phi_w: sympy.Symbol, T_w: sympy.Symbol) -> 
     axis = axis_of(model, name)
     stream = sympy.cos(axis.position - Phi_w) - T_w * axis.velocity
     return stream * sympy.Abs(stream)
+
+
+def _lift(model: Model, level: str) -> Effect:
+    axis, angle = model.places.tilting, short(model.places.axes[level].angle)
+    size, unit = model.places.axes[axis].torque_size, model.places.axes[axis].torque_unit
+    return Effect(
+        name=f"{axis}.wind",
+        depends=f"torque({angle})",
+        parameters=(
+            EffectParameter("c", unit, 0.0, size, 0.05 * size, 0.0),
+            EffectParameter("Phi_w", "rad", -TURN, TURN, 0.0, starts=(-1.57, 0.0, 1.57, 3.14)),
+        ),
+        equation=f"+ c cos({angle} - Phi_w)",
+        story="A steady draught in the room lifts the arm on one side of the room and presses it down on the other.",
+        source="a steady wind that does not blow level, to first order in its direction",
+        edit=lambda model, c, Phi_w: with_torque(model, axis, c * sympy.cos(axis_of(model, level).position - Phi_w)),
+        twins={f"{axis}.offset_force": "while the arm hardly turns, both are a constant torque"},
+    )

@@ -86,9 +86,10 @@ def _words() -> list[str]:
         kinds = {**here, **kinds}
     lines = ["", "## What they are", "", "Of each kind those of the first plant above that has it.", ""]
     for kind, effects in sorted(kinds.items()):
-        first = next(iter(effects.values()))
         twins = {name: reason for effect in effects.values() for name, reason in effect.twins.items()}
-        lines.append(f"- **{kind}**: {first.story} Source: {first.source}.{_twins(twins)}")
+        stories = " ".join(dict.fromkeys(effect.story for effect in effects.values()))
+        sources = "; ".join(dict.fromkeys(effect.source for effect in effects.values()))
+        lines.append(f"- **{kind}**: {stories} Source: {sources}.{_twins(twins)}")
     return lines
 
 

@@ -25,7 +25,10 @@ def effects(model: Model) -> Iterator[Effect]:
             story="Turning backwards, the propeller pushes with another strength than forwards.",
             source="cambered blades",
             edit=lambda model, r, place=place: _edit(model, r, place),
-            twins={f"{place.replace('rotor', 'input')}.driver_asymmetry": "both scale what a reversed rotor does"},
+            twins={
+                f"{place.replace('rotor', 'input')}.driver_asymmetry": "both scale what a reversed rotor does",
+                f"{place}.reverse_drag": "a reversed rotor pushes as hard at another speed as at another strength",
+            },
         )
 
 

@@ -44,7 +44,8 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         source="a wrong count per turn",
         edit=lambda model, scale: with_output(model, y, lambda output: scale * output),
         twins={
-            "parameters": "where nothing depends on the true angle, inertia, friction and thrust scale along with it"
+            f"{place}.missed_counts": "at a nearly constant input, a constant share of the counts is missed",
+            "parameters": "where nothing depends on the true angle, inertia, friction and thrust scale along with it",
         },
     )
     yield Effect(

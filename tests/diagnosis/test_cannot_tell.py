@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.engine import Material, diagnose
-from diagnosis.notes import IMITATION, UNSEEN
+from diagnosis.notes import IMITATION, UNFOLLOWED, UNSEEN
 from records.diagnosis import Diagnosis
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -70,6 +70,8 @@ def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> No
     assert "delay below tau = " in told["main_input"]
     assert len(told) == len([note for note in hover.notes if note.startswith(UNSEEN)])
     assert len([note for note in hover.notes if note.startswith(IMITATION)]) == 1
+    # Truth: a rotor turns six radians from row to row, from where nobody knows.
+    assert f"{UNFOLLOWED}: main_rotor.imbalance, tail_rotor.imbalance" in hover.notes
 
 
 def test_a_locked_axis_shows_nothing_of_itself(plant: BoundPlant) -> None:

@@ -109,6 +109,12 @@ def test_of_three_variants_the_narrowest_is_taken(plant: BoundPlant) -> None:
         assert kit.variant(wanted).names == set(kit.whole)
 
 
+def test_what_no_filter_follows_is_in_none_and_is_no_candidate(plant: BoundPlant) -> None:
+    kit = make_kit(plant)
+    assert "main_rotor.imbalance" in kit.effects
+    assert not any(name.endswith(".imbalance") for name in (*kit.whole, *kit.candidates))
+
+
 @pytest.mark.parametrize(
     "effects",
     [

@@ -83,6 +83,7 @@ INPUT_M: dict[str, Callable[[Any], float]] = {
     "main_input.saturation": lambda s: limited(s.u_M, s.limit, s.w),
     "main_input.supply_sag": lambda s: s.u_M * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "main_input.gain": lambda s: s.gain * s.u_M,
+    "loop.gain": lambda s: s.gain * s.u_M,
     "main_input.offset": lambda s: s.u_M + s.offset,
     "main_input.quantization": lambda s: s.q * floor(s.u_M / s.q + 0.5),
 }
@@ -91,12 +92,14 @@ INPUT_T: dict[str, Callable[[Any], float]] = {
     "tail_input.saturation": lambda s: limited(s.u_T, s.limit, s.w),
     "tail_input.supply_sag": lambda s: s.u_T * (1 - s.s * (abs(s.u_M) + abs(s.u_T)) / 10),
     "tail_input.gain": lambda s: s.gain * s.u_T,
+    "loop.gain": lambda s: s.gain * s.u_T,
     "tail_input.offset": lambda s: s.u_T + s.offset,
     "tail_input.driver_asymmetry": lambda s: s.u_T * (s.r if s.u_T < 0 else 1.0),
     "tail_input.quantization": lambda s: s.q * floor(s.u_T / s.q + 0.5),
 }
 DRIVE_M = {"main_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
 DRIVE_T = {"tail_rotor.warmup": lambda s: 1 - s.a * (1 - exp(-s.t / s.T))}
+DRAG_T = {"tail_rotor.reverse_drag": lambda s: s.r if s.w_T < 0 else 1.0}
 RUB_M = {"main_rotor.dry_friction": lambda s: s.c * sgn(s.w_M)}
 RUB_T = {"tail_rotor.dry_friction": lambda s: s.c * sgn(s.w_T)}
 THRUST_M = {"main_rotor.ground_effect": lambda s: 1 + s.a * exp(-(s.psi + pi / 4) / s.psi_0)}
@@ -119,6 +122,9 @@ TORQUE_E: dict[str, Callable[[Any], float]] = {
     "elevation.weight_shift": lambda s: -s.Delta * ramp(s.t, s.t_1) * cos(s.psi),
     "elevation.balance_weight": lambda s: -s.tau_g * s.b * cos(s.psi),
     "elevation.offset_force": lambda s: -s.offset,
+    "main_rotor.imbalance": lambda s: s.a * s.J_E * s.w_M**2 * sin(s.z),
+    "elevation.wind": lambda s: s.c * cos(s.phi - s.Phi_w),
+    "azimuth.tilt": lambda s: -s.e * s.m * cos(s.phi - s.Phi_0) * sin(s.psi),
     "elevation.upper_stop": lambda s: -s.k * max(s.psi - pi / 4 + s.a, 0.0),
     "elevation.lower_stop": lambda s: s.k * max(-pi / 4 + s.a - s.psi, 0.0),
     "elevation.detent": lambda s: s.amplitude * sin(s.waves * s.psi + s.phase),
@@ -143,7 +149,7 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.cable_hysteresis": lambda s: -s.k * s.z,
     "azimuth.presliding": lambda s: -s.b * s.z / s.z_0,
     "azimuth.offset_force": lambda s: -s.offset,
-    "azimuth.tilt": lambda s: -s.m * sin(s.phi - s.Phi_0),
+    "azimuth.tilt": lambda s: -s.m * sin(s.phi - s.Phi_0) * (1 - s.e + s.e * cos(s.psi)),
     "azimuth.wind": lambda s: s.c * squared(cos(s.phi - s.Phi_w) - s.T_w * s.v_phi),
     "azimuth.upper_stop": lambda s: -s.k * max(s.phi - s.Phi_lim + s.a, 0.0),
     "azimuth.lower_stop": lambda s: s.k * max(-s.Phi_lim + s.a - s.phi, 0.0),
@@ -155,9 +161,12 @@ TORQUE_A: dict[str, Callable[[Any], float]] = {
     "azimuth.coriolis": lambda s: s.c * sin(2 * s.psi) * s.v_psi * s.v_phi,
     "azimuth.quadratic_reaction": lambda s: -s.k * s.w_M * abs(s.w_M) * cos(s.psi),
     "azimuth.rotor_acceleration": lambda s: -s.J * s.dw_M * cos(s.psi),
+    "tail_rotor.imbalance": lambda s: s.a * s.J_A * cos(s.psi) * s.w_T**2 * sin(s.z),
     "tail_rotor.axial_inflow": lambda s: -s.c * abs(s.w_T) * s.v_phi,
 }
+INERTIA_E = {"elevation.balance_weight": lambda s: s.j * s.b * s.J_E}
 INERTIA_A = {
+    "elevation.balance_weight": lambda s: s.j * s.b * s.J_E * cos(s.psi) ** 2,
     "azimuth.inertia_shape": lambda s: s.J_0 + s.J_1 * cos(s.psi) ** 2,
     "azimuth.inertia_without_cosine": lambda s: s.a * s.J_A * (1 - cos(s.psi)),
 }
@@ -166,6 +175,11 @@ HYSTERESIS = {
     for axis, v in (("elevation", "v_psi"), ("azimuth", "v_phi"))
     for kind in ("cable_hysteresis", "presliding", "bristles")
 }
+MISSED = {
+    "psi_sensor.missed_counts": lambda s: -s.a * abs(s.u_M) / 10 * s.v_psi,
+    "phi_sensor.missed_counts": lambda s: -s.a * abs(s.u_T) / 10 * s.v_phi,
+}
+TURNS = {"main_rotor.imbalance": ("w_M", 2), "tail_rotor.imbalance": ("w_T", 5)}
 LAGS = {"main_input.lag": "u_M", "tail_input.lag": "u_T"}
 MODES = {"elevation.flexible_mode": ("psi", "v_psi"), "azimuth.flexible_mode": ("phi", "v_phi")}
 PLACE = {"psi_sensor": 0, "phi_sensor": 1, "elevation": 0, "azimuth": 1}
@@ -195,6 +209,8 @@ class PlainRig:
         v = SimpleNamespace(**self.case.values)
         if kind == "flexible_mode":
             return np.asarray(one + v.gain * self.s[:, 6])
+        if kind == "missed_counts":
+            return np.asarray(one + self.s[:, 6])
         if kind == "lag":
             return lagged(one, v.tau, self.s[0, 2 if PLACE[place] == 0 else 5])
         if kind == "backlash":
@@ -219,6 +235,9 @@ class PlainRig:
             first[6] = self.u[0][0 if LAGS[self.name] == "u_M" else 1]
         if self.name in MODES:
             first[7] = self.case.start[2 if MODES[self.name][0] == "psi" else 5]
+        if self.name in TURNS:  # in the midst of shaking, about the same mean velocity
+            speed, velocity = TURNS[self.name]
+            first[velocity] -= self.case.values["a"] * first[0 if speed == "w_M" else 3]
         states, count = [first], round(0.4 / STEP_S)
         for k in range(count):
             states.append(self._step(BEGIN_S + k * STEP_S, states[-1], self._input(k)))
@@ -258,7 +277,9 @@ class PlainRig:
     def _rates(self, t: float, x: State, u: tuple[float, float]) -> State:
         p, name = self.p, self.name
         values = self.case.values if name else {}
-        s = SimpleNamespace(t=t, u_M=u[0], u_T=u[1], tau_g=p["tau_gE"], J_A=p["J_A"], Phi_lim=p["Phi_lim"], **values)
+        s = SimpleNamespace(
+            t=t, u_M=u[0], u_T=u[1], tau_g=p["tau_gE"], J_A=p["J_A"], J_E=p["J_E"], Phi_lim=p["Phi_lim"], **values
+        )
         s.b_cE, s.b_cA = p["b_cE"], p["b_cA"]
         s.w_M, s.psi, s.v_psi, s.w_T, s.phi, s.v_phi, s.z = x[:7]
         u_M, u_T = INPUT_M.get(name, lambda s: s.u_M)(s), INPUT_T.get(name, lambda s: s.u_T)(s)
@@ -268,7 +289,7 @@ class PlainRig:
         drive_M = p["K_M"] * u_M * DRIVE_M.get(name, one)(s)
         drive_T = p["K_T"] * u_T * DRIVE_T.get(name, one)(s)
         s.dw_M = drive_M - damping(p["p_bM"], s.w_M) - RUB_M.get(name, none)(s)
-        s.dw_T = drive_T - damping(p["p_bT"], s.w_T) - RUB_T.get(name, none)(s)
+        s.dw_T = drive_T - damping(p["p_bT"], s.w_T) * DRAG_T.get(name, one)(s) - RUB_T.get(name, none)(s)
         lift = p["l_M"] * odd(p["p_FM"], s.w_M) * THRUST_M.get(name, one)(s)
         push = p["l_T"] * odd(p["p_FT"], s.w_T) * THRUST_T.get(name, one)(s)
         elevation = (
@@ -277,10 +298,15 @@ class PlainRig:
         elevation += p["K_E"] * s.v_phi * s.w_M * sin(s.psi) - p["b_cE"] * sgn(s.v_psi) + TORQUE_E.get(name, none)(s)
         azimuth = (push - p["K_A"] * s.w_M) * cos(s.psi) - p["b_vA"] * s.v_phi - p["b_cA"] * sgn(s.v_phi)
         azimuth += TORQUE_A.get(name, none)(s)
+        tipping = p["J_E"] + INERTIA_E.get(name, none)(s)
         turning = p["J_A"] * cos(s.psi) + INERTIA_A.get(name, none)(s)
-        return [s.dw_M, s.v_psi, elevation / p["J_E"], s.dw_T, s.v_phi, azimuth / turning, *self._extra(s, x, u)]
+        return [s.dw_M, s.v_psi, elevation / tipping, s.dw_T, s.v_phi, azimuth / turning, *self._extra(s, x, u)]
 
     def _extra(self, s: Any, x: State, u: tuple[float, float]) -> list[float]:
+        if self.name in MISSED:
+            return [MISSED[self.name](s)]
+        if self.name in TURNS:
+            return [getattr(s, TURNS[self.name][0])]
         if self.name in HYSTERESIS:
             return [HYSTERESIS[self.name](s)]
         if self.name in LAGS:
