@@ -55,7 +55,7 @@ class Effect:
     from it, each with the reason. Where `smooth` is false a fit needs the parameters' `starts` as a grid. `same_as` is the nominal
     plant's parameter that does the same where it is not 0. Where `names_a_gap` is false the nominal plant leaves open whether it is
     there: a diagnosis supposes it where the logs ask for it, and calls that no gap. Where `repeats` is false each run has another
-    phase of it: plants and simulations carry one, a diagnosis does not take it from the plant file, and looks for it as noise or not at all.
+    phase of it: plants and simulations carry one, a diagnosis takes none from the plant file, and looks for it as noise or not at all.
 
     It acts in one of three ways. `edit` changes the equations: edit(model, *symbols). `applied` says what arrives of the inputs at the
     equations, without memory: applied(*symbols) -> {input: expression}. `on_input` and `on_output` give a stage with memory on the way
