@@ -94,8 +94,9 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: Tried, left: float) ->
 
 def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
     """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown; or
-    hardly takes any of it, maybe none: NOT_BORNE_OUT. `left` are the nats that forms still gain beside it."""
-    if weighed.nameless or not weighed.tried:
+    hardly takes any of it, maybe none: NOT_BORNE_OUT. `left` are the nats that forms still gain beside it. Where parameters alone are
+    likelier no name is asked."""
+    if weighed.nameless or not weighed.tried or weighed.retune > weighed.probabilities[0]:
         return weighed, ()
     first = weighed.tried[0]
     told = holdout.shrinkage(holdout.predicted(first))
