@@ -13,7 +13,6 @@ from diagnosis.abreast import each
 from diagnosis.case import Case
 from diagnosis.fit import fit, likelihood_of
 from diagnosis.hypothesis import Supposed
-from diagnosis.kit import is_gust
 from diagnosis.trial import Tried, tried_as
 from diagnosis.unrest import with_unrest
 
@@ -28,7 +27,7 @@ REACH = 1.2
 def gusts(case: Case, nominal: Tried) -> list[Tried]:
     """The plant with a gust on each axis that moves and has none stated."""
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
-    axes = [name.split(".")[0] for name in case.kit.effects if is_gust(name)]
+    axes = [name.split(".")[0] for name in case.kit.gusts]
     return [found for axis in axes if axis not in held and (found := _gust(case, nominal, axis)) is not None]
 
 

@@ -120,22 +120,27 @@ class Kit:
 
     @property
     def whole(self) -> tuple[str, ...]:
-        """All effects that any variant carries."""
-        return (*self.narrow, *self.wide_names, *self.bristles, *filter(is_gust, self.effects))
+        """All effects that any variant carries, but for gusts, which are asked for seldom."""
+        return (*self.narrow, *self.wide_names, *self.bristles)
+
+    @cached_property
+    def gusts(self) -> tuple[str, ...]:
+        """Gusts of all axes."""
+        return tuple(filter(is_gust, self.effects))
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
-        return name in self.whole
+        return name in self.whole or name in self.gusts
 
     def variant(self, effects: Iterable[str]) -> Variant:
-        """The fastest of three that carries all of `effects` that any carries: the plant alone, with `narrow`, with all.
+        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all; each with gusts or without.
 
         States of effects that are off sleep, and take next to no time.
         """
-        wanted = set(effects).intersection(self.whole)
-        if not wanted:
-            return self.plain
-        return _variant(self, self.narrow if wanted.issubset(self.narrow) else self.whole)
+        wanted = set(effects)
+        others = wanted.intersection(self.whole)
+        carried = () if not others else self.narrow if others.issubset(self.narrow) else self.whole
+        return _variant(self, (*carried, *self.gusts) if wanted.intersection(self.gusts) else carried)
 
 
 def is_lag(name: str) -> bool:
