@@ -109,7 +109,7 @@ class Kit:
         return _variant(self, ())
 
     def prepare(self) -> None:
-        """Begin to open all variants, in the order in which they are asked for; who needs one sooner waits for it."""
+        """Begin to open the variants without gusts, in the order in which they are asked for; who needs one sooner waits for it."""
         for effects in ((), self.narrow, self.whole):
             ahead(_variant, self, effects)
 

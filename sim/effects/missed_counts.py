@@ -1,9 +1,10 @@
 """Edges of an encoder that are lost in the noise of the current beside it.
 
-(1)  y = angle - a m,   m' = |u| / U angle',   u the input that drives the axis, U the largest
+(1)  y = angle - a m,   m' = |x| / X angle'
 
-Each edge is missed with the probability a |u| / U; eq (1) is the mean. m, how far the axis went weighted by the current, has nothing of
-a in it, so that of no size the effect leaves the reading alone whatever is known of m.
+x is the speed of the rotor that drives the axis, or its input where the speed is no state, and X the largest. Each edge is missed with the
+probability a |x| / X, as what a motor draws grows with its speed; eq (1) is the mean. m, how far the axis went weighted so, has nothing
+of a in it, so that of no size the effect leaves the reading alone whatever is known of m.
 """
 
 from collections.abc import Iterator
@@ -23,13 +24,16 @@ def effects(model: Model) -> Iterator[Effect]:
         rotor = model.places.rotors.get(model.places.rotor_of(axis))
         if rotor is None:
             continue
-        u, angle = rotor.variable, short(entry.output)
-        share = sympy.Abs(u) / rotor.input_size
+        angle = short(entry.output)
+        turns = rotor.drive is not None
+        x = f"omega_{rotor.letter}" if turns else str(rotor.variable)
+        largest = rotor.speed_size if turns else rotor.input_size
+        share = sympy.Abs(rotor.speed if turns else rotor.variable) / largest
         yield Effect(
             name=f"{place}.missed_counts",
-            depends=f"output({angle}, {u}) of {angle}",
+            depends=f"output({angle}, {x}) of {angle}",
             parameters=(EffectParameter("a", "-", 0.0, 0.5, 0.02, 0.0),),
-            equation=f"y = angle - a m, m' = |{u}|/{rotor.input_size:g} {angle}'",
+            equation=f"y = angle - a m, m' = |{x}|/{largest:g} {angle}'",
             story="The motor's current disturbs the encoder beside it: the harder the rotor works, the more counts are missed.",
             source="interference of a driver's switching with an encoder's edges",
             edit=lambda model, a, axis=axis, share=share: _edit(model, a, axis, share),

@@ -176,8 +176,8 @@ HYSTERESIS = {
     for kind in ("cable_hysteresis", "presliding", "bristles")
 }
 MISSED = {
-    "psi_sensor.missed_counts": lambda s: -s.a * abs(s.u_M) / 10 * s.v_psi,
-    "phi_sensor.missed_counts": lambda s: -s.a * abs(s.u_T) / 10 * s.v_phi,
+    "psi_sensor.missed_counts": lambda s: -s.a * abs(s.w_M) / 600 * s.v_psi,
+    "phi_sensor.missed_counts": lambda s: -s.a * abs(s.w_T) / 800 * s.v_phi,
 }
 TURNS = {"main_rotor.imbalance": ("w_M", 2), "tail_rotor.imbalance": ("w_T", 5)}
 LAGS = {"main_input.lag": "u_M", "tail_input.lag": "u_T"}
