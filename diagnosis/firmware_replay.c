@@ -18,8 +18,11 @@ typedef NUMBER number;
 #define ROOM 12
 
 enum { SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE };
-enum { WINDUP_OBSERVER, WINDUP_NONE };
-enum { ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO };
+enum { WINDUP_OBSERVER, WINDUP_NONE, WINDUP_CLAMP, WINDUP_FREEZE };
+enum { ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO, ROUND_HALF_EVEN };
+
+enum { OVERFLOW_NONE, OVERFLOW_WRAPS, OVERFLOW_SATURATES };
+enum { AT_SUM, AT_COMMAND };
 
 /* Ascending coefficients; count 0 where the term is left out of the sum. */
 typedef struct {
@@ -39,6 +42,8 @@ typedef struct {
     axis_law axis[2];
     number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
     int32_t schedule, windup, feedforward_of_raw_reference;
+    int32_t overflow, overflow_at;
+    number overflow_low_V[2], overflow_span_V[2];
 } replay_law;
 
 typedef struct {
@@ -53,14 +58,22 @@ typedef struct {
     number angle_rad[2], reference_rad[2];
 } replay_state;
 
-/* What lies between the law's output and the logged number: limits, then a grid; step 0 for none. */
+/*
+ * What lies between the law's output and the logged number: which of the two it is, a factor and an offset, limits, a grid (step 0: none)
+ * and the range in which an integer wraps round (span 0: none).
+ */
 typedef struct {
+    int32_t source[2];
+    double gain[2], offset_V[2];
     double low_V[2], high_V[2], step_V[2];
+    double wrap_low_V[2], wrap_span_V[2];
     int32_t rounding;
 } replay_channel;
 
 void replay_start(const replay_law *law, const number angles_rad[2], replay_state *state);
 void replay_step(const replay_law *law, replay_state *state, const number input[4], number output[2]);
+bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[2],
+                           const double (*logged_V)[2], const double (*slack_V)[2]);
 int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from, int32_t to,
                    const number (*inputs)[4], const double (*logged_V)[2], const double (*slack_V)[2],
                    number (*outputs)[2]);
@@ -164,6 +177,19 @@ static number move(const axis_law *axis, const axis_state *state, const number e
     return sum;
 }
 
+/* The value in an integer of the law's that is too narrow: it wraps round, or stays at its end. */
+static number overflowed(const replay_law *law, int32_t i, number value_V)
+{
+    const number low_V = law->overflow_low_V[i], span_V = law->overflow_span_V[i];
+    if (!(span_V > 0)) {
+        return value_V;
+    }
+    if (law->overflow == OVERFLOW_SATURATES) {
+        return clamp(value_V, low_V, low_V + span_V);
+    }
+    return value_V - span_V * (number)floor((double)((value_V - low_V) / span_V));
+}
+
 /* value, its first and second difference, from the last value and its first */
 static void remember(number differences[3], number value)
 {
@@ -174,18 +200,30 @@ static void remember(number differences[3], number value)
     differences[2] = second;
 }
 
-static number drive(const replay_law *law, const axis_law *axis, axis_state *state, const number e_rad[4], number v_V,
-                    number u_ff_V)
+static number drive(const replay_law *law, int32_t i, axis_state *state, const number e_rad[4], number v_V, number u_ff_V)
 {
+    const axis_law *axis = &law->axis[i];
+    const number last_v_V = state->v_V;
+    if (law->overflow != OVERFLOW_NONE && law->overflow_at == AT_SUM) {
+        v_V = overflowed(law, i, v_V);
+    }
     const bool is_plausible = magnitude(v_V) <= law->plausible_V;
     if (!is_plausible) {
         v_V = 0;
         memset(state->s_V, 0, sizeof state->s_V);
         memset(state->w_V, 0, sizeof state->w_V);
     }
-    const number u_V = v_V + u_ff_V;
+    number u_V = v_V + u_ff_V;
+    if (law->overflow != OVERFLOW_NONE && law->overflow_at == AT_COMMAND) {
+        u_V = overflowed(law, i, u_V);
+    }
     const number limited_V = saturate(u_V, axis->u_min_V, axis->u_max_V, axis->u_safe_V);
-    const number w_V = (law->windup == WINDUP_NONE) ? (number)0 : u_V - limited_V;
+    if (law->windup == WINDUP_CLAMP) {
+        v_V -= u_V - limited_V;
+    } else if (law->windup == WINDUP_FREEZE && u_V != limited_V) {
+        v_V = last_v_V;
+    }
+    const number w_V = (law->windup == WINDUP_OBSERVER) ? u_V - limited_V : (number)0;
     remember(state->w_V, w_V);
     remember(state->s_V, v_V - w_V);
     state->e_0_rad = e_rad[0];
@@ -230,7 +268,7 @@ void replay_step(const replay_law *law, replay_state *state, const number input[
         e_rad[2] = e_rad[1] - self->e_1_rad;
         e_rad[3] = e_rad[2] - self->e_2_rad;
         const number v_V = self->v_V + move(axis, self, e_rad, schedule_rad);
-        output[i] = drive(law, axis, self, e_rad, v_V, u_ff_V);
+        output[i] = drive(law, i, self, e_rad, v_V, u_ff_V);
     }
 }
 
@@ -252,16 +290,35 @@ void replay_start(const replay_law *law, const number angles_rad[2], replay_stat
 static double on_grid(double u_V, double step_V, int32_t rounding)
 {
     const double steps = u_V / step_V;
-    const double whole = (rounding == ROUND_NEAREST) ? round(steps) : (rounding == ROUND_DOWN) ? floor(steps) : trunc(steps);
-    return whole * step_V;
+    switch (rounding) {
+    case ROUND_NEAREST:
+        return round(steps) * step_V;
+    case ROUND_DOWN:
+        return floor(steps) * step_V;
+    case ROUND_TO_ZERO:
+        return trunc(steps) * step_V;
+    default:
+        return nearbyint(steps) * step_V; /* as lrintf does where nobody changed its mode */
+    }
 }
 
-static double seen(const replay_channel *channel, int32_t i, number u_V)
+static double seen(const replay_channel *channel, int32_t i, const number output[2])
 {
-    double value_V = (double)u_V;
+    double value_V = channel->gain[i] * (double)output[channel->source[i]] + channel->offset_V[i];
     value_V = (value_V < channel->low_V[i]) ? channel->low_V[i] : value_V;
     value_V = (channel->high_V[i] < value_V) ? channel->high_V[i] : value_V;
-    return (channel->step_V[i] > 0.0) ? on_grid(value_V, channel->step_V[i], channel->rounding) : value_V;
+    value_V = (channel->step_V[i] > 0.0) ? on_grid(value_V, channel->step_V[i], channel->rounding) : value_V;
+    const double span_V = channel->wrap_span_V[i];
+    return (span_V > 0.0) ? value_V - span_V * floor((value_V - channel->wrap_low_V[i]) / span_V) : value_V;
+}
+
+/* A number that was calculated with behind the law was rounded once more there; one that was only passed on was not. */
+static double rounding_V(const replay_channel *channel, int32_t i, const number output[2], double seen_V)
+{
+    const double own_V = (double)output[channel->source[i]];
+    const bool is_passed_on = seen_V == own_V || channel->step_V[i] > 0.0;
+    const bool is_calculated = channel->gain[i] != 1.0 || channel->offset_V[i] != 0.0 || channel->wrap_span_V[i] > 0.0;
+    return (is_calculated && !is_passed_on) ? 0x1p-22 * (fabs(own_V * channel->gain[i]) + fabs(seen_V)) : 0.0;
 }
 
 /* True where the log agrees within the slack; a row whose logged number is NaN is not in the log, and agrees. */
@@ -269,7 +326,21 @@ static bool agrees(const replay_channel *channel, const number output[2], const 
                    const double slack_V[2])
 {
     for (int32_t i = 0; i < 2; i++) {
-        if (!isnan(logged_V[i]) && !(fabs(seen(channel, i, output[i]) - logged_V[i]) <= slack_V[i])) {
+        const double seen_V = seen(channel, i, output);
+        const double slack = slack_V[i] + rounding_V(channel, i, output, seen_V);
+        if (!isnan(logged_V[i]) && !(fabs(seen_V - logged_V[i]) <= slack)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* True where the log agrees within the slack with outputs that some other law gave. */
+bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[2],
+                           const double (*logged_V)[2], const double (*slack_V)[2])
+{
+    for (int32_t row = 0; row < rows; row++) {
+        if (!agrees(channel, outputs[row], logged_V[row], slack_V[row])) {
             return false;
         }
     }

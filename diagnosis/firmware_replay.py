@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.firmware_replay_flight import Flight, flight_of, has_replayable_columns
-from diagnosis.firmware_replay_search import LOG_ROUNDING, explain
-from diagnosis.firmware_replay_words import FIXED, Replayed, replayed
+from diagnosis.firmware_replay_search import LOG_ROUNDING, channel_cause, explain
+from diagnosis.firmware_replay_words import FIXED, Replayed, replayed, replayed_in_fixed
 from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.log import RunLog
@@ -23,6 +23,7 @@ from records.table import ControllerTable
 NOT_FOUND = "not_found"
 IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
+BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
 ANGLES_ROUNDED = "the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees"
 
 
@@ -76,12 +77,17 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
     rows = np.flatnonzero(run.differs.any(axis=1))
     at_s = float(flight.t_s[rows[0]]) if rows.size else None
     if run.arithmetic == FIXED:
-        return _in_fixed_point(flight, residuals, at_s)
+        return _in_fixed_point(flight, table, run, residuals)
     if at_s is None and not flight.missing:
         return FirmwareReplay(True, True, None, None, None, residuals)
     told = explain(flight, table, others)
     if told is None:
-        return FirmwareReplay(True, False, at_s, NOT_FOUND, _unexplained(residuals, rows[0] == 0), residuals)
+        behind_fixed = _behind_fixed(flight, table, residuals, at_s)
+        if behind_fixed is not None:
+            return behind_fixed
+        return FirmwareReplay(
+            True, False, at_s, NOT_FOUND, _unexplained(residuals, _begun(table, run, int(rows[0]))), residuals
+        )
     if told.cause is None and at_s is None:
         return FirmwareReplay(True, True, None, None, None, residuals)
     if told.cause is None:
@@ -100,13 +106,41 @@ def _demand_own(log: RunLog, table: ControllerTable) -> None:
         )
 
 
-def _in_fixed_point(flight: Flight, residuals: tuple[Residual, ...], at_s: float | None) -> FirmwareReplay:
-    """What is told of a log whose law computed in fixed point: the table's own firmware, or no cause."""
-    if at_s is None:
+def _in_fixed_point(
+    flight: Flight, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...]
+) -> FirmwareReplay:
+    """What is told of a log whose law computed in fixed point: the table's own firmware, what lies behind it, or no cause."""
+    rows = np.flatnonzero(run.differs.any(axis=1))
+    if not rows.size:
         return FirmwareReplay(True, True, None, None, IN_FIXED_POINT, residuals)
+    at_s = float(flight.t_s[rows[0]])
+    behind_it = _behind_words(flight, table, run, residuals, at_s)
+    if behind_it is not None:
+        return behind_it
     behind = " behind rows that the log lacks" if any(flight.t_s[first] < at_s for first, _ in flight.missing) else ""
-    sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other firmware is tried"
+    sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other law is tried"
     return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals)
+
+
+def _behind_fixed(
+    flight: Flight, table: ControllerTable, residuals: tuple[Residual, ...], at_s: float | None
+) -> FirmwareReplay | None:
+    """A law in fixed point of whose words none is in the log, as something behind it changed them all."""
+    try:
+        run = replayed_in_fixed(flight, table)
+    except BadInput:  # a table that no words can hold never flew in them
+        return None
+    return _behind_words(flight, table, run, residuals, at_s)
+
+
+def _behind_words(
+    flight: Flight, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...], at_s: float | None
+) -> FirmwareReplay | None:
+    behind_it = channel_cause(flight, table, run.u_V, run.word_V)
+    if behind_it is None:
+        return None
+    sentence = f"the firmware computes in fixed point and {behind_it.sentence}"
+    return FirmwareReplay(True, False, at_s, behind_it.name, sentence, residuals)
 
 
 def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ...]:
@@ -121,18 +155,25 @@ def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ..
     return tuple(result)
 
 
-def _unexplained(residuals: Sequence[Residual], from_the_first: bool) -> str:
+def _begun(table: ControllerTable, run: Replayed, row: int) -> str:
+    """What the first row that differs hints at."""
+    if row == 0:
+        return ", from the first row on: has the log lost its beginning, and with it the law's state?"
+    low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V], np.float32)
+    high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V], np.float32)
+    at_limit = np.any((run.u_V[: row + 1] <= low) | (run.u_V[: row + 1] >= high), axis=1)
+    if at_limit.any() and np.sum(~at_limit[np.argmax(at_limit) :]) <= BEHIND_LIMIT:
+        return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"
+    return ""
+
+
+def _unexplained(residuals: Sequence[Residual], begun: str) -> str:
     different = max(entry.samples_different for entry in residuals)
     greatest = max(residuals, key=lambda entry: entry.max_V)
     size = f"up to {greatest.max_V:.3g} V ({greatest.max_ulp:.3g} units of the last place)"
     hint = (
         ", the size of rounding: another compiler, processor or order of operations"
         if greatest.max_V < ROUNDING_V
-        else ""
-    )
-    begun = (
-        ", from the first row on: has the log lost its beginning, and with it the law's state?"
-        if from_the_first
         else ""
     )
     return (

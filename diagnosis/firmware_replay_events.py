@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.firmware_replay_flight import Flight, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
-from diagnosis.firmware_replay_law import FLOAT64, ReplayLaw, Setup, number_type
+from diagnosis.firmware_replay_law import FLOAT64, Fold, ReplayLaw, Setup, number_type
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ class Workshop:
 
     def inputs(self, setup: Setup) -> NDArray[Any]:
         """What the setup's law is given (n, 4): references, angles."""
-        key = (setup.angle_lags, setup.reference_lag, setup.arithmetic)
+        key = (setup.angle_lags, setup.reference_lag, setup.folds, setup.columns, setup.signs, setup.arithmetic)
         if key not in self._inputs:
             self._inputs[key] = _inputs(self.flight, setup).astype(number_type(setup.arithmetic))
         return self._inputs[key]
@@ -221,10 +221,24 @@ class Follower:
 
 def _inputs(flight: Flight, setup: Setup) -> Array:
     """What the law was given (n, 4): references and angles, each as late as the setup says."""
-    angles = [
-        lagged(column[:, np.newaxis], lag) for column, lag in zip(flight.angle_rad.T, setup.angle_lags, strict=True)
-    ]
-    return np.hstack([lagged(flight.reference_rad, setup.reference_lag), *angles])
+    folds = zip(flight.angle_rad.T, flight.steps_rad, setup.folds, strict=True)
+    folded = [_folded(*column)[:, np.newaxis] for column in folds]
+    angles = [lagged(column, lag) for column, lag in zip(folded, setup.angle_lags, strict=True)]
+    references = lagged(flight.reference_rad, setup.reference_lag)
+    given = np.hstack([references, *angles])[:, list(setup.columns)]
+    return np.ascontiguousarray(given * np.array(setup.signs))
+
+
+def _folded(angle_rad: Array, step_rad: float, fold: Fold | None) -> Array:
+    """The angle of the whole counts that are left when their integer has wrapped round or saturated."""
+    if fold is None:
+        return angle_rad
+    if fold.saturates:
+        counts = np.round(angle_rad / step_rad)
+        low = round(fold.low_rad / step_rad)
+        return np.asarray(np.clip(counts, low, low + round(fold.span_rad / step_rad) - 1) * step_rad)
+    around = np.floor((angle_rad - fold.low_rad) / fold.span_rad)
+    return np.asarray(np.round((angle_rad - around * fold.span_rad) / step_rad) * step_rad)
 
 
 def _wanted(flight: Flight, setup: Setup) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from sim.columns import reference_name
 Array = NDArray[np.float64]
 
 MOST_MISSING = 0.2  # share of samples that may be missing; beyond it rows are taken as they come
+CLOCK_ERROR = 0.2  # of the sample period
 UNMEASURED_REACH = np.array(
     sorted(range(-6, 7), key=abs)
 )  # counts about the line between measured neighbours, nearest first
@@ -24,7 +25,8 @@ PRINT_MARGIN = 1.0 + 1e-6
 class Flight:
     """Samples k = 0..n-1: references and angles (n, 2) in rad, logged inputs (n, 2) in V, their rounding `half_step_V` (n, 2).
 
-    A sample that the log lacks has NaN everywhere. `printings` are those of u_M, u_T, the two references and the two angles.
+    A sample that the log lacks has NaN everywhere; where it lacks too many (`lacking`), rows stand as they come.
+    `printings` are those of u_M, u_T, the two references and the two angles.
     """
 
     t_s: Array
@@ -36,6 +38,8 @@ class Flight:
     printings: tuple[Printing, ...]
     steps_rad: tuple[float, float]
     rows: NDArray[np.int64]
+    input_names: tuple[str, ...]
+    lacking: int
 
     @property
     def inputs_are_rounded(self) -> bool:
@@ -52,7 +56,7 @@ def has_replayable_columns(log: RunLog) -> bool:
 def flight_of(log: RunLog, table: ControllerTable) -> Flight:
     """The log on its control samples; rows that are missing by sequence number or by time are put in as NaN."""
     references = np.column_stack([log.extra[reference_name(output)] for output in log.columns.outputs])
-    samples = _samples(log)
+    samples, lacking = _samples(log)
     columns = [log.u, references, log.y]
     n = int(samples[-1]) + 1
     u_V, reference_rad, angle_rad = (_spread(column, samples, n) for column in columns)
@@ -68,6 +72,8 @@ def flight_of(log: RunLog, table: ControllerTable) -> Flight:
         printings=written,
         steps_rad=(table.elevation.resolution_rad, table.azimuth.resolution_rad),
         rows=samples,
+        input_names=tuple(log.columns.inputs),
+        lacking=lacking,
     )
 
 
@@ -84,16 +90,26 @@ def readings(flight: Flight) -> tuple[Flight, ...]:
     return flight, replace(flight, angle_rad=counts * steps), replace(flight, angle_rad=in_float32)
 
 
-def _samples(log: RunLog) -> NDArray[np.int64]:
-    """Number of the control sample of each row, from 0 up."""
+def _samples(log: RunLog) -> tuple[NDArray[np.int64], int]:
+    """Number of the control sample of each row, from 0 up; and how many the log lacks, where they are too many to be put in."""
     in_order = np.arange(len(log.t_s))
     if log.seq is not None:
         samples = log.seq - log.seq[0]
     else:
-        samples = np.round((log.t_s - log.t_s[0]) / log.sample_period_s).astype(np.int64)
+        samples = np.round((log.t_s - log.t_s[0]) / _period_s(log)).astype(np.int64)
     rises = bool(np.all(np.diff(samples) > 0))
-    few_missing = int(samples[-1]) + 1 - len(samples) <= MOST_MISSING * len(samples)
-    return samples if rises and few_missing else in_order
+    lacking = int(samples[-1]) + 1 - len(samples)
+    if rises and lacking <= MOST_MISSING * len(samples):
+        return samples, 0
+    return in_order, max(lacking, 0) if rises else 0
+
+
+def _period_s(log: RunLog) -> float:
+    """The sample period by the log's own clock, which may run a little fast or slow; that of its sidecar where rows lie further apart."""
+    measured_s = float(np.median(np.diff(log.t_s))) if len(log.t_s) > 1 else log.sample_period_s
+    return (
+        measured_s if abs(measured_s - log.sample_period_s) < CLOCK_ERROR * log.sample_period_s else log.sample_period_s
+    )
 
 
 def _spread(values: Array, samples: NDArray[np.int64], n: int) -> Array:
@@ -109,8 +125,8 @@ def _blocks(marked: NDArray[np.bool_]) -> tuple[tuple[int, int], ...]:
 
 
 def lagged(values: Array, lag: int) -> Array:
-    """Row k holds what row k - lag held; the first rows hold the first."""
-    return values if lag == 0 else np.concatenate([np.repeat(values[:1], lag, axis=0), values[:-lag]])
+    """Row k holds what row k - lag held; beyond an end stands the number at that end."""
+    return values[np.clip(np.arange(len(values)) - lag, 0, len(values) - 1)]
 
 
 def advanced(values: Array, lead: int) -> Array:

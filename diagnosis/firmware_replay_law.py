@@ -1,6 +1,6 @@
 """The law as data and switches: what a firmware may have run instead of the table's law, and the C that runs it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,19 @@ Array = NDArray[np.float64]
 Pair = tuple[float, float]
 Gains = tuple[float | None, float | None]
 
+AXES = ("elevation", "azimuth")
 ROOM = 12  # coefficients of a polynomial, as in firmware_replay.c
 SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE = range(4)
-WINDUP_OBSERVER, WINDUP_NONE = range(2)
-ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO = range(3)
+WINDUP_OBSERVER, WINDUP_NONE, WINDUP_CLAMP, WINDUP_FREEZE = range(4)
+ROUND_NEAREST, ROUND_DOWN, ROUND_TO_ZERO, ROUND_HALF_EVEN = range(4)
+ROUNDINGS = {
+    ROUND_NEAREST: "to the nearest",
+    ROUND_HALF_EVEN: "to the nearest, halves to even",
+    ROUND_DOWN: "down",
+    ROUND_TO_ZERO: "towards zero",
+}
+OVERFLOW_NONE, OVERFLOW_WRAPS, OVERFLOW_SATURATES = range(3)
+AT_SUM, AT_COMMAND = range(2)
 FLOAT32, FLOAT64 = "float32", "float64"
 
 _SOURCE = Path(__file__).with_name("firmware_replay.c")
@@ -38,13 +47,21 @@ _DECLARATIONS = f"""
         axis_law axis[2];
         number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
         int32_t schedule, windup, feedforward_of_raw_reference;
+        int32_t overflow, overflow_at;
+        number overflow_low_V[2], overflow_span_V[2];
     }} replay_law;
     typedef struct {{
         number reference_1_rad, reference_2_rad, e_0_rad, e_1_rad, e_2_rad, v_V, s_V[3], w_V[3];
     }} axis_state;
     typedef struct {{ axis_state axis[2]; number angle_rad[2], reference_rad[2]; }} replay_state;
-    typedef struct {{ double low_V[2], high_V[2], step_V[2]; int32_t rounding; }} replay_channel;
+    typedef struct {{
+        int32_t source[2];
+        double gain[2], offset_V[2], low_V[2], high_V[2], step_V[2], wrap_low_V[2], wrap_span_V[2];
+        int32_t rounding;
+    }} replay_channel;
     void replay_start(const replay_law *law, const number *angles_rad, replay_state *state);
+    bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const void *outputs, const void *logged_V,
+                               const void *slack_V);
     int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from,
                        int32_t to, const void *inputs, const void *logged_V, const void *slack_V, void *outputs);
 """
@@ -52,19 +69,48 @@ _DECLARATIONS = f"""
 
 @dataclass(frozen=True)
 class Channel:
-    """What lies between the law's output and the log: limits `low_V`, `high_V`, then a grid of `step_V` (0: none); per input."""
+    """What lies between the law's output and the log, per input: which output it is, times `gain`, plus `offset_V`, limits, a grid of
+    `step_V` (0: none), and the range of `wrap_span_V` (0: none) from `wrap_low_V` up in which it wraps round."""
 
+    source: tuple[int, int] = (0, 1)
+    gain: Pair = (1.0, 1.0)
+    offset_V: Pair = (0.0, 0.0)
     low_V: Pair = (-1e9, -1e9)
     high_V: Pair = (1e9, 1e9)
     step_V: Pair = (0.0, 0.0)
+    wrap_low_V: Pair = (0.0, 0.0)
+    wrap_span_V: Pair = (0.0, 0.0)
     rounding: int = ROUND_NEAREST
+
+
+@dataclass(frozen=True)
+class Overflow:
+    """An integer within the law that is too narrow, per axis from `low_V` up over `span_V` (0: wide enough): it wraps or saturates."""
+
+    kind: int = OVERFLOW_NONE
+    at: int = AT_SUM
+    low_V: Pair = (0.0, 0.0)
+    span_V: Pair = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A measured angle whose counts wrap round within `span_rad` from `low_rad` up, or stay at the ends of that range."""
+
+    low_rad: float
+    span_rad: float
+    saturates: bool = False
+
+
+Folds = tuple[Fold | None, Fold | None]
 
 
 @dataclass(frozen=True)
 class Setup:
     """A firmware that may have flown: numbers, switches, and by how many samples its inputs and its output are late.
 
-    `prefilter_gains` replaces b of both axes' reference filters, `prefilter_poles` their number; None is the table's own.
+    `prefilter_gains` replaces b of both axes' reference filters, `prefilter_poles` their number; None is the table's own. `folds` are
+    of the two angles; `columns` and `signs` say which of references and angles the law took for which.
     """
 
     table: ControllerTable
@@ -78,6 +124,10 @@ class Setup:
     reference_lag: int = 0
     output_lag: int = 0
     channel: Channel = Channel()
+    overflow: Overflow = Overflow()
+    folds: Folds = (None, None)
+    columns: tuple[int, int, int, int] = (0, 1, 2, 3)
+    signs: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
 
     def with_axis(self, name: str, **change: object) -> "Setup":
         """The setup with fields of the table's axis `name` replaced."""
@@ -93,10 +143,7 @@ class ReplayLaw:
         self.ffi, self._lib = _library(setup.arithmetic)
         self.number = number_type(setup.arithmetic)
         self._law = self.ffi.new("replay_law *", _law_fields(setup))
-        channel = setup.channel
-        self._channel = self.ffi.new(
-            "replay_channel *", [channel.low_V, channel.high_V, channel.step_V, channel.rounding]
-        )
+        self._channel = self.ffi.new("replay_channel *", asdict(setup.channel))
 
     def start(self, angles_rad: Array) -> Any:
         """A state at rest at the angles (2,)."""
@@ -127,8 +174,25 @@ class ReplayLaw:
         self._lib.replay_run(self._law, self._channel, self.start(inputs[0, 2:]), *arguments)
         return result.astype(float)
 
+    def sums(self, inputs: NDArray[Any], behind: int) -> tuple[Array, Array]:
+        """The law's sum v and its command u before the limits, each (behind, 2) in V, of the first rows from rest."""
+        state, v_V, w_V = self.start(inputs[0, 2:]), np.empty((behind, 2)), np.empty((behind, 2))
+        for row in range(behind):
+            self.run(state, (row, row + 1), inputs, None, None)
+            for i in range(2):
+                v_V[row, i], w_V[row, i] = state.axis[i].v_V, state.axis[i].w_V[0]
+        return v_V, self.outputs(inputs[:behind]) + w_V
+
     def _address(self, array: NDArray[Any] | None) -> Any:
         return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+
+
+def channel_agrees(channel: Channel, own_V: Array, logged_V: Array, slack_V: Array) -> bool:
+    """Whether the log (n, 2) holds what the channel makes of answers (n, 2) that were computed elsewhere, within the slack (n, 2)."""
+    ffi, lib = _library(FLOAT64)
+    arrays = [np.ascontiguousarray(array, dtype=float) for array in (own_V, logged_V, slack_V)]
+    addresses = (ffi.cast("void *", array.ctypes.data) for array in arrays)
+    return bool(lib.replay_channel_agrees(ffi.new("replay_channel *", asdict(channel)), len(arrays[0]), *addresses))
 
 
 def number_type(arithmetic: str) -> np.dtype[Any]:
@@ -161,6 +225,10 @@ def _law_fields(setup: Setup) -> dict[str, Any]:
         "schedule": setup.schedule,
         "windup": setup.windup,
         "feedforward_of_raw_reference": int(setup.raw_feedforward),
+        "overflow": setup.overflow.kind,
+        "overflow_at": setup.overflow.at,
+        "overflow_low_V": setup.overflow.low_V,
+        "overflow_span_V": setup.overflow.span_V,
     }
 
 

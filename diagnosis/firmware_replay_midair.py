@@ -25,19 +25,27 @@ SETTLED = 20.0  # time constants of the reference filter: exp(-20) (1 + 20) of a
 HISTORY = 4  # samples that the differences of s reach back, and one
 BOUNDS_V = (1e-6, 1e-5, 1e-4, 1e-3)
 LEAST_ROWS = 500
+CLEARLY = 100.0  # times the bound: how far a law at rest is off in a log that begins in flight
 
 
 def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, float] | None:
-    """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None."""
-    row = _telling_row(shop.flight, table)
-    if row is None:
+    """Time from which the table's law, put into the state that the log tells, follows it, and within how many volt; else None.
+
+    A law that agrees in its first sample began with the log; one that never is off by more than the bound did as well.
+    """
+    row, setup = _telling_row(shop.flight, table), Setup(table)
+    at_rest_V = ReplayLaw(setup).outputs(shop.inputs(setup))
+    off_V = np.abs(at_rest_V - shop.flight.logged_V).max(axis=1)
+    if row is None or not off_V[0] > shop.flight.half_step_V[0].max():
         return None
-    setup = Setup(table)
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
     state = _state(law, inputs, shop.flight, table, row)
     wanted, slack = shop.answers(setup)
     for bound_V in BOUNDS_V:
-        if law.run(law.copied(state), (row, n), inputs, wanted, slack + bound_V) == n:
+        if (
+            np.nanmax(off_V) > CLEARLY * bound_V
+            and law.run(law.copied(state), (row, n), inputs, wanted, slack + bound_V) == n
+        ):
             return float(shop.flight.t_s[row]), bound_V
     return None
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import ReplayLaw, Setup
-from diagnosis.firmware_replay_variants import AXES, Variant
+from diagnosis.firmware_replay_law import AXES, ReplayLaw, Setup
+from diagnosis.firmware_replay_variants import Variant
 from records.table import ControllerTable
 
 Array = NDArray[np.float64]

@@ -2,13 +2,16 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis.firmware_replay_build import fused_outputs
+from diagnosis.firmware_replay_columns import OFFSET, constant_inputs, given_columns, output_lines
 from diagnosis.firmware_replay_events import (
+    GRID_SLACK,
     OUTPUT_HELD,
     RESET,
     SAMPLE_LOST,
@@ -20,14 +23,19 @@ from diagnosis.firmware_replay_events import (
     Workshop,
 )
 from diagnosis.firmware_replay_flight import Flight, readings
-from diagnosis.firmware_replay_law import FLOAT32, Setup
+from diagnosis.firmware_replay_law import FLOAT32, ReplayLaw, Setup, channel_agrees
+from diagnosis.firmware_replay_lone import lone_variants
 from diagnosis.firmware_replay_midair import begins_in_flight
+from diagnosis.firmware_replay_overflow import angles_that_wrap, output_wraps, sums_that_overflow
 from diagnosis.firmware_replay_prefilter import fitted_prefilters
 from diagnosis.firmware_replay_variants import Variant, variants
 from records.errors import BadInput
 from records.table import ControllerTable
 
+Array = NDArray[np.float64]
+
 LOG_ROUNDING, MISSING_ROWS, FUSED = "log_rounding", "missing_rows", "fused_multiply_add"
+REPEATED_ROW = "repeated_row"
 IN_FLIGHT = "begins_in_flight"
 INCIDENT_SENTENCES = {
     OUTPUT_HELD: "kept its output although its law ran on (a lost output frame)",
@@ -39,6 +47,7 @@ INCIDENT_SENTENCES = {
 }
 MIMICS = (STALE_ANGLES, STALE_REFERENCES)  # many of these may stand for one change of the firmware
 MANY = 3
+BY_CHANCE = 0.01
 CHANGE_COST = 2  # incidents that one change of the firmware outweighs
 
 
@@ -92,16 +101,17 @@ def explain(flight: Flight, table: ControllerTable, others: Sequence[ControllerT
             return _told(shop.flight, found)
     for shop in shops:
         single = [*variants(table, shop.flight, others), *fitted_prefilters(table, shop.flight, shop.inputs(base))]
-        found = [*_exact(shop, base, [()]), *_exact(shop, base, ((variant,) for variant in single))]
+        lone = _lone(shop, table)
+        found = [*_exact(shop, base, [()]), *_exact(shop, base, ((variant,) for variant in (*single, *lone)))]
         if any(explanation.is_plain for explanation in found):
-            return _told(shop.flight, found)
+            return _or_in_flight(_told(shop.flight, found), shop, table)
         if _is_fused(shop, table):
             sentence = "the firmware was built so that products and sums are fused into one rounding"
             return Told(FUSED, sentence)
-        found += _exact(shop, base, _pairs(single))
+        found += _exact(shop, base, (*_pairs(single), *_wrapped(shop, base, single)))
         if found:
             return _told(shop.flight, found)
-    return _lost_in_gap(shops[0], base) or _from_midair(shops[0], table)
+    return _lost_in_gap(shops[0], base) or _too_few_rows(shops[0].flight) or _from_midair(shops[0], table)
 
 
 def _exact(shop: Workshop, base: Setup, combined: Iterable[tuple[Variant, ...]]) -> list[Explanation]:
@@ -120,6 +130,51 @@ def _exact(shop: Workshop, base: Setup, combined: Iterable[tuple[Variant, ...]])
     return found
 
 
+def _lone(shop: Workshop, table: ControllerTable) -> list[Variant]:
+    """Variants that are tried by themselves: those that the log itself shows beside the table's law."""
+    flight, inputs = shop.flight, shop.inputs(Setup(table))
+    own_V, names = ReplayLaw(Setup(table)).outputs(inputs), flight.input_names
+    return [
+        *constant_inputs(flight, names),
+        *output_wraps(own_V, flight.logged_V, flight),
+        *output_lines(own_V, flight.logged_V, names),
+        *given_columns(),
+        *sums_that_overflow(table, flight, inputs),
+        *angles_that_wrap(flight),
+        *lone_variants(table),
+    ]
+
+
+def channel_cause(flight: Flight, table: ControllerTable, own_V: Array, word_V: float) -> Variant | None:
+    """What lies between answers (n, 2) of the table's law, computed elsewhere in words of `word_V`, and the log; None: unknown."""
+    names, base = flight.input_names, Setup(table)
+    single = [
+        *variants(table, flight, ()),
+        *constant_inputs(flight, names),
+        *output_wraps(own_V, flight.logged_V, flight),
+    ]
+    for variant in (*single, *output_lines(own_V, flight.logged_V, names)):
+        channel = variant.change(base).channel
+        slack_V = np.nan_to_num(flight.half_step_V) + word_V + GRID_SLACK * np.array(channel.step_V)
+        if variant.group == "channel" and channel_agrees(channel, own_V, flight.logged_V, slack_V):
+            return variant
+    return None
+
+
+def _wrapped(shop: Workshop, base: Setup, single: Sequence[Variant]) -> Iterator[tuple[Variant, ...]]:
+    """Each other law with the range in which its answers would wrap round."""
+    for variant in single:
+        setup = variant.change(base)
+        if variant.group == "channel":
+            continue
+        try:
+            own_V = ReplayLaw(setup).outputs(shop.inputs(setup))
+        except BadInput:  # no law can be made from such numbers, so none flew
+            continue
+        logged_V, _ = shop.answers(setup)
+        yield from ((variant, wrap) for wrap in output_wraps(own_V, logged_V, shop.flight))
+
+
 def _pairs(single: Sequence[Variant]) -> Iterator[tuple[Variant, ...]]:
     return ((one, other) for one, other in combinations(single, 2) if one.group != other.group)
 
@@ -136,7 +191,11 @@ def _is_fused(shop: Workshop, table: ControllerTable) -> bool:
 def _told(flight: Flight, found: Sequence[Explanation]) -> Told:
     """The cheapest explanation in words; those of equal cost and another name are its alternatives."""
     best = min(found, key=lambda explanation: explanation.cost)
-    equals = dict.fromkeys(entry.name for entry in found if entry.cost == best.cost and entry.name != best.name)
+    repeats = _repeats(flight, best)
+    if repeats is not None and repeats < BY_CHANCE:
+        return _repeated(flight, best)
+    equals = dict.fromkeys([REPEATED_ROW] if repeats is not None else [])
+    equals |= dict.fromkeys(entry.name for entry in found if entry.cost == best.cost and entry.name != best.name)
     clauses = [change.sentence for change in best.changes]
     clauses += [_incident_clause(flight, kind, count, best) for kind, count in best.trace.kinds().items()]
     incidents = tuple((entry.kind, float(flight.t_s[entry.first])) for entry in best.trace.incidents)
@@ -145,9 +204,48 @@ def _told(flight: Flight, found: Sequence[Explanation]) -> Told:
     sentence = f"the firmware {'; it '.join(clauses)}"
     if equals:
         sentence += f"; these data cannot tell this from {', '.join(equals)}"
+    sentence += _other_ways(best, found)
     if flight.inputs_are_rounded:
         sentence += f"; agreement to the digits of the log only ({_digits(flight)})"
     return Told(best.name, sentence, incidents, tuple(equals))
+
+
+def _other_ways(best: Explanation, found: Sequence[Explanation]) -> str:
+    """What else of the same name explains the log as well."""
+    ways = dict.fromkeys(
+        "; it ".join(change.sentence for change in entry.changes)
+        for entry in found
+        if entry.cost == best.cost and entry.name == best.name
+    )
+    others = list(ways)[1:]
+    if not others:
+        return ""
+    more = f", or one of {len(others) - 1} more of this kind" if len(others) > 1 else ""
+    return f"; or it {others[0]}{more}"
+
+
+def _repeats(flight: Flight, found: Explanation) -> float | None:
+    """The chance of a plant that rested whenever its law was not run, where each such sample is the row before once more; else None."""
+    if found.changes or set(found.trace.kinds()) != {SAMPLE_LOST}:
+        return None
+    lost = [row for entry in found.trace.incidents for row in range(entry.first, entry.first + entry.samples)]
+    columns = np.hstack([flight.logged_V, flight.reference_rad, flight.angle_rad])
+    if not all(np.array_equal(columns[row], columns[row - 1]) for row in lost):
+        return None
+    others = np.delete(np.arange(1, len(columns)), [row - 1 for row in lost])
+    moving = np.any(flight.angle_rad[others] != flight.angle_rad[others - 1], axis=1)
+    return float((1.0 - moving.mean()) ** len(lost)) if moving.size else 1.0
+
+
+def _repeated(flight: Flight, found: Explanation) -> Told:
+    incidents = found.trace.incidents
+    at_s = flight.t_s[incidents[0].first]
+    sentence = (
+        f"the log repeats rows: {sum(entry.samples for entry in incidents)} are the same as the one before in every column, first at "
+        f"{at_s:.6g} s, and without them the replay agrees; a firmware that was not run there would look the same if nothing moved"
+    )
+    times = tuple((REPEATED_ROW, float(flight.t_s[entry.first])) for entry in incidents)
+    return Told(REPEATED_ROW, sentence, times, (SAMPLE_LOST,))
 
 
 def _incident_clause(flight: Flight, kind: str, count: int, found: Explanation) -> str:
@@ -183,6 +281,26 @@ def _lost_in_gap(shop: Workshop, base: Setup) -> Told | None:
         "and the law's state behind them cannot be known"
     )
     return Told(MISSING_ROWS, sentence)
+
+
+def _too_few_rows(flight: Flight) -> Told | None:
+    """The log holds too few of the law's samples: what it saw in the others, and so its state, is not known."""
+    if not flight.lacking:
+        return None
+    n = len(flight.t_s)
+    sentence = f"the log holds {n} of {n + flight.lacking} samples; the law's state between them cannot be known"
+    return Told(MISSING_ROWS, sentence)
+
+
+def _or_in_flight(told: Told, shop: Workshop, table: ControllerTable) -> Told:
+    """An offset looks like a law's sum that is not at 0: that of a log which begins in flight, and hence not at 0 s."""
+    in_flight = _from_midair(shop, table) if told.cause == OFFSET else None
+    if in_flight is None:
+        return told
+    if shop.flight.t_s[0] > 0.0:
+        return replace(in_flight, alternatives=(OFFSET,))
+    sentence = f"{told.sentence}; a log that begins in flight, its law's sum not at 0, would look the same"
+    return replace(told, sentence=sentence, alternatives=(*told.alternatives, IN_FLIGHT))
 
 
 def _from_midair(shop: Workshop, table: ControllerTable) -> Told | None:

@@ -10,18 +10,17 @@ from numpy.typing import NDArray
 
 from diagnosis import firmware_replay_law as law
 from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import Channel, Gains, Setup
+from diagnosis.firmware_replay_law import AXES, Channel, Gains, Setup
 from records.table import ControllerTable, Polynomial
 
 Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
-AXES = ("elevation", "azimuth")
 OBSERVER_POLES = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.95, 0.98)
 LEAST_PLATEAU = 2  # a float32 that moves freely does not meet its extreme twice
 PWM_STEP_V = 10.0 / 3200.0
-LEAST_GRID_V = 1e-4
+LEAST_GRID_V = 5e-5
 
 
 @dataclass(frozen=True)
@@ -35,14 +34,15 @@ class Variant:
 
 
 def variants(table: ControllerTable, flight: Flight, others: Sequence[ControllerTable]) -> list[Variant]:
-    """All single variants that this table and this log allow, the plain ones first."""
+    """All single variants that this table and this log allow and that may come in pairs, the plain ones first."""
+    limits = _limits_found(table, flight)
     return [
         *_timing(),
         *_other_tables(table, others),
         *_windup(),
         *_references(table),
-        *_limits(table, flight),
-        *_quantised(flight),
+        *_limits(limits),
+        *_quantised(flight, limits),
         *_arithmetic(),
         *_schedule(table),
         *_rounded(table),
@@ -74,6 +74,10 @@ def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> 
 
 def _windup() -> Iterator[Variant]:
     yield Variant("no_anti_windup", "windup", "has no anti-windup", partial(replace, windup=law.WINDUP_NONE))
+    sentence = "holds its sum where the limited voltage would come from (clamped integrator)"
+    yield Variant("clamped_integrator", "windup", sentence, partial(replace, windup=law.WINDUP_CLAMP))
+    sentence = "does not move its sum while its voltage is at a limit (conditional integration)"
+    yield Variant("conditional_integration", "windup", sentence, partial(replace, windup=law.WINDUP_FREEZE))
     sentence = "feeds the limited voltage back into its recursion (anti-windup polynomial 1)"
     yield Variant("anti_windup_fb", "windup", sentence, partial(_observer, a=(1.0, 0.0, 0.0)))
     for pole in OBSERVER_POLES:
@@ -135,18 +139,29 @@ def _backward_gain(time_constant_s: float, sample_period_s: float) -> float:
     return sample_period_s / (time_constant_s + sample_period_s)
 
 
-def _limits(table: ControllerTable, flight: Flight) -> Iterator[Variant]:
-    """Limits read off the log: extremes at which it stays, or beyond the stated ones; within the law or only behind it."""
+def _limits_found(table: ControllerTable, flight: Flight) -> dict[str, dict[str, float]]:
+    """Limits read off the log, by axis: extremes at which it stays, or beyond the stated ones."""
     found: dict[str, dict[str, float]] = {}
     for axis, u_V in zip(AXES, flight.logged_V.T, strict=True):
         stated = getattr(table, axis)
+        if np.nanmin(u_V) == np.nanmax(u_V):  # an input that stands still shows no limit
+            continue
         for name, extreme, outwards in (("u_min_V", np.nanmin(u_V), -1.0), ("u_max_V", np.nanmax(u_V), 1.0)):
             beyond = outwards * (np.float32(extreme) - np.float32(getattr(stated, name)))
             if beyond > 0.0 or (beyond < 0.0 and np.sum(u_V == extreme) >= LEAST_PLATEAU):
                 found.setdefault(axis, {})[name] = float(extreme)
+    return found
+
+
+def _shown(found: dict[str, dict[str, float]]) -> str:
+    return ", ".join(f"{axis} {name} {value:g} V" for axis, limits in found.items() for name, value in limits.items())
+
+
+def _limits(found: dict[str, dict[str, float]]) -> Iterator[Variant]:
+    """Other limits within the law, or only behind it."""
     if not found:
         return
-    shown = ", ".join(f"{axis} {name} {value:g} V" for axis, limits in found.items() for name, value in limits.items())
+    shown = _shown(found)
     yield Variant("other_limits", "limits", f"has other limits: {shown}", partial(_other_limits, found=found))
     behind = f"is limited behind its law, the inputs were logged after that: {shown}"
     yield Variant("limited_behind_the_law", "channel", behind, partial(_limited_behind, found=found))
@@ -158,29 +173,38 @@ def _other_limits(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
     return setup
 
 
+def _changed_and_limited(setup: Setup, change: Change, found: dict[str, dict[str, float]]) -> Setup:
+    return _limited_behind(change(setup), found)
+
+
 def _limited_behind(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
     low = [found.get(axis, {}).get("u_min_V", -1e9) for axis in AXES]
     high = [found.get(axis, {}).get("u_max_V", 1e9) for axis in AXES]
     return replace(setup, channel=replace(setup.channel, low_V=(low[0], low[1]), high_V=(high[0], high[1])))
 
 
-def _quantised(flight: Flight) -> Iterator[Variant]:
+def _quantised(flight: Flight, limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
     """Grids on which all logged voltages lie: that of the firmware's own PWM, and whatever the log shows."""
-    steps = [_grid(u_V) for u_V in flight.logged_V.T]
+    steps = [grid_step(u_V) for u_V in flight.logged_V.T]
     if not any(steps) or (flight.inputs_are_rounded and all(_is_decimal(step) for step in steps)):
         return
-    shown = " and ".join(f"{step:.6g} V" for step in steps)
-    for name, rounding in (
-        ("to the nearest", law.ROUND_NEAREST),
-        ("down", law.ROUND_DOWN),
-        ("towards zero", law.ROUND_TO_ZERO),
-    ):
+    for rounding, name in law.ROUNDINGS.items():
         channel = Channel(step_V=(steps[0], steps[1]), rounding=rounding)
-        sentence = f"sends voltages in steps of {shown}, rounded {name}"
-        yield Variant("quantised_output", "channel", sentence, partial(replace, channel=channel))
+        sentence = f"sends voltages in steps of {steps_in_words(steps)}, rounded {name}"
+        change = partial(replace, channel=channel)
+        yield Variant("quantised_output", "channel", sentence, change)
+        if limits:
+            ends = f"lets an integer saturate behind its law: {_shown(limits)}; it {sentence}"
+            saturates = partial(_changed_and_limited, change=change, found=limits)
+            yield Variant("output_saturates", "channel", ends, saturates)
 
 
-def _grid(u_V: Array) -> float:
+def steps_in_words(steps: Sequence[float]) -> str:
+    """The steps of both inputs as a person says them."""
+    return " and ".join(dict.fromkeys(f"{step:.6g} V" for step in steps if step))
+
+
+def grid_step(u_V: Array) -> float:
     """The step of the grid on which all values lie; 0 where there is none above LEAST_GRID_V."""
     distinct = np.unique(u_V[np.isfinite(u_V)])
     gaps = np.diff(distinct)

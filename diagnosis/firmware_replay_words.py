@@ -22,11 +22,15 @@ FLOWN_IN_FIXED = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Replayed:
-    """Inputs (n, 2) in V that the law of one arithmetic gives on a log, and where (n, 2) the log holds another word."""
+    """Inputs (n, 2) in V that the law of one arithmetic gives on a log, and where (n, 2) the log holds another word.
+
+    `word_V` is the unit of the last place in fixed point, 0 in float32.
+    """
 
     arithmetic: str
     u_V: Array
     differs: NDArray[np.bool_]
+    word_V: float = 0.0
 
     @property
     def agreeing(self) -> float:
@@ -60,7 +64,7 @@ def replayed_in_fixed(flight: Flight, table: ControllerTable) -> Replayed:
     outputs = _run(table, FIXED, words_from_floats(_given(flight), formats.angle_places))
     differs = words_from_floats(flight.logged_V, formats.voltage_places) != outputs
     u_V: Array = outputs.view(np.int32).astype(np.float64) * 2.0**-formats.voltage_places
-    return Replayed(FIXED, u_V, differs & ~np.isnan(flight.logged_V))
+    return Replayed(FIXED, u_V, differs & ~np.isnan(flight.logged_V), 2.0**-formats.voltage_places)
 
 
 def _given(flight: Flight) -> Array:

@@ -4,7 +4,7 @@ from diagnosis.firmware_replay import NOT_FOUND
 from records.diagnosis import Firmware
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
-_OF_THE_LOG = ("log_rounding", "missing_rows", "begins_in_flight", "fused_multiply_add")
+_OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")
 _ROWS_LACK = "rows that the log lacks"
 
 

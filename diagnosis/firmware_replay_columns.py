@@ -1,0 +1,125 @@
+"""Columns that were taken for each other, turned in sign, written in another unit, or that stand still: of the inputs, read off the log."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.firmware_replay_flight import Flight
+from diagnosis.firmware_replay_law import Channel
+from diagnosis.firmware_replay_variants import Variant
+
+Array = NDArray[np.float64]
+
+NEAR = 1e-5  # of the greatest value: the run itself holds what is nearer than this to the digits of the log
+MOVES_V = 1e-3  # an output that moves less tells no factor from an offset
+WHOLE = 1e-6
+EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT = (
+    "outputs_exchanged",
+    "output_sign",
+    "output_unit",
+    "output_scaled",
+    "output_offset",
+    "input_constant",
+)
+GIVEN = ("elevation reference", "azimuth reference", "elevation angle", "azimuth angle")
+
+
+@dataclass(frozen=True)
+class _Line:
+    """An input as a line of the law's output: gain u + offset_V."""
+
+    gain: float
+    offset_V: float
+
+
+def given_columns() -> Iterator[Variant]:
+    """References or angles taken for each other, and each of the four with its sign turned."""
+    for what, columns in (("references", (1, 0, 2, 3)), ("angles", (0, 1, 3, 2))):
+        sentence = f"takes its two {what} for each other, or the log has these columns exchanged"
+        yield Variant("inputs_exchanged", "columns", sentence, partial(replace, columns=columns))
+    for place, what in enumerate(GIVEN):
+        signs = tuple(-1.0 if column == place else 1.0 for column in range(4))
+        sentence = f"takes the {what} with the other sign than the log"
+        yield Variant("input_sign", "columns", sentence, partial(replace, signs=signs))
+
+
+def constant_inputs(flight: Flight, names: Sequence[str]) -> Iterator[Variant]:
+    """Inputs that stand still in the log, whatever the law answers."""
+    still = [float(column[0]) if np.nanmin(column) == np.nanmax(column) else None for column in flight.logged_V.T]
+    if all(value is None for value in still):
+        return
+    low, high = ([outside if value is None else value for value in still] for outside in (-1e9, 1e9))
+    shown = " and ".join(
+        f"{name} stands at {value:g} V" for name, value in zip(names, still, strict=True) if value is not None
+    )
+    sentence = f"does not drive all inputs: {shown} throughout, whatever its law answers"
+    yield Variant(
+        CONSTANT,
+        "channel",
+        sentence,
+        partial(replace, channel=Channel(low_V=(low[0], low[1]), high_V=(high[0], high[1]))),
+    )
+
+
+def output_lines(own_V: Array, logged_V: Array, names: Sequence[str]) -> Iterator[Variant]:
+    """Both logged inputs (n, 2) as lines of the law's answers (n, 2): exchanged, turned, in another unit, or set off."""
+    for source in ((0, 1), (1, 0)):
+        lines = [_line(own_V[:, of], logged_V[:, place]) for place, of in enumerate(source)]
+        first, second = lines
+        if (
+            first is None
+            or second is None
+            or first.gain * second.gain == 0.0
+            or (source == (0, 1) and first == second == _Line(1.0, 0.0))
+        ):
+            continue
+        told = [
+            [(EXCHANGED, "exchanges its two outputs, or the log has these columns exchanged")]
+            if source == (1, 0)
+            else []
+        ]
+        told += [list(_told(line, name)) for line, name in zip((first, second), names, strict=True)]
+        kinds = dict.fromkeys(kind for kind, _ in chain(*told))
+        clauses = "; it ".join(sentence for _, sentence in chain(*told))
+        channel = Channel(source, (first.gain, second.gain), (first.offset_V, second.offset_V))
+        yield Variant(" + ".join(kinds), "channel", clauses, partial(replace, channel=channel))
+
+
+def _line(own_V: Array, logged_V: Array) -> _Line | None:
+    """The line of one input; None where it is none."""
+    known = np.isfinite(logged_V)
+    own, logged = own_V[known], logged_V[known]
+    scale = float(np.abs(logged).max())
+    if np.ptp(own) < MOVES_V or scale == 0.0:
+        return None
+    gain, offset_V = np.polyfit(own, logged, 1)
+    line = _Line(_rounded(float(gain), 1.0), _rounded(float(offset_V), scale))
+    return line if np.abs(line.gain * own + line.offset_V - logged).max() < NEAR * scale else None
+
+
+def _rounded(value: float, scale: float) -> float:
+    """A few digits where the number has no more: people write 1000 and not 999.9998."""
+    if abs(value) < WHOLE * scale:
+        return 0.0
+    short = float(f"{value:.5g}")
+    return short if abs(short - value) < WHOLE * max(scale, abs(value)) else value
+
+
+def _told(line: _Line, name: str) -> Iterator[tuple[str, str]]:
+    gain = abs(line.gain)
+    if line.gain < 0.0:
+        yield TURNED, f"sends {name} with its sign turned, or the log has it so"
+    if gain != 1.0:
+        is_unit = abs(math.log10(gain) - round(math.log10(gain))) < WHOLE
+        kind, why = (UNIT, "another unit") if is_unit else (SCALED, "another scale")
+        yield kind, f"has {gain:g} times its law's answer logged as {name} ({why})"
+    if line.offset_V != 0.0:
+        yield (
+            OFFSET,
+            f"sends {name} {abs(line.offset_V):.6g} V {'above' if line.offset_V > 0.0 else 'below'} its law's answer",
+        )

@@ -1,0 +1,72 @@
+"""What a firmware may do otherwise that is tried by itself: too many variants, or too fine ones, to be paired with others."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import product
+
+import numpy as np
+
+from diagnosis.firmware_replay_law import AXES, Setup
+from diagnosis.firmware_replay_variants import Variant
+from records.table import ControllerTable
+
+OLDEST_ANGLES = 4  # samples
+OLDEST_REFERENCES = 50
+PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
+ROWS = ("q_V_rad", "p")
+
+
+def lone_variants(table: ControllerTable) -> list[Variant]:
+    """Those that are too many, or too fine, to be paired with others."""
+    return [*_older_angles(), *_other_times_of_references(), *_last_places(table)]
+
+
+def _older_angles() -> Iterator[Variant]:
+    for psi, phi in product(range(OLDEST_ANGLES + 1), repeat=2):
+        if {0, psi, phi} != {0, max(psi, phi)} or max(psi, phi) > PAIRED_AGE:  # the rest may be paired
+            sentence = f"used the elevation measured {_samples(psi)} and the azimuth measured {_samples(phi)} before"
+            yield Variant("stale_sample", "angles", sentence, partial(replace, angle_lags=(psi, phi)))
+
+
+def _other_times_of_references() -> Iterator[Variant]:
+    for samples in range(1, OLDEST_REFERENCES + 1):
+        late = f"used references that the log holds {_samples(samples)} too late"
+        yield Variant("reference_logged_late", "references", late, partial(replace, reference_lag=-samples))
+        if samples > PAIRED_AGE:
+            old = f"used references {_samples(samples)} old"
+            yield Variant("stale_reference", "references", old, partial(replace, reference_lag=samples))
+
+
+def _samples(count: int) -> str:
+    return "one sample" if count == 1 else f"{count} samples"
+
+
+def _last_places(table: ControllerTable) -> Iterator[Variant]:
+    """Each coefficient one unit of its last place up or down: a number that another program rounded, or one bit that was lost."""
+    for name in AXES:
+        axis = getattr(table, name)
+        for key in ("q_V_rad", "p", "a", "feedforward_V"):
+            for place in _places(getattr(axis, key)):
+                for way, towards in (("up", np.inf), ("down", -np.inf)):
+                    change = partial(_one_place, name=name, key=key, place=place, towards=towards)
+                    where = f"{name} {key}[{']['.join(map(str, place))}]"
+                    sentence = f"has the coefficient {where} one unit of the last place {way}"
+                    yield Variant("coefficient_last_place", "coefficients", sentence, change)
+
+
+def _places(numbers: Sequence[float] | Sequence[Sequence[float]]) -> Iterator[tuple[int, ...]]:
+    """Where numbers stand that are not zero, in a row or in rows."""
+    for first, entry in enumerate(numbers):
+        if not isinstance(entry, Sequence):
+            yield from [(first,)] if entry else []
+            continue
+        yield from ((first, second) for second, number in enumerate(entry) if number)
+
+
+def _one_place(setup: Setup, name: str, key: str, place: tuple[int, ...], towards: float) -> Setup:
+    numbers = getattr(getattr(setup.table, name), key)
+    row = list(numbers[place[0]] if key in ROWS else numbers)
+    row[place[-1]] = float(np.nextafter(np.float32(row[place[-1]]), np.float32(towards)))
+    changed = tuple(row) if key not in ROWS else (*numbers[: place[0]], tuple(row), *numbers[place[0] + 1 :])
+    return setup.with_axis(name, **{key: changed})
