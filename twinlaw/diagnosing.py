@@ -9,6 +9,7 @@ from threading import Thread
 from diagnosis.abreast import through_when_interrupted
 from diagnosis.clock import from_their_start
 from diagnosis.engine import Material, diagnose
+from diagnosis.firmware_replay import FirmwareReplay
 from diagnosis.firmware_replay_table import replay_log, table_of
 from diagnosis.integrity import demand, examine
 from diagnosis.result import Result
@@ -20,12 +21,14 @@ from records.files import demand_writable, remove_all, write_atomic
 from records.log import RunLog, load_log
 from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
+from records.table import ControllerTable
 from records.units import unit_suffix
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.effects.api import library, without_effects
 from toolchain.memory import keep_freed_memory
 from twinlaw.console import stage
+from twinlaw.diagnosis_firmware import differs
 from twinlaw.diagnosis_retune import moved_most
 from twinlaw.page import Page, page_text
 
@@ -103,7 +106,9 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
         raise BadInput("hold-out logs", "--holdout", "two of one name", "names that differ", "rename one")
     integrity = examine(read[:split], bound, holdout=read[split:], names=names)
     demand(integrity)
-    firmware, told = _firmware(read, (*logs, *holdout))
+    paths = (*logs, *holdout)
+    replays = [replay_log(log, path) for log, path in zip(read, paths, strict=True)]
+    firmware, told = _firmware(paths, replays)
     used = [~entry.excluded for entry in integrity.logs]
     timed, counted = from_their_start(read, names)
     parts = stretches(timed[:split], used[:split], names[:split])
@@ -115,14 +120,21 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
         used=[*parts.used, *used[split:]],
         firmware=firmware,
         notes=(*integrity.notes, *told, *counted, *parts.notes),
-        tables=[table_of(log, path) for log, path in zip(read[split:], holdout, strict=True)],
+        tables=[_flown(*entry) for entry in zip(read[split:], holdout, replays[split:], strict=True)],
     )
 
 
-def _firmware(logs: Sequence[RunLog], paths: Sequence[Path]) -> tuple[Firmware | None, tuple[str, ...]]:
+def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
+    """The table whose law flew a hold-out log; None where another firmware did: its error in the closed loop is not the model's."""
+    own = table_of(log, path)
+    return None if replay is not None and differs(replay.record()) else own
+
+
+def _firmware(
+    paths: Sequence[Path], replays: Sequence[FirmwareReplay | None]
+) -> tuple[Firmware | None, tuple[str, ...]]:
     """What running the controller's code again shows, of the first log where it differs, and a sentence for every log that it tells of."""
-    replays = [(path.name, replay_log(log, path)) for log, path in zip(logs, paths, strict=True)]
-    found = [(name, replay) for name, replay in replays if replay is not None]
+    found = [(path.name, replay) for path, replay in zip(paths, replays, strict=True) if replay is not None]
     if not found:
         return None, ()
     worst = min((replay for _, replay in found), key=lambda replay: (replay.bit_exact, replay.replayed))

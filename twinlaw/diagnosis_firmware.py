@@ -5,6 +5,18 @@ from records.diagnosis import Firmware
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")
+# What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
+_OF_THE_COLUMNS = (
+    "outputs_exchanged",
+    "output_sign",
+    "output_unit",
+    "output_scaled",
+    "output_offset",
+    "input_constant",
+    "inputs_exchanged",
+    "input_sign",
+    "reference_logged_late",
+)
 _ROWS_LACK = "rows that the log lacks"
 
 
@@ -39,7 +51,12 @@ def firmware_first(firmware: Firmware | None) -> str:
             f"The log holds commands{since} that the firmware of its table does not compute: where they differ, "
             "a cause named in the plant is doubtful."
         )
-    return f"The firmware does not do what its table says: {_cause(firmware)}. What seems to be amiss in the plant may come from that."
+    if firmware.cause is not None and firmware.cause.partition(":")[0].split(" + ")[0] in _OF_THE_COLUMNS:
+        return (
+            f"The log does not hold what the firmware of its table computes: {_cause(firmware)}. "
+            "What seems to be amiss in the plant may come from that."
+        )
+    return f"The firmware does not do what its table says: {_cause(firmware)}. The plant is held against the inputs that were logged."
 
 
 def _cause(firmware: Firmware) -> str:

@@ -285,6 +285,11 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
     [
         ("late_output: the firmware sent its output one sample late", 0.01, "does not do what its table says: the"),
         (
+            "output_sign: the firmware sends u_T_V with its sign turned, or the log has it so",
+            0.0,
+            "The log does not hold what the firmware of its table computes: the firmware sends u_T_V with",
+        ),
+        (
             "not_found: none of the firmwares leaves no difference",
             19.99,
             "The log holds commands from 19.99 s on that the firmware of its table does not",

@@ -1,0 +1,88 @@
+"""`twinlaw diagnose` on flights of another firmware over the plant as stated: the firmware is told first, and the plant has no gap."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from records.diagnosis import Diagnosis, load_diagnosis
+from records.files import write_atomic
+from records.log import save_log
+from records.table import table_text
+from sim.loop import Controller, fly
+from sim.manoeuvres import flight
+from tests.diagnosis.firmware_flights import Wrapped, flown, plant, rows_of, stale
+from tests.law_tables import ce150_table, changed_axis
+from twinlaw.command import main
+from verification.host_law import host_law
+
+TABLE = ce150_table()
+
+
+def _wraps_at_8_V() -> Wrapped:
+    def after(k: int, sent: list[tuple[float, float]]) -> tuple[float, float]:
+        u_M_V, u_T_V = sent[k]
+        return float(u_M_V - 16.0 * np.floor((u_M_V + 8.0) / 16.0)), u_T_V
+
+    return Wrapped(host_law(TABLE), after=after)  # type: ignore[arg-type]
+
+
+def _stale() -> Wrapped:
+    return Wrapped(host_law(TABLE), stale((2, 3)))
+
+
+def _other_gains() -> Controller:
+    rows = tuple(tuple(1.05 * value for value in row) for row in TABLE.elevation.q_V_rad)
+    return host_law(changed_axis(TABLE, "elevation", q_V_rad=rows))
+
+
+def _diagnosed(folder: Path, controller: Controller, holdout: Controller | None = None) -> Diagnosis:
+    write_atomic(folder / "controller.json", table_text(TABLE))
+    save_log(folder / "run.csv", flown(controller, TABLE, 30.0))
+    options = []
+    if holdout is not None:
+        log = fly(plant(), holdout, flight(plant()), table_digest=TABLE.digest)
+        save_log(folder / "hold.csv", rows_of(log, log.t_s < 40.0))
+        options = ["--holdout", str(folder / "hold.csv")]
+    out = folder / "out"
+    assert main(["diagnose", "--plant", "plants/ce150.toml", *options, "--out", str(out), str(folder / "run.csv")]) == 0
+    return load_diagnosis(out / "diagnosis.json")
+
+
+@pytest.mark.parametrize(
+    ("controller", "cause", "first"),
+    [
+        (_wraps_at_8_V, "output_wraps", "lets an integer overflow: u_M_V wraps round at +-8 V"),
+        (_stale, "stale_sample", "used both angles measured one sample before"),
+        (
+            _other_gains,
+            "not_found",
+            "The log holds commands from 0 s on that the firmware of its table does not compute",
+        ),
+    ],
+)
+def test_another_firmware_over_the_stated_plant_is_no_gap_and_is_told_first(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    controller: Callable[[], Controller],
+    cause: str,
+    first: str,
+) -> None:
+    found = _diagnosed(tmp_path, controller())
+    assert (found.verdict, found.found) == ("no gap", ())
+    assert found.firmware is not None
+    assert (found.firmware.bit_exact, (found.firmware.cause or "").partition(":")[0]) == (False, cause)
+    told = capsys.readouterr().out
+    assert 0 <= told.index(first) < told.index("no gap")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert 0 <= page.index(first) < page.index("The plant file explains these logs")
+
+
+@pytest.mark.parametrize(("holdout", "is_flown"), [(lambda: host_law(TABLE), True), (_stale, False)])
+def test_only_a_hold_out_log_of_the_tables_own_law_is_flown_again_in_the_closed_loop(
+    tmp_path: Path, holdout: Callable[[], Controller], is_flown: bool
+) -> None:
+    found = _diagnosed(tmp_path, host_law(TABLE), holdout())
+    assert found.shrinkage is not None
+    assert (found.shrinkage.closed_loop is not None) == is_flown
