@@ -37,6 +37,7 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
+AIR_EXPLAINS = 1.5  # times what the best name explains: beside EMPS' friction, which is there, a gust is a little likelier
 WELL_EXPLAINED = 0.85  # probability of a name from which the air is not asked
 ASKED = 4  # hypotheses beside which axes may yield
 # Of what the best single effect explains, that yielding axes must explain besides: 0.02 at EMPS, whose friction is dry, 1 and more
@@ -141,7 +142,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     case, retuned = seen.case, seen.retuned
     left, weighed = _weighed(seen, found, beyond)
     if max(weighed.retune, *weighed.probabilities, 0.0) < WELL_EXPLAINED:
-        further = [entry for entry in gusts(case, retuned) if entry.evidence > found.tried[0].evidence]
+        enough = retuned.evidence + AIR_EXPLAINS * (found.tried[0].evidence - retuned.evidence)
+        further = [entry for entry in gusts(case, retuned) if entry.evidence > enough]
         if further:
             found = replace(found, tried=tuple(sorted((*found.tried, *further), key=lambda entry: -entry.evidence)))
             left, weighed = _weighed(seen, found, beyond)

@@ -22,7 +22,7 @@ from tests.diagnosis.conftest import Fly
 from tests.plants import bound
 
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
-TILT = {"azimuth.tilt": {"m": 0.005, "Phi_0": 0.15}}
+TILT = {"azimuth.tilt": {"m": 0.005, "Phi_0": 0.15, "e": 0.0}}
 PERIOD_S = 0.02
 
 
