@@ -29,7 +29,7 @@ def by_bic(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis:
     Q = np.linalg.qr(J, mode="reduced")[0]
     left = _beside(Q, (error / scale).ravel())
     known = library(bound)
-    names = [name for name, effect in known.items() if effect.on_equations and not redundant(bound, effect)]
+    names = [name for name, e in known.items() if e.on_equations and e.repeats and not redundant(bound, e)]
     whole = combined(bound, names)
     fits = []
     for effect in (known[name] for name in names):
