@@ -9,6 +9,7 @@ from records.diagnosis import (
     Agreement,
     ClosedLoop,
     Diagnosis,
+    ErrorResponse,
     Hypothesis,
     PlaceShare,
     Shrinkage,
@@ -49,6 +50,15 @@ def test_a_file_without_the_further_keys_of_shrinkage_is_read() -> None:
     assert found.shrinkage is not None
     assert found.shrinkage.agreement == {}
     assert found.shrinkage.closed_loop is None
+
+
+def test_error_responses_are_read_back_and_may_lack_in_a_file_of_the_contract() -> None:
+    row = ErrorResponse("psi_rad", "u_M_V", 0.5, 1.0, 0.12, 0.01, -1.4, 0.83)
+    told = replace(WHOLE, error_responses=(row,))
+    content = json.loads(diagnosis_text(told))
+    assert parse_diagnosis(content, "file") == told
+    del content["error_responses"]
+    assert parse_diagnosis(content, "file") == replace(WHOLE, error_responses=())
 
 
 @pytest.mark.parametrize(("part", "key"), [("shrinkage", "rms_after"), ("unknown", "probability")])
