@@ -26,6 +26,8 @@ EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT = (
     "output_offset",
     "input_constant",
 )
+INPUTS_EXCHANGED, INPUT_SIGN = "inputs_exchanged", "input_sign"
+OF_THE_COLUMNS = (EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT, INPUTS_EXCHANGED, INPUT_SIGN)
 GIVEN = ("elevation reference", "azimuth reference", "elevation angle", "azimuth angle")
 
 
@@ -41,11 +43,11 @@ def given_columns() -> Iterator[Variant]:
     """References or angles taken for each other, and each of the four with its sign turned."""
     for what, columns in (("references", (1, 0, 2, 3)), ("angles", (0, 1, 3, 2))):
         sentence = f"takes its two {what} for each other, or the log has these columns exchanged"
-        yield Variant("inputs_exchanged", "columns", sentence, partial(replace, columns=columns))
+        yield Variant(INPUTS_EXCHANGED, "columns", sentence, partial(replace, columns=columns))
     for place, what in enumerate(GIVEN):
         signs = tuple(-1.0 if column == place else 1.0 for column in range(4))
         sentence = f"takes the {what} with the other sign than the log"
-        yield Variant("input_sign", "columns", sentence, partial(replace, signs=signs))
+        yield Variant(INPUT_SIGN, "columns", sentence, partial(replace, signs=signs))
 
 
 def constant_inputs(flight: Flight, names: Sequence[str]) -> Iterator[Variant]:

@@ -15,6 +15,7 @@ OLDEST_ANGLES = 4  # samples
 OLDEST_REFERENCES = 50
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
+LOGGED_LATE = "reference_logged_late"
 
 
 def lone_variants(table: ControllerTable) -> list[Variant]:
@@ -32,7 +33,7 @@ def _older_angles() -> Iterator[Variant]:
 def _other_times_of_references() -> Iterator[Variant]:
     for samples in range(1, OLDEST_REFERENCES + 1):
         late = f"used references that the log holds {_samples(samples)} too late"
-        yield Variant("reference_logged_late", "references", late, partial(replace, reference_lag=-samples))
+        yield Variant(LOGGED_LATE, "references", late, partial(replace, reference_lag=-samples))
         if samples > PAIRED_AGE:
             old = f"used references {_samples(samples)} old"
             yield Variant("stale_reference", "references", old, partial(replace, reference_lag=samples))

@@ -1,22 +1,14 @@
 """What a diagnosis says of the firmware: whether it was run again, whether it did as its table says, and what that makes doubtful."""
 
 from diagnosis.firmware_replay import NOT_FOUND
+from diagnosis.firmware_replay_columns import OF_THE_COLUMNS
+from diagnosis.firmware_replay_lone import LOGGED_LATE
 from records.diagnosis import Firmware
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")
 # What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
-_OF_THE_COLUMNS = (
-    "outputs_exchanged",
-    "output_sign",
-    "output_unit",
-    "output_scaled",
-    "output_offset",
-    "input_constant",
-    "inputs_exchanged",
-    "input_sign",
-    "reference_logged_late",
-)
+_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE)
 _ROWS_LACK = "rows that the log lacks"
 
 
