@@ -50,7 +50,8 @@ def test_only_bands_are_named_in_which_the_error_goes_with_what_is_taken_off() -
 def test_a_delay_shows_as_its_own_frequency_response(plant: BoundPlant, fly: Fly, place: str) -> None:
     # Truth, the rig having the stated parameters and the model not being re-tuned: D = exp(-j w tau) - 1, of size 2 sin(w tau / 2) and
     # phase -90 deg - w tau / 2, at some frequency of the band. Tolerance: three deviations, and 40 % and 6 deg as the answer is linear
-    # about the flight: from an answer by finite differences it is 1 % off on the elevation, 15 % on the azimuth with its dry friction.
+    # about the flight: from an answer by finite differences it is 1 % off on the elevation, 15 % on the azimuth, where the size of the
+    # delay comes out about a third too small.
     tau_s = 0.04
     ground = delayed(plant, fly, f"{place}_input.delay", tau_s)
     output, u = ("psi_rad", "u_M_V") if place == "main" else ("phi_rad", "u_T_V")
