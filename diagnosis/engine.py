@@ -37,9 +37,8 @@ ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
-AIR_EXPLAINS = (
-    1.5  # times what the best name explains: beside EMPS' friction, which is there, a gust is a little likelier
-)
+# Times what the best name explains that a gust must: beside EMPS' dry friction, which is there, a gust is a little likelier.
+AIR_EXPLAINS = 1.5
 WELL_EXPLAINED = 0.85  # probability of a name from which the air is not asked
 ASKED = 4  # hypotheses beside which axes may yield
 # Of what the best single effect explains, that yielding axes must explain besides: 0.02 at EMPS, whose friction is dry, 1 and more

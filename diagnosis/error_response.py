@@ -19,7 +19,7 @@ from diagnosis.filter import Disturbances
 from diagnosis.ground import Ground
 from diagnosis.hypothesis import coefficients
 from diagnosis.signals import by_step, value_of
-from diagnosis.spectra import BANDS_HZ, coherence, cross_power, power
+from diagnosis.spectra import BANDS_HZ, TINY, coherence, cross_power, power
 from records.diagnosis import ErrorResponse
 
 Array = NDArray[np.float64]
@@ -28,7 +28,6 @@ MEMORY_S = 0.6  # of the filter sought: errors that last longer show as errors o
 BELIEVED = 0.6  # coherence below which a frequency response is not read (Tischler and Remple 2012)
 SURE = 3.0  # standard deviations that an error must be from none
 HARDLY = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
-TINY = 1e-300
 
 
 def error_responses(ground: Ground) -> tuple[ErrorResponse, ...]:

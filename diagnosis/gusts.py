@@ -21,11 +21,11 @@ SHARES = (0.003, 0.01, 0.03, 0.1)  # of the axis' usual torque
 CALMER = 0.7  # decades by which the unrest is lower where a gust takes its place
 FACTORS = (2.0, 1.4, 1.15)  # by which size and time are then tried apart
 ROUNDS = 4
-REACH = 1.2
+REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 
 def gusts(case: Case, nominal: Tried) -> list[Tried]:
-    """The plant with a gust on each axis that moves and has none stated."""
+    """The plant with a gust on each axis that moves, for those that can be fitted."""
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
     axes = [name.split(".")[0] for name in case.kit.gusts]
     return [found for axis in axes if axis not in held and (found := _gust(case, nominal, axis)) is not None]

@@ -27,10 +27,8 @@ def answers_section(diagnosis: Diagnosis) -> Section | None:
     )
 
 
-def largest_answer(diagnosis: Diagnosis) -> str:
-    """The surest error response in one line; empty where there is none."""
-    if not diagnosis.error_responses:
-        return ""
+def surest_answer(diagnosis: Diagnosis) -> str:
+    """The error response of the highest coherence in one line, where there is one."""
     row = max(diagnosis.error_responses, key=lambda row: row.coherence)
     output, u = _what(row)
     size = f"{_size(row)}, phase {degrees(row.phase_rad):.0f} deg (coherence {row.coherence:.2f})"

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from records.diagnosis import Diagnosis
 from twinlaw import console
-from twinlaw.diagnosis_answers import largest_answer
+from twinlaw.diagnosis_answers import surest_answer
 from twinlaw.diagnosis_firmware import firmware_first, firmware_in_words
 from twinlaw.diagnosis_retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.diagnosis_words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
@@ -34,8 +34,8 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
         yield f"sparse regression suggests: {diagnosis.unknown.form}"
     if diagnosis.places and diagnosis.verdict == "gap":
         yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
-    if largest_answer(diagnosis):
-        yield largest_answer(diagnosis)
+    if diagnosis.error_responses:
+        yield surest_answer(diagnosis)
     yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")
     yield from _retuned(diagnosis, moved)
     if diagnosis.found and diagnosis.shrinkage is not None and diagnosis.shrinkage.fraction is not None:
