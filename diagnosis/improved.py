@@ -43,11 +43,11 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    effects = {**fit.supposed.effects, **case.draws}
+    effects = {**case.draws, **fit.supposed.effects}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant
-    sizes = {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
-    sizes |= {name: dict(case.stated_sd[name]) for name in case.draws}
+    sizes = {name: dict(case.stated_sd[name]) for name in case.draws}
+    sizes |= {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
     return with_effects(bound, effects, sd=sizes, source="found by twinlaw diagnose").plant
 
 

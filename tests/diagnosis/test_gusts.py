@@ -7,6 +7,7 @@ import pytest
 from diagnosis.case import Case, make_case
 from diagnosis.engine import Material, diagnose, nominal_fit
 from diagnosis.gusts import gust_sd, gusts
+from diagnosis.improved import improved_plant
 from diagnosis.kit import make_kit
 from diagnosis.trial import Tried, evidence
 from records.log import RunLog
@@ -68,3 +69,15 @@ def test_a_gust_that_the_plant_file_states_is_carried_along_and_not_flown_with(p
     assert result.diagnosis.verdict == "no gap"
     kept = bind(result.plant).effects["azimuth.gust"]["sigma"]
     assert (kept.value, kept.sd) == pytest.approx((5e-4, 1e-4))
+
+
+def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: the air is four times as restless as the plant file has it, on the same axis; three deviations.
+    stated = with_effects(
+        plant, {"elevation.gust": {"sigma": 2.5e-4, "T": 0.7}}, sd={"elevation.gust": {"sigma": 1e-4}}
+    )
+    case = make_case(make_kit(plant), [fly(seed, GUST, rig_seed=90) for seed in (91, 92)], stated=stated)
+    nominal = nominal_fit(case)
+    found = {entry.effects[0]: entry for entry in gusts(case, Tried((), nominal, evidence(nominal)))}
+    sigma = bind(improved_plant(case, found["elevation.gust"].fit)).effects["elevation.gust"]["sigma"]
+    assert abs(sigma.values[0] - GUST["elevation.gust"]["sigma"]) < 3.0 * sigma.sds[0] < 6e-4
