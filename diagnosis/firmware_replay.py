@@ -86,7 +86,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         if behind_fixed is not None:
             return behind_fixed
         return FirmwareReplay(
-            True, False, at_s, NOT_FOUND, _unexplained(residuals, _begun(table, run, int(rows[0]))), residuals
+            True, False, at_s, NOT_FOUND, _unexplained(residuals, _hint(flight, table, run, int(rows[0]))), residuals
         )
     if told.cause is None and at_s is None:
         return FirmwareReplay(True, True, None, None, None, residuals)
@@ -155,27 +155,33 @@ def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ..
     return tuple(result)
 
 
-def _begun(table: ControllerTable, run: Replayed, row: int) -> str:
-    """What the first row that differs hints at."""
-    if row == 0:
-        return ", from the first row on: has the log lost its beginning, and with it the law's state?"
+def _hint(flight: Flight, table: ControllerTable, run: Replayed, row: int) -> str:
+    """What is striking about the first row that differs, or about the log's references."""
+    if row > 0 and _meets_limit(table, run, row):
+        return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"
+    digits = dict.fromkeys(str(entry) for entry in flight.printings[2:4] if not entry.is_exact)
+    if digits:
+        return (
+            f"; the log holds its references with {' and '.join(digits)}: a law that was given more cannot be run again"
+        )
+    return ", from the first row on: has the log lost its beginning, and with it the law's state?" if row == 0 else ""
+
+
+def _meets_limit(table: ControllerTable, run: Replayed, row: int) -> bool:
     low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V], np.float32)
     high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V], np.float32)
     at_limit = np.any((run.u_V[: row + 1] <= low) | (run.u_V[: row + 1] >= high), axis=1)
-    if at_limit.any() and np.sum(~at_limit[np.argmax(at_limit) :]) <= BEHIND_LIMIT:
-        return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"
-    return ""
+    return bool(at_limit.any() and np.sum(~at_limit[np.argmax(at_limit) :]) <= BEHIND_LIMIT)
 
 
-def _unexplained(residuals: Sequence[Residual], begun: str) -> str:
+def _unexplained(residuals: Sequence[Residual], hint: str) -> str:
     different = max(entry.samples_different for entry in residuals)
     greatest = max(residuals, key=lambda entry: entry.max_V)
     size = f"up to {greatest.max_V:.3g} V ({greatest.max_ulp:.3g} units of the last place)"
-    hint = (
+    rounding = (
         ", the size of rounding: another compiler, processor or order of operations"
         if greatest.max_V < ROUNDING_V
         else ""
     )
-    return (
-        f"none of the firmwares that were tried leaves no difference; {different} samples differ, {size}{hint}{begun}"
-    )
+    samples = "1 sample differs" if different == 1 else f"{different} samples differ"
+    return f"no other firmware that was tried gives all logged inputs; {samples}, {size}{rounding}{hint}"

@@ -83,7 +83,7 @@ class Workshop:
 
     def answers(self, setup: Setup) -> tuple[Array, Array]:
         """What the setup's law should answer (n, 2), and how exactly that is known (n, 2); in V."""
-        key = (setup.arithmetic, setup.channel, setup.output_lag)
+        key = (setup.arithmetic, setup.channel, setup.output_lag, setup.angle_lags)
         if key not in self._answers:
             self._answers[key] = _wanted(self.flight, setup)
         return self._answers[key]
@@ -257,5 +257,6 @@ def _wanted(flight: Flight, setup: Setup) -> tuple[Array, Array]:
     # Limits are read off the log, perhaps in more digits than float32 has.
     at_limits = np.minimum(np.abs(logged - setup.channel.low_V), np.abs(logged - setup.channel.high_V)) < LIMIT_SLACK_V
     slack = slack + LIMIT_SLACK_V * at_limits
-    lead = setup.output_lag
-    return tuple(np.ascontiguousarray(advanced(values, lead)) for values in (logged, slack))  # type: ignore[return-value]
+    logged, slack = (np.array(advanced(values, setup.output_lag), order="C") for values in (logged, slack))
+    logged[len(logged) + min(0, *setup.angle_lags) :] = np.nan  # the log ends before the angles that it holds late
+    return logged, slack

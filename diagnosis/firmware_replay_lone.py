@@ -8,19 +8,19 @@ from itertools import product
 import numpy as np
 
 from diagnosis.firmware_replay_law import AXES, Setup
-from diagnosis.firmware_replay_variants import Variant
+from diagnosis.firmware_replay_variants import BY_ANGLES, Variant
 from records.table import ControllerTable
 
 OLDEST_ANGLES = 4  # samples
 OLDEST_REFERENCES = 50
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
-LOGGED_LATE = "reference_logged_late"
+LOGGED_LATE, ANGLE_LOGGED_LATE = "reference_logged_late", "angle_logged_late"
 
 
 def lone_variants(table: ControllerTable) -> list[Variant]:
     """Those that are too many, or too fine, to be paired with others."""
-    return [*_older_angles(), *_other_times_of_references(), *_last_places(table)]
+    return [*_older_angles(), *_angles_logged_late(), *_other_times_of_references(), *_last_places(table)]
 
 
 def _older_angles() -> Iterator[Variant]:
@@ -28,6 +28,14 @@ def _older_angles() -> Iterator[Variant]:
         if {0, psi, phi} != {0, max(psi, phi)} or max(psi, phi) > PAIRED_AGE:  # the rest may be paired
             sentence = f"used the elevation measured {_samples(psi)} and the azimuth measured {_samples(phi)} before"
             yield Variant("stale_sample", "angles", sentence, partial(replace, angle_lags=(psi, phi)))
+
+
+def _angles_logged_late() -> Iterator[Variant]:
+    for samples in range(1, OLDEST_ANGLES + 1):
+        for angles, lags in BY_ANGLES.items():
+            sentence = f"used {angles} that the log holds {_samples(samples)} too late"
+            ahead = tuple(-samples * lag for lag in lags)
+            yield Variant(ANGLE_LOGGED_LATE, "angles", sentence, partial(replace, angle_lags=ahead))
 
 
 def _other_times_of_references() -> Iterator[Variant]:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
+BY_ANGLES = {"both angles": (1, 1), "the elevation": (1, 0), "the azimuth": (0, 1)}
 OBSERVER_POLES = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.95, 0.98)
 LEAST_PLATEAU = 2  # a float32 that moves freely does not meet its extreme twice
 PWM_STEP_V = 10.0 / 3200.0
@@ -50,9 +51,8 @@ def variants(table: ControllerTable, flight: Flight, others: Sequence[Controller
 
 
 def _timing() -> Iterator[Variant]:
-    lags = {"both angles": (1, 1), "the elevation": (1, 0), "the azimuth": (0, 1)}
     for samples, what in ((1, "one sample"), (2, "two samples")):
-        for angles, (psi, phi) in lags.items():
+        for angles, (psi, phi) in BY_ANGLES.items():
             sentence = f"used {angles} measured {what} before"
             change = partial(replace, angle_lags=(samples * psi, samples * phi))
             yield Variant("stale_sample", "angles", sentence, change)

@@ -2,13 +2,13 @@
 
 from diagnosis.firmware_replay import NOT_FOUND
 from diagnosis.firmware_replay_columns import OF_THE_COLUMNS
-from diagnosis.firmware_replay_lone import LOGGED_LATE
+from diagnosis.firmware_replay_lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 from records.diagnosis import Firmware
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")
 # What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
-_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE)
+_OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE)
 _ROWS_LACK = "rows that the log lacks"
 
 
@@ -30,7 +30,7 @@ def firmware_in_words(firmware: Firmware | None) -> str:
     if firmware.bit_exact:
         return f"{again} gives every logged input to the bit: the firmware is cleared."
     at = "" if firmware.first_difference_s is None else f" first differs at {firmware.first_difference_s:g} s"
-    return f"{again}{at or ' was compared'}: {cause or 'cause not found'}."
+    return _closed(f"{again}{at or ' was compared'}: {cause or 'cause not found'}")
 
 
 def firmware_first(firmware: Firmware | None) -> str:
@@ -49,6 +49,10 @@ def firmware_first(firmware: Firmware | None) -> str:
             "What seems to be amiss in the plant may come from that."
         )
     return f"The firmware does not do what its table says: {_cause(firmware)}. The plant is held against the inputs that were logged."
+
+
+def _closed(sentence: str) -> str:
+    return sentence if sentence.endswith("?") else f"{sentence}."
 
 
 def _cause(firmware: Firmware) -> str:

@@ -80,6 +80,27 @@ def test_references_logged_late_or_early_are_named_with_their_age(samples: int, 
     assert words in (found.sentence or "")
 
 
+@pytest.mark.parametrize(
+    ("samples", "axes", "words"),
+    [(1, (0, 1), "both angles that the log holds one sample"), (3, (0,), "the elevation that the log holds 3 samples")],
+)
+def test_angles_logged_late_are_named_with_their_age(samples: int, axes: tuple[int, ...], words: str) -> None:
+    log = _own()
+    y = log.y.copy()
+    y[samples:, axes] = log.y[:-samples, axes]
+    y[:samples, axes] = log.y[0, axes]
+    found = _told(replace(log, y=y))
+    assert (found.bit_exact, found.cause, found.incidents) == (False, "angle_logged_late", ())
+    assert words in (found.sentence or "")
+
+
+def test_a_log_whose_references_were_rounded_is_told_so_and_gets_no_cause() -> None:
+    log = fly(plant(), host_law(TABLE), flight(plant()), table_digest=TABLE.digest)
+    found = _told(replace(log, extra={name: np.round(values, 3) for name, values in log.extra.items()}))
+    assert found.cause == "not_found"
+    assert "holds its references with 3 decimals" in (found.sentence or "")
+
+
 def test_references_that_are_exchanged_are_named() -> None:
     assert _told(_references(_exchanged)).cause == "inputs_exchanged"
 

@@ -290,7 +290,7 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
             "The log does not hold what the firmware of its table computes: the firmware sends u_T_V with",
         ),
         (
-            "not_found: none of the firmwares leaves no difference",
+            "not_found: no other firmware gives all logged inputs",
             19.99,
             "The log holds commands from 19.99 s on that the firmware of its table does not",
         ),
