@@ -18,14 +18,9 @@ CLEARLY = 2.0
 MISSING = 1.5  # times the usual step from row to row
 AT_ONCE_S = 1e-7  # instants closer to one another are one
 MERELY_ROUNDED = 1.01  # times the variance of rounding: no noise that would carry readings over an edge and back
-READINGS = {
-    "y": np.nan,
-    "r": 1.0,
-    "read": np.nan,
-    "standing": 1.0,
-    "usual": 0.0,
-    "place": -1,
-}  # by reading, and what stands for none
+# What stands for none: of a reading, and of what is known at an instant.
+READINGS = {"y": np.nan, "r": 1.0, "read": np.nan, "standing": 1.0, "usual": 0.0, "place": -1}
+AT_INSTANTS = {"row": -1, "lost": 0.0, "loss_power": 0.0, "untold_s": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +134,7 @@ def _finest(y: Array) -> float:
 def beginning(tape: Tape, seconds: float) -> Tape:
     """The first `seconds` of a tape."""
     kept = tape.t_s - tape.t_s[0] <= seconds
-    arrays = {
-        name: getattr(tape, name)[kept] for name in ("t_s", "u", "row", "lost", "loss_power", "untold_s", *READINGS)
-    }
+    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", *AT_INSTANTS, *READINGS)}
     return replace(tape, rows=int(kept.sum()), **arrays)
 
 
@@ -170,22 +163,24 @@ def _merged(own: Array, others: Array) -> Array:
 
 
 def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
-    """Measurements put at their instants among `t_s`."""
-    where = np.searchsorted(t_s, tape.t_s)
-    row = np.full(len(t_s), -1, dtype=np.int64)
-    row[where] = tape.row
-    lost, loss_power, untold_s = np.zeros((3, len(t_s)))
-    lost[where], loss_power[where], untold_s[where] = tape.lost, tape.loss_power, tape.untold_s
-    readings: dict[str, Any] = {
-        name: _spread_out(getattr(tape, name), len(t_s), where, none) for name, none in READINGS.items()
+    """What is known at the tape's instants put at the same among `t_s`."""
+    own = _own(len(t_s), np.searchsorted(t_s, tape.t_s))
+    arrays: dict[str, Any] = {
+        name: _spread_out(getattr(tape, name), own, none) for name, none in (AT_INSTANTS | READINGS).items()
     }
-    return replace(tape, t_s=t_s, u=u, row=row, lost=lost, loss_power=loss_power, untold_s=untold_s, **readings)
+    return replace(tape, t_s=t_s, u=u, **arrays)
 
 
-def _spread_out(values: NDArray[Any], count: int, where: NDArray[np.int64], none: float) -> NDArray[Any]:
-    found = np.full((count, *values.shape[1:]), none, dtype=values.dtype)
-    found[where] = values
-    return found
+def _own(count: int, where: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Which of len(where) values stands at each of `count` instants; len(where) at those that have none."""
+    own = np.full(count, len(where))
+    own[where] = np.arange(len(where))
+    return own
+
+
+def _spread_out(values: NDArray[Any], own: NDArray[np.int64], none: float) -> NDArray[Any]:
+    with_none = np.concatenate((values, np.full((1, *values.shape[1:]), none, dtype=values.dtype)))
+    return with_none.take(own, axis=0, mode="clip")  # a third faster than filling what is given room
 
 
 def late(tape: Tape, output: int, tau_s: float) -> Tape:
@@ -200,10 +195,10 @@ def late(tape: Tape, output: int, tau_s: float) -> Tape:
     held = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
     moved = _placed(tape, t_s, tape.u[held])
     seen = then >= t_s[0] - AT_ONCE_S
-    where = np.clip(np.searchsorted(t_s, then - AT_ONCE_S), 0, len(t_s) - 1)[seen]
+    own = _own(len(t_s), np.clip(np.searchsorted(t_s, then - AT_ONCE_S), 0, len(t_s) - 1)[seen])
     readings: dict[str, Any] = {}
     for name, none in READINGS.items():
         readings[name] = getattr(moved, name)
-        readings[name][:, output] = _spread_out(getattr(tape, name)[seen, output], len(t_s), where, none)
+        readings[name][:, output] = _spread_out(getattr(tape, name)[seen, output], own, none)
     early = ~seen & np.isfinite(tape.y[:, output])
     return replace(moved, **readings, known=tape.known + float(np.sum(tape.usual[early, output])))
