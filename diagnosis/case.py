@@ -36,6 +36,11 @@ class Flight:
         """The usual step from row to row."""
         return float(np.median(np.diff(self.log.t_s)))
 
+    @cached_property
+    def first_read(self) -> tuple[float, ...]:
+        """The first reading of each of the log's outputs; 0 of one that was never measured."""
+        return tuple(float(seen[0]) if (seen := column[np.isfinite(column)]).size else 0.0 for column in self.log.y.T)
+
 
 @dataclass(frozen=True, eq=False)
 class Case:

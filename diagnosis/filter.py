@@ -56,9 +56,9 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """One pass over a log of n rows: whitened innovations w (n, slots), their variances s, slopes dw (n, slots, columns) or None,
-    their products `gram` = dw'dw and `pull` = dw'w,
-    predicted states x and filtered ones (n, states); NaN where nothing was measured. `gains` as in filter.h: F, K, H by step.
+    """One pass over a log of n rows: whitened innovations w (n, slots) and their variances s, NaN where nothing was measured; slopes
+    dw (n, slots, columns) or None, their products `gram` = dw'dw and `pull` = dw'w; predicted states x and filtered ones (n, states).
+    `gains` as in filter.h: F, K, H by step.
     """
 
     w: Array
@@ -127,8 +127,8 @@ class Filter:
             "dw": np.zeros((rows, width, columns)) if columns and slopes else None,
             "gram": np.zeros((columns, columns)),
             "pull": np.zeros(columns),
-            "x": np.full((rows, n), np.nan),
-            "filtered": np.full((rows, n), np.nan),
+            "x": np.empty((rows, n)),  # all of it is filled: every row is an instant
+            "filtered": np.empty((rows, n)),
             "F": np.zeros((steps, n, n)) if gains else None,
             "K": np.zeros((steps, outputs, n)) if gains else None,
             "H": np.zeros((steps, outputs, n)) if gains else None,

@@ -89,15 +89,9 @@ def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:
     """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
     further = variant.states[len(flight.x0) :]
     own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
-    read = [_first(flight.log.y[:, own[s]]) if s in own else 0.0 for s in further]
+    read = [flight.first_read[own[s]] if s in own else 0.0 for s in further]
     sure = [flight.tape.r[0, own[s]] if s in own else START_SD**2 for s in further]
     return np.append(flight.x0, read), np.append(flight.p0, sure)
-
-
-def _first(values: Array) -> float:
-    """The first reading; 0 of an output that was never measured."""
-    present = values[np.isfinite(values)]
-    return float(present[0]) if present.size else 0.0
 
 
 def passes(
