@@ -19,13 +19,15 @@ from numpy.typing import NDArray
 
 import sim
 from diagnosis.abreast import ahead
+from diagnosis.apart import NotDone, apart
 from diagnosis.filter import Filter, build_filter, equations_text, open_filter
 from diagnosis.gusty import gusty
 from diagnosis.lagged import lagged
 from records.errors import BadInput
 from records.files import write_atomic
+from records.plant import Plant
 from records.reading import read_text
-from sim.bind import BoundPlant, named_values
+from sim.bind import BoundPlant, bind, named_values
 from sim.effects.api import combined, library, redundant
 from sim.effects.build import switched_model
 from sim.effects.effect import Effect, coefficient
@@ -109,8 +111,8 @@ class Kit:
         return _variant(self, ())
 
     def prepare(self) -> None:
-        """Begin to open the variants without gusts, in the order in which they are asked for; who needs one sooner waits for it."""
-        for effects in ((), self.narrow, self.whole):
+        """Begin to open the variants without gusts, the one that takes longest first; who needs one sooner waits for it."""
+        for effects in (self.whole, (), self.narrow):
             ahead(_variant, self, effects)
 
     @property
@@ -180,7 +182,8 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     bound = kit.bound
     what = hashlib.sha256(repr(names).encode()).hexdigest()[:16]
     with VARIANTS.setdefault(f"{bound.plant.model} {what}", Lock()):
-        known = _noted(bound, what, lambda: _build(bound, names))
+        # The whole library takes longest.
+        known = _noted(bound, what, lambda: (_built_apart if names == kit.whole else _build)(bound, names))
     p = np.array(known["p"])
     p[: len(bound.p)] = bound.p
     return Variant(
@@ -191,6 +194,22 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
         p=p,
         index={name: place for place, name in enumerate(known["parameters"])},
     )
+
+
+def _built_apart(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
+    """The same by another process, which leaves this one to the search that has begun."""
+    try:
+        noted: dict[str, Any] = apart(_build_of, bound.plant, names, MADE_FROM)
+    except NotDone:  # a plant of this process alone, say
+        return _build(bound, names)
+    return noted
+
+
+def _build_of(plant: Plant, names: tuple[str, ...], made_from: bytes) -> dict[str, Any]:
+    """Raises RuntimeError where the code that runs here is not that of whoever asked."""
+    if made_from != MADE_FROM:
+        raise RuntimeError("sources were changed meanwhile")
+    return _build(bind(plant), names)
 
 
 def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:

@@ -1,0 +1,33 @@
+"""A piece of Python's own work in a process of its own: of the threads of one process only one at a time does algebra."""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from toolchain.host import INTERRUPTED
+
+ASKED = "import pickle, sys; work, items = pickle.load(sys.stdin.buffer); sys.stdout.buffer.write(pickle.dumps(work(*items)))"
+
+
+class NotDone(Exception):
+    """The process did not give an answer; whoever asked does the work itself, and meets the cause if there is one."""
+
+
+def apart(work: Callable[..., Any], *items: Any) -> Any:
+    """work(*items) by another Python, which imports `work` by its name; raises NotDone, and KeyboardInterrupt where Ctrl-C ended it."""
+    path = os.pathsep.join(filter(None, sys.path))
+    done = subprocess.run(
+        [sys.executable, "-c", ASKED],
+        input=pickle.dumps((work, items)),
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": path},
+        check=False,
+    )
+    if done.returncode in INTERRUPTED:
+        raise KeyboardInterrupt
+    if done.returncode != 0:
+        raise NotDone(done.stderr.decode(errors="replace"))
+    return pickle.loads(done.stdout)

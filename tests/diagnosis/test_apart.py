@@ -1,0 +1,29 @@
+"""Work by a process of its own gives what it gives here, or says that it does not."""
+
+import math
+
+import pytest
+
+from diagnosis.apart import NotDone, apart
+from diagnosis.kit import MADE_FROM, _build, _build_of, make_kit
+from tests.plants import bound
+
+
+def test_an_answer_comes_back() -> None:
+    assert apart(math.hypot, 3.0, 4.0) == 5.0
+
+
+def test_what_the_process_raises_is_told() -> None:
+    with pytest.raises(NotDone, match="math domain error"):
+        apart(math.sqrt, -1.0)
+
+
+def test_a_library_built_by_another_process_is_that_built_here() -> None:
+    plant = bound("aeroshield")
+    names = make_kit(plant).whole
+    assert apart(_build_of, plant.plant, names, MADE_FROM) == _build(plant, names)
+
+
+def test_a_process_of_other_sources_builds_nothing() -> None:
+    with pytest.raises(NotDone, match="sources were changed"):
+        apart(_build_of, bound("aeroshield").plant, (), b"")
