@@ -44,4 +44,9 @@ def _band(row: ErrorResponse) -> str:
 
 
 def _size(row: ErrorResponse) -> str:
-    return f"{100 * row.error:.3g} % ± {100 * row.sd:.1g} %"
+    return f"{_percent(row.error, 3)} ± {_percent(row.sd, 1)}"
+
+
+def _percent(share: float, digits: int) -> str:
+    """So many digits, and no power of ten: an answer may be ten times the model's."""
+    return f"{float(f'{100.0 * share:.{digits}g}'):.10g} %"

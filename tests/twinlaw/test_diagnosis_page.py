@@ -12,6 +12,7 @@ import pytest
 from records.diagnosis import (
     Band,
     Diagnosis,
+    ErrorResponse,
     Estimate,
     Firmware,
     Hypothesis,
@@ -339,6 +340,16 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     assert plain_notes([kept, kept]) == [kept]
     (plain,) = plain_notes(["these logs contradict each other: b would be 250 nats likelier with numbers of its own"])
     assert plain.endswith("b would be e^250 times likelier with numbers of its own")
+
+
+def test_an_answer_many_times_the_models_is_told_without_powers_of_ten() -> None:
+    rows = tuple(
+        ErrorResponse("psi_rad", "u_M_V", 1.0, 2.0, error, sd, 0.7, coherence)
+        for error, sd, coherence in ((12.14, 2.1, 0.97), (0.04541, 0.0052, 0.9))
+    )
+    told = summary_text(replace(GAP, error_responses=rows))
+    assert "psi to u_M from 1 to 2 Hz differs by 1210 % ± 200 %, phase 40 deg (coherence 0.97)" in told
+    assert "4.54 % ± 0.5 %" in text_of(replace(GAP, error_responses=rows))
 
 
 def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:
