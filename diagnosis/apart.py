@@ -9,7 +9,14 @@ from typing import Any
 
 from toolchain.host import INTERRUPTED
 
-ASKED = "import pickle, sys; work, items = pickle.load(sys.stdin.buffer); sys.stdout.buffer.write(pickle.dumps(work(*items)))"
+# The answer's way is kept clear of what imported code may print, which goes where errors go.
+ASKED = """
+import os, pickle, sys
+answer = os.fdopen(os.dup(1), "wb")
+os.dup2(2, 1)
+work, items = pickle.load(sys.stdin.buffer)
+answer.write(pickle.dumps(work(*items)))
+"""
 
 
 class NotDone(Exception):
@@ -17,7 +24,11 @@ class NotDone(Exception):
 
 
 def apart(work: Callable[..., Any], *items: Any) -> Any:
-    """work(*items) by another Python, which imports `work` by its name; raises NotDone, and KeyboardInterrupt where Ctrl-C ended it."""
+    """work(*items) by another Python, which imports `work` by its name; items and answer are such as can be pickled.
+
+    Not a worker of jobs/crew.py: a spawned one runs the script again that asks, a notebook's cells say. Raises NotDone where the other
+    process fails, with what it said, and KeyboardInterrupt where Ctrl-C ended it.
+    """
     path = os.pathsep.join(filter(None, sys.path))
     done = subprocess.run(
         [sys.executable, "-c", ASKED],

@@ -182,7 +182,7 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     bound = kit.bound
     what = hashlib.sha256(repr(names).encode()).hexdigest()[:16]
     with VARIANTS.setdefault(f"{bound.plant.model} {what}", Lock()):
-        # The whole library takes longest.
+        # The whole library takes longest; for a smaller one another process costs as much as it saves.
         known = _noted(bound, what, lambda: (_built_apart if names == kit.whole else _build)(bound, names))
     p = np.array(known["p"])
     p[: len(bound.p)] = bound.p
@@ -197,7 +197,7 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
 
 
 def _built_apart(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
-    """The same by another process, which leaves this one to the search that has begun."""
+    """What is noted of a variant, by another process, which leaves this one to the search that has begun."""
     try:
         noted: dict[str, Any] = apart(_build_of, bound.plant, names, MADE_FROM)
     except NotDone:  # a plant of this process alone, say
@@ -206,7 +206,7 @@ def _built_apart(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _build_of(plant: Plant, names: tuple[str, ...], made_from: bytes) -> dict[str, Any]:
-    """Raises RuntimeError where the code that runs here is not that of whoever asked."""
+    """What is noted of a variant of `plant`; raises RuntimeError where the code that runs here is not that of whoever asked."""
     if made_from != MADE_FROM:
         raise RuntimeError("sources were changed meanwhile")
     return _build(bind(plant), names)

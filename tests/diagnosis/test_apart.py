@@ -1,6 +1,7 @@
 """Work by a process of its own gives what it gives here, or says that it does not."""
 
 import math
+import os
 
 import pytest
 
@@ -11,6 +12,10 @@ from tests.plants import bound
 
 def test_an_answer_comes_back() -> None:
     assert apart(math.hypot, 3.0, 4.0) == 5.0
+
+
+def test_what_the_work_prints_does_not_spoil_the_answer() -> None:
+    assert apart(os.write, 1, b"beside") == len(b"beside")
 
 
 def test_what_the_process_raises_is_told() -> None:
