@@ -161,9 +161,8 @@ def _hint(flight: Flight, table: ControllerTable, run: Replayed, row: int) -> st
         return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"
     digits = dict.fromkeys(str(entry) for entry in flight.printings[2:4] if not entry.is_exact)
     if digits:
-        return (
-            f"; the log holds its references with {' and '.join(digits)}: a law that was given more cannot be run again"
-        )
+        few = " and ".join(digits)
+        return f"; the log holds its references with {few}: a law that was given more cannot be run again, so log all digits"
     return ", from the first row on: has the log lost its beginning, and with it the law's state?" if row == 0 else ""
 
 
