@@ -21,8 +21,8 @@ docs: $(VENV)/.docs  ## the documentation as a site that needs no network, build
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 	@echo build/site/index.html
 
-soak: $(VENV)/.test  ## faults at full length: every byte, every bit of the state, 100 seeds, a million frames
-	TWINLAW_SOAK=1 $(BIN)/python -m pytest tests/rig/test_hostile_*.py tests/firmware/test_faults_*.py
+soak: $(VENV)/.test  ## the suite at full length: every case, byte and seed, whole notebooks and data sets, a million frames
+	TWINLAW_SOAK=1 $(BIN)/python -m pytest
 
 check: lint types layers  ## style, types and import order alone
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from jobs.code import FOLDERS
+from tests.soak import sampled
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
@@ -83,6 +84,17 @@ def test_style_holds() -> None:
 def test_types_hold() -> None:
     done = _run(str(BIN / "mypy"))
     assert done.returncode == 0, done.stdout
+
+
+def test_of_sampled_cases_those_that_are_not_kept_are_soaks_and_none_is_lost() -> None:
+    cases = sampled([("a", 1), ("b", 2), "c"], keep=["c"])
+    assert [(case.values, [mark.name for mark in case.marks]) for case in cases] == [
+        (("a", 1), ["soak"]),
+        (("b", 2), ["soak"]),
+        (("c",), []),
+    ]
+    with pytest.raises(ValueError, match="no cases"):
+        sampled([1, 2], keep=[3])
 
 
 def test_every_make_target_is_explained_by_make_help() -> None:

@@ -10,7 +10,7 @@ from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
 from rig.image import FIRMWARE_DIR, control_sources
 from tests.firmware.box import HERE
-from tests.rig.hostile_sessions import SOAK
+from tests.soak import SOAK
 from toolchain.host import run_zig
 
 RUNS = 2_000_000 if SOAK else 20_000

@@ -10,7 +10,7 @@ from rig.frames import line_length
 from rig.image import build_firmware
 from tests.firmware.box import DIGEST, stand_in_law
 from tests.firmware.desk import MODES, STATES, Desk
-from tests.rig.hostile_sessions import SOAK
+from tests.soak import SOAK
 
 TICK_S = 0.01
 WATCHDOG_S = 0.125

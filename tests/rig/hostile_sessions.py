@@ -1,6 +1,5 @@
-"""Sessions of a host with a board, over whatever line: what must hold of them, and how much of it a run of the tests does."""
+"""Sessions of a host with a board, over whatever line: and what must hold of them."""
 
-import os
 from contextlib import suppress
 from typing import Any
 
@@ -10,9 +9,6 @@ from records.errors import BadInput
 from rig.client import BoardClient
 from rig.numbers import Float32Numbers
 from tests.firmware.box import DIGEST
-
-# `make soak` sets it: whole sessions, every seed, a million frames. The suite takes a sample of each.
-SOAK = os.environ.get("TWINLAW_SOAK") == "1"
 
 
 def connect(port: Any, digest: str = DIGEST.hex()) -> BoardClient:

@@ -28,7 +28,8 @@ from rig.image import build_firmware
 from rig.port import open_port
 from tests.firmware.box import stand_in_law
 from tests.rig.campaign import usual_faults
-from tests.rig.hostile_sessions import SOAK, complete_or_one_line, connect, counted_steps, session
+from tests.rig.hostile_sessions import complete_or_one_line, connect, counted_steps, session
+from tests.soak import SOAK
 
 TICK_S = 0.01
 SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_SAMPLES") + 10  # the host is lost, and ten more at most

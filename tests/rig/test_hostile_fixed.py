@@ -8,8 +8,8 @@ from rig.hostile_line import HostileLine
 from rig.hostile_line_faults import AtByte, Direction
 from rig.port import open_port
 from tests.law_tables import ce150_table
-from tests.rig.hostile_sessions import SOAK
 from tests.rig.image_campaign import built_url, connected, differing_steps, flown, told
+from tests.soak import SOAK
 from verification.fixed_stimuli import fixed_sequences
 from verification.stimuli import Stimulus
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.rig.campaign import REFUSALS, Campaign, flown, told
-from tests.rig.hostile_sessions import SOAK
+from tests.soak import SOAK
 
 FRAMES = 1_000_000 if SOAK else 100_000
 
@@ -47,7 +47,7 @@ def test_every_piece_that_the_host_heard_is_in_exactly_one_counter(campaign):
     assert 0 < len(campaign.heard_answers) < campaign.account.answers
 
 
-@pytest.mark.skipif(not SOAK, reason="a million frames are flown by `make soak`")
+@pytest.mark.soak
 def test_the_documented_account_is_that_of_a_million_frames(campaign, counted):
     page = Path(__file__).resolve().parents[2] / "docs" / "faults.md"
     assert told(campaign, counted) in page.read_text(encoding="utf-8")

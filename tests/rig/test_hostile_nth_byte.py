@@ -4,8 +4,9 @@ import pytest
 
 from rig.hostile_line import HostileLine
 from rig.hostile_line_faults import AtByte, Direction
-from tests.rig.hostile_sessions import SOAK, complete_or_one_line, connect, counted_steps, session
+from tests.rig.hostile_sessions import complete_or_one_line, connect, counted_steps, session
 from tests.rig.timed_box import BYTE_S, TICK_S, TimedBox
+from tests.soak import SOAK
 
 SAMPLES = 200
 # One lost byte costs one frame, which is sent again; only a line that stays dead may end a session.

@@ -16,7 +16,7 @@ from rig.cobs import cobs_encode
 from rig.frames import Frame, FrameReceiver, encode_frame
 from rig.image import FIRMWARE_DIR
 from tests.firmware.box import HERE as BOX
-from tests.rig.hostile_sessions import SOAK
+from tests.soak import SOAK
 from toolchain.host import CText, build_shared, load_shared
 
 EXAMPLES = 20_000 if SOAK else 300
