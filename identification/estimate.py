@@ -10,6 +10,7 @@ from scipy.special import stdtrit
 from identification.belief import Belief, prior, widened
 from identification.discord import Discord, discords
 from identification.information import inverse, marginal
+from identification.ranges import Range
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, with_sd
 from identification.search import Search, Searched, search, started
@@ -19,16 +20,6 @@ from identification.uncertainty import Direction, inflations, pieces, unseen
 
 Array = NDArray[np.float64]
 CONTRADICTION_SD, CONTRADICTION_MOVE = 5.0, 3.0
-
-
-@dataclass(frozen=True)
-class Range:
-    """Where a parameter may lie, and its typical size."""
-
-    start: float
-    lower: float
-    upper: float
-    scale: float
 
 
 @dataclass(frozen=True)

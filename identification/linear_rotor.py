@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.belief import NOTHING
-from identification.estimate import Estimate, Range, estimate
+from identification.estimate import Estimate, estimate
 from identification.prediction import predicted
+from identification.ranges import Range
 from identification.run import Run, coefficient_names
 
 Array = NDArray[np.float64]

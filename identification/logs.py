@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.belief import NOTHING, Belief, widened
-from identification.estimate import CONTRADICTION_SD, Estimate, Range, estimate, problem_of
+from identification.estimate import CONTRADICTION_SD, Estimate, estimate, problem_of
 from identification.locked import locked_model
 from identification.log_run import log_run
-from identification.ranges import ranges_of
+from identification.ranges import Range, ranges_of
 from identification.residuals import ResidualTest, residual_tests
 from identification.run import Run, coefficient_names, offset_names
 from identification.search import Search, search, started

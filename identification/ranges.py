@@ -1,14 +1,24 @@
 """Where each parameter may lie: from the plant file's values, or as the user says."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from identification.estimate import Range
 from identification.run import coefficient_names
 from records.errors import BadInput
 from sim.bind import BoundPlant
 
 LEAST = 1e-3  # of its size: dry friction of exactly 0 does not act, and so has no slope that would lead back
 FACTOR = 5.0  # by default a parameter lies between a fifth and five times its start
+
+
+@dataclass(frozen=True)
+class Range:
+    """Where a parameter may lie, and its typical size."""
+
+    start: float
+    lower: float
+    upper: float
+    scale: float
 
 
 def ranges_of(

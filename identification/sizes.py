@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.estimate import Range
 from identification.prediction import blocks
+from identification.ranges import Range
 from identification.run import Run
 
 Array = NDArray[np.float64]

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.belief import NOTHING, Belief
-from identification.estimate import Estimate, Range, estimate
+from identification.estimate import Estimate, estimate
 from identification.experiments.kind import Kind
 from identification.experiments.table import informed, kinds_of
-from identification.ranges import ranges_of
+from identification.ranges import Range, ranges_of
 from identification.run import Run, coefficient_names, known_names
 from identification.search import Search
 from identification.solve import Told

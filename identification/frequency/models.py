@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from design.linearise import linearise
-from identification.estimate import Range
 from identification.frequency.lateral import StateSpace, state_space
-from identification.ranges import ranges_of
+from identification.ranges import Range, ranges_of
 from identification.run import coefficient_names
 from records.errors import BadInput
 from records.plant import Plant

@@ -7,10 +7,10 @@ import pytest
 
 from identification import bench
 from identification.belief import NOTHING, Belief
-from identification.estimate import Range, estimate, problem_of
+from identification.estimate import estimate, problem_of
 from identification.log_run import log_run
 from identification.prediction import blocks
-from identification.ranges import ranges_of
+from identification.ranges import Range, ranges_of
 from identification.run import coefficient_names
 from identification.solve import _informed_step, _starts, solve
 from records.errors import BadInput
