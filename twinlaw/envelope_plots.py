@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.envelope.check import FINAL, Check, margins_of
-from identification.envelope.conditions import Condition
-from identification.envelope.flight import CONTROLS, OUTPUTS, STATES, Deviations
-from identification.envelope.free_run import one_step
-from identification.envelope.multistep import multistep, spectrum
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.flights.flight import CONTROLS, OUTPUTS, STATES, Deviations
+from identification.envelope.flights.multistep import multistep, spectrum
+from identification.envelope.state_equation.free_run import one_step
 from identification.envelope.study import ConditionResult, Study
 from twinlaw.envelope_tables import INPUTS, symbols
 from twinlaw.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid, row, stack

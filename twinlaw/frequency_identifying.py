@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.frequency.fit import match
+from identification.fit.solve import Told
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import UNITS, check_plant, log_columns
-from identification.frequency.lateral_record import lateral_model, lateral_records
-from identification.frequency.models import LinearModel, operating_point_model
-from identification.frequency.record import Record, record_of
+from identification.frequency.match.fit import match
+from identification.frequency.models.lateral_record import lateral_model, lateral_records
+from identification.frequency.models.linear_model import LinearModel, operating_point_model
+from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
-from identification.logs import trimmed
-from identification.run import coefficient_names
-from identification.solve import Told
+from identification.runs.run import coefficient_names
+from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.frequency.elements import StateSpaces, state_space_with_sd
+from identification.frequency.models.elements import StateSpaces, state_space_with_sd
 from identification.frequency.result import FrequencyIdentification, Pair, TimeCheck
 from records.units import label
 from twinlaw.identify_summary import HEADING, estimate_rows

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from identification.experiments.velagic_figures import responses
-from identification.result import Identification
-from identification.validation import compare_flights
+from identification.experiments.velagic.figures import responses
+from identification.proof.validation import compare_flights
+from identification.results.result import Identification
 from sim.bind import BoundPlant, bind
 from twinlaw import console
 from twinlaw.identify_report import flight_section

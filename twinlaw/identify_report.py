@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.estimate import Estimate
 from identification.experiments.table import KINDS
-from identification.linear_rotor import linear_rotor, readings_by
-from identification.result import Identification
-from identification.validation import Comparison
+from identification.proof.linear_rotor import linear_rotor, readings_by
+from identification.proof.validation import Comparison
+from identification.results.result import Identification
+from identification.stages.estimate import Estimate
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, fit_rows, test_rows

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from identification.estimate import Estimate
-from identification.notes import chance, relative
-from identification.residuals import ResidualTest
-from identification.result import Estimated
+from identification.results.notes import chance, relative
+from identification.results.result import Estimated
+from identification.stages.estimate import Estimate
+from identification.uncertainty.residuals import ResidualTest
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")

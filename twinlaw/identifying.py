@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.integrity import LogIntegrity, demand, examine
-from identification.belief import NOTHING, stated
-from identification.estimate import Estimate
-from identification.held import leaning
-from identification.logs import best_fit, fits_of_logs, prediction_tests, without_readings
-from identification.notes import leaning_notes
-from identification.result import Identification, facts
-from identification.search import Search
-from identification.shown import hidden, unread
-from identification.staged import check_setup, identify_stage, in_order, title
+from identification.fit.belief import NOTHING, stated
+from identification.model.shown import hidden, unread
+from identification.results.held import leaning
+from identification.results.notes import leaning_notes
+from identification.results.result import Identification, facts
+from identification.search.methods import Search
+from identification.stages.estimate import Estimate
+from identification.stages.logs import best_fit, fits_of_logs, prediction_tests, without_readings
+from identification.stages.staged import check_setup, identify_stage, in_order, title
 from records import checks
 from records.errors import BadInput
 from records.experiment import SCHEMA as EXPERIMENT_SCHEMA

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from identification.belief import NOTHING, Belief
-from identification.estimate import Estimate
-from identification.result import Identification, identification, interrupted
+from identification.fit.belief import NOTHING, Belief
+from identification.results.result import Identification, identification, interrupted
+from identification.stages.estimate import Estimate
 from records.plant import Plant
 from twinlaw import console
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.estimate import Estimate
-from identification.search import Searched
+from identification.search.methods import Searched
+from identification.stages.estimate import Estimate
 from sim.bind import BoundPlant
 from twinlaw.page import Section, Table
 from twinlaw.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, row

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from identification.experiments.velagic_figures import Response
+from identification.experiments.velagic.figures import Response
 from twinlaw.page import Section, Table
 from twinlaw.plots import BLUE, GREY, ORANGE, Array, Curve, Panel, row
 

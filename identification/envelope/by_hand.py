@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from identification.envelope.check import Check, margins_of
 from identification.envelope.criteria import Match, matches
-from identification.envelope.flight import STATES
-from identification.envelope.starts import Starts
+from identification.envelope.flights.flight import STATES
+from identification.envelope.flights.starts import Starts
 from identification.envelope.study import Study
 
 

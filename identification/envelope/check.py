@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.envelope.criteria import Match, flights_passed, matches
-from identification.envelope.flight import OUTPUTS, STATES, Deviations, one_by_one
-from identification.envelope.free_run import Model, one_step
-from identification.envelope.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
-from identification.envelope.outputs import Equation
-from identification.envelope.starts import NONE, Starts
+from identification.envelope.flights.flight import OUTPUTS, STATES, Deviations, one_by_one
+from identification.envelope.flights.starts import NONE, Starts
+from identification.envelope.output_equation.outputs import Equation
+from identification.envelope.state_equation.free_run import Model, one_step
+from identification.envelope.state_equation.initial_state import Tuned, as_measured, automatic, by_hand, over_grid
 from identification.margins import MARGINS
 
 Array = NDArray[np.float64]

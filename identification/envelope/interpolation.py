@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.envelope.conditions import Condition
-from identification.envelope.free_run import Model
-from identification.envelope.outputs import Linear
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.output_equation.outputs import Linear
+from identification.envelope.state_equation.free_run import Model
 from records.errors import BadInput
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import Match, passed, score_percent
-from identification.envelope.flight import INPUTS, OUTPUTS, STATES
+from identification.envelope.flights.flight import INPUTS, OUTPUTS, STATES
 from identification.envelope.study import ConditionResult, Interpolated, Study
 
 SCHEMA = "envelope/1"

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.envelope.check import Check, check, margins_of
-from identification.envelope.closed_loop import Training, optimise
-from identification.envelope.conditions import Condition
-from identification.envelope.flight import Flight, joined
-from identification.envelope.free_run import Model, model_of
-from identification.envelope.fuzzy import Trained
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.flights.flight import Flight, joined
+from identification.envelope.flights.shortcomings import poor, unused
+from identification.envelope.flights.starts import NONE, Starts
 from identification.envelope.interpolation import GlobalModel, between, nearest, neighbours
-from identification.envelope.outputs import Linear, equations
-from identification.envelope.recursive import best, history, pairs
-from identification.envelope.shortcomings import poor, unused
-from identification.envelope.starts import NONE, Starts
+from identification.envelope.output_equation.fuzzy import Trained
+from identification.envelope.output_equation.outputs import Linear, equations
+from identification.envelope.state_equation.closed_loop import Training, optimise
+from identification.envelope.state_equation.free_run import Model, model_of
+from identification.envelope.state_equation.recursive import best, history, pairs
 from jobs.plain import plain, typed
 from records.errors import BadInput
 

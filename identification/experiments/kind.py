@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from numpy.random import Generator
 
-from identification.run import Run
+from identification.runs.run import Run
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 

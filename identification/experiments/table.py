@@ -5,8 +5,9 @@ from functools import partial
 
 import numpy as np
 
-from identification.experiments import azimuth, elevation, gravity, rotors, swings, velagic
+from identification.experiments.ce150 import azimuth, elevation, gravity, rotors, swings
 from identification.experiments.kind import Kind
+from identification.experiments.velagic import experiments as velagic
 from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from identification.frequency.fit import match
-from identification.frequency.helicopter import sweep_flights
-from identification.frequency.lateral_record import lateral_model, lateral_records
-from identification.frequency.sweep import Sweep
+from identification.frequency.flights.helicopter import sweep_flights
+from identification.frequency.flights.sweep import Sweep
+from identification.frequency.match.fit import match
+from identification.frequency.models.lateral_record import lateral_model, lateral_records
 from records.plant import Plant
 
 FACTOR = 1.96

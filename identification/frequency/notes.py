@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.frequency.cost import GOOD_COHERENCE
-from identification.frequency.fit import FrequencyFit
-from identification.frequency.models import held_response
-from identification.frequency.responses import Responses
-from identification.result import Estimated
+from identification.frequency.match.cost import GOOD_COHERENCE
+from identification.frequency.match.fit import FrequencyFit
+from identification.frequency.models.linear_model import held_response
+from identification.frequency.responses.conditioned import Responses
+from identification.results.result import Estimated
 
 Array = NDArray[np.float64]
 POOR_J = 100.0

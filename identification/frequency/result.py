@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.belief import Belief
-from identification.frequency.cost import pair_cost
-from identification.frequency.fit import FrequencyFit
-from identification.frequency.linear_run import linear_run
-from identification.frequency.models import held_response
+from identification.fit.belief import Belief
+from identification.frequency.match.cost import pair_cost
+from identification.frequency.match.fit import FrequencyFit
+from identification.frequency.models.linear_model import held_response
+from identification.frequency.models.linear_run import linear_run
 from identification.frequency.notes import notes_on
-from identification.frequency.record import Record
-from identification.result import Identification, facts, identification
+from identification.frequency.responses.record import Record
+from identification.results.result import Identification, facts, identification
 from records.plant import Plant
 
 Array = NDArray[np.float64]

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from identification.experiments.table import KINDS, perform
-from identification.monte_carlo import other_rig
-from identification.staged import identify_staged
+from identification.proof.monte_carlo import other_rig
+from identification.stages.staged import identify_staged
 from records.plant import load_plant
 from sim.bind import bind
 

@@ -6,13 +6,13 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from identification.belief import NOTHING
-from identification.bench import task
-from identification.estimate import estimate
-from identification.log_run import log_run
-from identification.logs import identify_logs
-from identification.notes import stage_notes
-from identification.ranges import ranges_of
+from identification.fit.belief import NOTHING
+from identification.fit.ranges import ranges_of
+from identification.proof.bench import task
+from identification.results.notes import stage_notes
+from identification.runs.log_run import log_run
+from identification.stages.estimate import estimate
+from identification.stages.logs import identify_logs
 from sim.bind import bind
 from sim.loop import fly_law
 from sim.manoeuvres import flight

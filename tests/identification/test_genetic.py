@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from identification.belief import NOTHING
 from identification.experiments.table import kinds_of, perform
-from identification.experiments.velagic import KINDS
-from identification.genetic import Code, Settings, evolve
-from identification.population import absolute_error, predictions
-from identification.prediction import predicted
-from identification.search import Search, search
-from identification.solve import Prior, Problem
-from identification.staged import identify_stage
+from identification.experiments.velagic.experiments import KINDS
+from identification.fit.belief import NOTHING
+from identification.fit.solve import Prior, Problem
+from identification.runs.prediction import predicted
+from identification.search.genetic import Code, Settings, evolve
+from identification.search.methods import Search, search
+from identification.search.population import absolute_error, predictions
+from identification.stages.staged import identify_stage
 from tests.plants import bound as plant_of
 
 

@@ -8,8 +8,8 @@ import pytest
 from design.settings import read_settings
 from design.table import design
 from diagnosis.engine import Material, diagnose
-from identification.result import identification
-from identification.run import coefficient_names
+from identification.results.result import identification
+from identification.runs.run import coefficient_names
 from sim.bind import bind
 from sim.equilibrium import equilibrium
 from sim.loop import closed_loop_log

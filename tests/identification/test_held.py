@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.belief import NOTHING, stated
-from identification.held import leaning
-from identification.notes import leaning_notes
-from identification.staged import identify_stage
+from identification.fit.belief import NOTHING, stated
+from identification.results.held import leaning
+from identification.results.notes import leaning_notes
+from identification.stages.staged import identify_stage
 
 
 @pytest.fixture(scope="module")

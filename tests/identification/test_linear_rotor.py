@@ -3,7 +3,7 @@
 import pytest
 
 from identification.experiments.table import KINDS
-from identification.linear_rotor import linear_rotor, readings_by
+from identification.proof.linear_rotor import linear_rotor, readings_by
 
 
 @pytest.mark.parametrize("kind", ["main_rotor", "tail_rotor"])

@@ -8,10 +8,10 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from identification.belief import Belief, stated
-from identification.estimate import interval_factor
-from identification.logs import apart_sd, best_fit, identify_logs, run_of
-from identification.search import Search
+from identification.fit.belief import Belief, stated
+from identification.search.methods import Search
+from identification.stages.estimate import interval_factor
+from identification.stages.logs import apart_sd, best_fit, identify_logs, run_of
 from recordings.files import datasets_folder
 from recordings.library import import_record
 from records.correlation import Correlation

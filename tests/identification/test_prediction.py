@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.bench import task
-from identification.driven import driven_states
 from identification.experiments.table import KINDS
-from identification.log_run import log_run, rounding_sd
-from identification.prediction import blocks, predicted
-from identification.run import coefficient_names, with_starts
+from identification.model.driven import driven_states
+from identification.proof.bench import task
+from identification.runs.log_run import log_run, rounding_sd
+from identification.runs.prediction import blocks, predicted
+from identification.runs.run import coefficient_names, with_starts
 from sim.simulate import simulate
 
 RELATIVE = 2e-4

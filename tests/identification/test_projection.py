@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification import solve as solver
-from identification.belief import NOTHING
-from identification.bench import task
-from identification.estimate import problem_of
-from identification.log_run import log_run
-from identification.ranges import ranges_of
-from identification.run import coefficient_names
-from identification.solve import Prior, at, solve
+from identification.fit import solve as solver
+from identification.fit.belief import NOTHING
+from identification.fit.ranges import ranges_of
+from identification.fit.solve import Prior, at, solve
+from identification.proof.bench import task
+from identification.runs.log_run import log_run
+from identification.runs.run import coefficient_names
+from identification.stages.estimate import problem_of
 
 NAMES = ("J_E", "b_vE", "K_M")
 

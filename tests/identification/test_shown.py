@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification import bench
-from identification.run import coefficient_names
-from identification.shown import hidden, unread
+from identification.model.shown import hidden, unread
+from identification.proof import bench
+from identification.runs.run import coefficient_names
 from records.plant import load_plant
 from sim.bind import bind
 from tests.identification.conftest import PLANTS

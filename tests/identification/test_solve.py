@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification import bench
-from identification.belief import NOTHING, Belief
-from identification.estimate import estimate, problem_of
-from identification.log_run import log_run
-from identification.prediction import blocks
-from identification.ranges import Range, ranges_of
-from identification.run import coefficient_names
-from identification.solve import _informed_step, _starts, solve
+from identification.fit.belief import NOTHING, Belief
+from identification.fit.ranges import Range, ranges_of
+from identification.fit.solve import _informed_step, _starts, solve
+from identification.proof import bench
+from identification.runs.log_run import log_run
+from identification.runs.prediction import blocks
+from identification.runs.run import coefficient_names
+from identification.stages.estimate import estimate, problem_of
 from records.errors import BadInput
 
 

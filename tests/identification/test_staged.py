@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from identification.belief import NOTHING
-from identification.experiments import swings
-from identification.experiments.rig import Setup
+from identification.experiments.ce150 import swings
+from identification.experiments.ce150.rig import Setup
 from identification.experiments.table import KINDS, informed, perform
-from identification.linear_rotor import linear_rotor
-from identification.monte_carlo import coverage, other_rig, repetition
-from identification.prediction import blocks
-from identification.residuals import residual_tests
-from identification.result import facts, identification
-from identification.staged import identify_stage, identify_staged
-from identification.validation import compare_flights
+from identification.fit.belief import NOTHING
+from identification.proof.linear_rotor import linear_rotor
+from identification.proof.monte_carlo import coverage, other_rig, repetition
+from identification.proof.validation import compare_flights
+from identification.results.result import facts, identification
+from identification.runs.prediction import blocks
+from identification.stages.staged import identify_stage, identify_staged
+from identification.uncertainty.residuals import residual_tests
 from records.errors import BadInput
 from records.experiment import load_experiment, save_experiment
 from sim.bind import bind

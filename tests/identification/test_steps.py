@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification.belief import NOTHING
-from identification.estimate import problem_of
-from identification.evolution import evolution
-from identification.log_run import log_run
-from identification.logs import identify_logs, prediction_tests
-from identification.ranges import ranges_of
+from identification.fit.belief import NOTHING
+from identification.fit.ranges import ranges_of
+from identification.runs.log_run import log_run
+from identification.search.evolution import evolution
+from identification.stages.estimate import problem_of
+from identification.stages.logs import identify_logs, prediction_tests
 from records.errors import BadInput
 from records.log import RunLog
 from records.plant import load_plant

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from identification.driven import driven_model
-from identification.experiments.elevation import turning_rad_s
-from identification.experiments.windows import fastest_row
-from identification.prediction import Block
-from identification.solve import Starts
-from identification.uncertainty import score, unseen
+from identification.experiments.ce150.elevation import turning_rad_s
+from identification.experiments.ce150.windows import fastest_row
+from identification.fit.solve import Starts
+from identification.model.driven import driven_model
+from identification.runs.prediction import Block
+from identification.uncertainty.correlation import score, unseen
 from sim.plants import MODELS
 
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.belief import NOTHING
 from identification.experiments.table import kinds_of, perform
-from identification.experiments.velagic_figures import responses
-from identification.result import identification
-from identification.search import Search
-from identification.staged import identify_stage
+from identification.experiments.velagic.figures import responses
+from identification.fit.belief import NOTHING
+from identification.results.result import identification
+from identification.search.methods import Search
+from identification.stages.staged import identify_stage
 from records.errors import BadInput
 from sim.bind import bind
 from tests.plants import bound as plant_of

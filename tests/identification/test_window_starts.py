@@ -7,8 +7,8 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from identification.logs import identify_logs, run_of
-from identification.window_starts import crawling
+from identification.runs.window_starts import crawling
+from identification.stages.logs import identify_logs, run_of
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from identification.experiments.velagic_rig import PERIOD_S, PHI, PSI, UPRIGHT, VelagicRig
+from identification.experiments.velagic.rig import PERIOD_S, PHI, PSI, UPRIGHT, VelagicRig
 from sim.equilibrium import equilibrium
 from sim.simulate import simulate
 from tests.plants import bound

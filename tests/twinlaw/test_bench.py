@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from identification import bench as fit_bench
+from identification.proof import bench as fit_bench
 from sim import bench, bench_compiled
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb

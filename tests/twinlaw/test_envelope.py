@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification.envelope.conditions import Condition
-from identification.envelope.flight import STATES, Flight
-from identification.envelope.flight_file import load_flight, load_flights, save_flight
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.flights.flight import STATES, Flight
+from identification.envelope.flights.flight_file import load_flight, load_flights, save_flight
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan

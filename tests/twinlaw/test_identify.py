@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification.bench import task
+from identification.proof.bench import task
 from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind

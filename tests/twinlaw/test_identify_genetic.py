@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import genetic
+from identification.search import genetic
 from records.log import RunLog, save_log
 from records.plant import load_plant
 from sim.bind import bind

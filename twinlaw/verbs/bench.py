@@ -14,8 +14,8 @@ from typing import Any
 
 from codegen.law import generate_law
 from design.law import FloatLaw
-from identification import bench as fit_bench
-from identification.bench import FitRow
+from identification.proof import bench as fit_bench
+from identification.proof.bench import FitRow
 from records.table import ControllerTable
 from rig.emulator.bench import Speed
 from rig.emulator.board import EmulatedBoard

@@ -13,10 +13,10 @@ import shutil
 from pathlib import Path
 
 from identification.envelope.by_hand import tried
-from identification.envelope.flight import Flight
-from identification.envelope.flight_file import load_flights, save_flight
+from identification.envelope.flights.flight import Flight
+from identification.envelope.flights.flight_file import load_flights, save_flight
+from identification.envelope.flights.starts import NONE, load_starts
 from identification.envelope.record import facts, summary
-from identification.envelope.starts import NONE, load_starts
 from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly

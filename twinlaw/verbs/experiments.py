@@ -13,7 +13,7 @@ from dataclasses import asdict
 from typing import Any
 
 from identification.experiments.table import kinds_of, perform
-from identification.monte_carlo import Repetition, RigOrder, coverage, other_rig, repeat
+from identification.proof.monte_carlo import Repetition, RigOrder, coverage, other_rig, repeat
 from jobs.job import Job
 from records.experiment import save_experiment
 from records.files import write_atomic

@@ -17,10 +17,10 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from identification.logs import trimmed
-from identification.result import facts
-from identification.run import coefficient_names
-from identification.search import METHODS, Search
+from identification.results.result import facts
+from identification.runs.run import coefficient_names
+from identification.search.methods import METHODS, Search
+from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw import console, options

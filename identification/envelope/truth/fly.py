@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.envelope.conditions import Condition
-from identification.envelope.flight import CONTROLS, Flight
-from identification.envelope.multistep import STEPS_2311, multistep
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.flights.flight import CONTROLS, Flight
+from identification.envelope.flights.multistep import STEPS_2311, multistep
 from identification.envelope.truth.equations import Air, rates, specific_force
 from identification.envelope.truth.figures import Machine
 from identification.envelope.truth.trim import air_of, trim

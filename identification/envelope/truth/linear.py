@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from identification.envelope.conditions import Condition
+from identification.envelope.flights.conditions import Condition
 from identification.envelope.truth.equations import STATE_COUNT, rates
 from identification.envelope.truth.figures import Machine
 from identification.envelope.truth.trim import air_of, trim

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from identification.envelope.conditions import IDENTIFIED, LEFT_OUT, Condition
-from identification.envelope.flight import CONTROLS
+from identification.envelope.flights.conditions import IDENTIFIED, LEFT_OUT, Condition
+from identification.envelope.flights.flight import CONTROLS
 from identification.envelope.truth.fly import FlightTest
 
 # The thesis validates HA6000ft-50kts by a longitudinal and a lateral 2-3-1-1 and by a quiet descent (2.2.3), and others by other

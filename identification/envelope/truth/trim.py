@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
-from identification.envelope.conditions import Condition
+from identification.envelope.flights.conditions import Condition
 from identification.envelope.truth.equations import Air, rates
 from identification.envelope.truth.figures import Machine
 from records.errors import BadInput

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from identification.envelope import initial_state
-from identification.envelope.closed_loop import optimise
-from identification.envelope.flight import Deviations
-from identification.envelope.free_run import Model, free_run, model_of, one_step, slopes
-from identification.envelope.initial_state import REACH, as_measured, automatic, by_hand, over_grid
-from identification.envelope.recursive import batch, pairs
+from identification.envelope.flights.flight import Deviations
+from identification.envelope.state_equation import initial_state
+from identification.envelope.state_equation.closed_loop import optimise
+from identification.envelope.state_equation.free_run import Model, free_run, model_of, one_step, slopes
+from identification.envelope.state_equation.initial_state import REACH, as_measured, automatic, by_hand, over_grid
+from identification.envelope.state_equation.recursive import batch, pairs
 
 # A pair of eigenvalues of modulus 1.002 and a period of 2 pi / 0.06 samples, as a phugoid's.
 TRUTH = Model(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from identification.envelope.conditions import IDENTIFIED, LEFT_OUT, Condition, condition_of
-from identification.envelope.free_run import Model
+from identification.envelope.flights.conditions import IDENTIFIED, LEFT_OUT, Condition, condition_of
 from identification.envelope.interpolation import GlobalModel, between, nearest
-from identification.envelope.outputs import Linear
+from identification.envelope.output_equation.outputs import Linear
+from identification.envelope.state_equation.free_run import Model
 from records.errors import BadInput
 
 

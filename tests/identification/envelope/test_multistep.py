@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from identification.envelope.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, multistep, spectrum
+from identification.envelope.flights.multistep import (
+    DOUBLET,
+    PULSE,
+    STEPS_2311,
+    STEPS_3211,
+    band_Hz,
+    multistep,
+    spectrum,
+)
 
 
 def test_a_2311_is_two_up_three_down_one_up_one_down():

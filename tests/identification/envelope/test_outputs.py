@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification.envelope.clusters import Radii, subtractive
 from identification.envelope.criteria import Match, matches, passed, score_percent
-from identification.envelope.flight import Deviations, GRAVITY_m_s2
-from identification.envelope.fuzzy import fuzzy, gradient
-from identification.envelope.outputs import SLOPE_ROWS, classical, linear
+from identification.envelope.flights.flight import Deviations, GRAVITY_m_s2
+from identification.envelope.output_equation.clusters import Radii, subtractive
+from identification.envelope.output_equation.fuzzy import fuzzy, gradient
+from identification.envelope.output_equation.outputs import SLOPE_ROWS, classical, linear
 
 
 def test_potentials_by_hand():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from identification.envelope.flight import Deviations
-from identification.envelope.recursive import Pairs, batch, best, history, pairs, potential
+from identification.envelope.flights.flight import Deviations
+from identification.envelope.state_equation.recursive import Pairs, batch, best, history, pairs, potential
 from records.errors import BadInput
 
 A = np.array([[0.7, 0.2], [-0.3, 0.5]])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from identification.envelope.check import FINAL
-from identification.envelope.conditions import Condition
 from identification.envelope.criteria import error_margins, outside_percent, passed
-from identification.envelope.flight import joined
-from identification.envelope.shortcomings import poor, unused
+from identification.envelope.flights.conditions import Condition
+from identification.envelope.flights.flight import joined
+from identification.envelope.flights.shortcomings import poor, unused
 from identification.envelope.study import Interpolated, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly

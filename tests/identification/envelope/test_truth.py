@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from identification.envelope.conditions import IDENTIFIED, Condition
-from identification.envelope.flight import GRAVITY_m_s2
+from identification.envelope.flights.conditions import IDENTIFIED, Condition
+from identification.envelope.flights.flight import GRAVITY_m_s2
 from identification.envelope.truth.equations import STATE_COUNT, rates, specific_force, turning
 from identification.envelope.truth.figures import Machine, drawn
 from identification.envelope.truth.fly import FlightTest, fly, runge_kutta

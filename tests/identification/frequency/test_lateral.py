@@ -5,8 +5,8 @@ import tomllib
 import numpy as np
 import pytest
 
+from identification.frequency.flights.transfer import to_centre_of_gravity
 from identification.frequency.lateral import check_plant, state_space
-from identification.frequency.transfer import to_centre_of_gravity
 from records.errors import BadInput
 from records.plant import load_plant, parse_plant, plant_text
 from tests.plants import PLANTS

@@ -6,15 +6,15 @@ import pytest
 from design.settings import read_settings
 from design.table import design
 from identification.frequency.coverage import coverage, repetition
-from identification.frequency.fit import match
-from identification.frequency.helicopter import sweep_flights
+from identification.frequency.flights.helicopter import sweep_flights
+from identification.frequency.flights.plant_sweep import closed_loop_sweeps
+from identification.frequency.flights.sweep import design_sweep, sweep_input
 from identification.frequency.lateral import StateSpace
-from identification.frequency.lateral_record import lateral_model, lateral_records
-from identification.frequency.models import held_response, operating_point_model
-from identification.frequency.plant_sweep import closed_loop_sweeps
-from identification.frequency.record import Record, record_of
+from identification.frequency.match.fit import match
+from identification.frequency.models.lateral_record import lateral_model, lateral_records
+from identification.frequency.models.linear_model import held_response, operating_point_model
+from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import frequency_facts, frequency_identification, time_check
-from identification.frequency.sweep import design_sweep, sweep_input
 from records.errors import BadInput
 from records.plant import load_plant
 from tests.plants import PLANTS, bound

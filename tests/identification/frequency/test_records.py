@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from identification.frequency.lateral import StateSpace
-from identification.frequency.linear_run import linear_run
-from identification.frequency.record import Record, record_of, with_instruments
+from identification.frequency.models.linear_run import linear_run
+from identification.frequency.responses.record import Record, record_of, with_instruments
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from identification.frequency.record import Record
-from identification.frequency.responses import frequency_responses
-from identification.frequency.spectra import transforms, window
+from identification.frequency.responses.conditioned import frequency_responses
+from identification.frequency.responses.record import Record
+from identification.frequency.responses.spectra import transforms, window
 from records.errors import BadInput
 
 PERIOD_S = 0.05

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from identification.frequency.cost import N_OMEGA, chosen_points, coherence_weight, good_range, residual, target
-from identification.frequency.responses import Responses
-from identification.frequency.secant import restarted, secant_search
+from identification.frequency.match.cost import N_OMEGA, chosen_points, coherence_weight, good_range, residual, target
+from identification.frequency.match.secant import restarted, secant_search
+from identification.frequency.responses.conditioned import Responses
 
 
 def valley(theta):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from identification.frequency.sweep import design_sweep, highest_rad_s, phase_rad, record_s, sweep_input
+from identification.frequency.flights.sweep import design_sweep, highest_rad_s, phase_rad, record_s, sweep_input
 from records.errors import BadInput
 
 PERIOD_S = 0.02

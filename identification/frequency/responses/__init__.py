@@ -1,0 +1,1 @@
+"""From a log to conditioned frequency responses and their coherence."""

@@ -1,0 +1,72 @@
+"""What is to be told of a fit besides its numbers, a sentence each: what it cannot tell, what contradicts what, what no sensor does."""
+
+from collections.abc import Sequence
+
+from identification.results.held import Leaning
+from identification.stages.estimate import Estimate
+from identification.uncertainty.correlation import Direction
+
+LEAST_CHANCE = 1e-300
+MOST_DIRECTIONS = 3
+MOST_HELD = 4
+
+
+def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
+    """What one stage cannot tell, by direction; what contradicts earlier data, by parameter; residuals that are no sensor's errors."""
+    blind = [f"{title}: {_direction(entry)}" for entry in stage.unseen[:MOST_DIRECTIONS]]
+    if len(stage.unseen) > MOST_DIRECTIONS:
+        blind.append(f"{title}: {len(stage.unseen) - MOST_DIRECTIONS} more such directions, in identification.json")
+    pulled = [
+        f"{title}: contradicts earlier data in {entry.name}: {entry.before:.4g} before, {entry.after:.4g} now, "
+        f"{entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
+        for entry in stage.contradictions[:3]
+    ]
+    against = [
+        f"{title}: {entry.run} contradicts {entry.against} in {entry.name}: {entry.own:.4g} by itself, "
+        f"{entry.others:.4g} by {entry.against}, {entry.sds:.0f} sd apart; find out what differs, or leave one of them out"
+        for entry in stage.discords[:3]
+    ]
+    coloured = [
+        f"{test.run if test.run in title.split(', ') else title}: residuals of {test.channel} are correlated "
+        f"({chance(test.whiteness_p)}, rms {test.rms:.2g}); "
+        "its samples count for fewer"
+        for test in stage.residuals
+        if not test.white
+    ]
+    bound = [
+        f"{title}: {name} ended at its bound; the data pull it further: widen --bounds, or doubt the model"
+        for name in stage.at_bound
+    ]
+    return (*blind, *bound, *pulled, *against, *coloured)
+
+
+def leaning_notes(title: str, found: Sequence[Leaning]) -> tuple[str, ...]:
+    """One sentence, of the parameter that what was held may move farthest beyond its stated sd."""
+    if not found:
+        return ()
+    worst = max(found, key=lambda entry: entry.by / entry.sd)
+    named = ", ".join(worst.held[:MOST_HELD]) + (
+        f" and {len(worst.held) - MOST_HELD} more" if len(worst.held) > MOST_HELD else ""
+    )
+    return (
+        f"{title}: the intervals take {named or 'what was held'} as exact; by the sd in the plant file {worst.name} may be off by "
+        f"{worst.by:.2g}, {worst.by / worst.sd:.2g} times the sd stated: free them too (--free), or count what the file knows (--prior)",
+    )
+
+
+def chance(p: float) -> str:
+    """A small probability as text; what a float64 cannot hold is not 0."""
+    return f"p = {p:.1g}" if p > LEAST_CHANCE else f"p < {LEAST_CHANCE:.0e}"
+
+
+def _direction(entry: Direction) -> str:
+    parts = " ".join(f"{weight:+.2f} {name}" for name, weight in entry.weights)
+    return (
+        f"not identifiable alone: the direction {parts}, each relative to its size (sd {relative(entry.relative_sd)})"
+    )
+
+
+def relative(sd: float) -> str:
+    """A relative sd in per cent without an exponent."""
+    percent = 100.0 * sd
+    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %" if percent < 1000.0 else "> 1000 %"

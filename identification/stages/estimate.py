@@ -1,0 +1,214 @@
+"""One stage of identification: fit, weigh the readings by what they turn out to be worth, state how far the result may be off."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from identification.fit.belief import Belief, prior, widened
+from identification.fit.information import inverse, marginal
+from identification.fit.ranges import Range
+from identification.fit.solve import Point, Problem, Told, Watch, by_name, solve
+from identification.fit.steps import MOST, SHIFT_SD, finer, shift_sd
+from identification.runs.run import Run, with_sd
+from identification.search.methods import Search, Searched, search, started
+from identification.uncertainty.correlation import Direction, inflations, pieces, unseen
+from identification.uncertainty.discord import Discord, discords
+from identification.uncertainty.residuals import ResidualTest, residual_tests
+
+Array = NDArray[np.float64]
+CONTRADICTION_SD, CONTRADICTION_MOVE = 5.0, 3.0
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A parameter that this stage's data pull away from what earlier data said: by how many standard deviations, from where to where."""
+
+    name: str
+    sds: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
+
+    `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
+    `discords` name those in which runs that were fitted together contradict one another.
+    """
+
+    belief: Belief
+    own: tuple[str, ...]
+    dof: float
+    cost: float
+    steps: int
+    unseen: tuple[Direction, ...]
+    contradictions: tuple[Contradiction, ...]
+    at_bound: tuple[str, ...]
+    residuals: tuple[ResidualTest, ...]
+    runs: tuple[Run, ...]
+    searched: tuple[Searched, ...] = ()
+    discords: tuple[Discord, ...] = ()
+
+
+def interval_factor(dof: float) -> float:
+    """Half the width of a 95 % interval in standard deviations, by Student's distribution."""
+    return float(stdtrit(max(dof, 1.0), 0.975))
+
+
+def estimate(
+    runs: Sequence[Run],
+    own: Sequence[str],
+    ranges: Mapping[str, Range],
+    before: Belief,
+    told: Told | None = None,
+    wanted: Search | None = None,
+) -> Estimate:
+    """Fit the parameters `own` to the runs, with those of `before` re-estimated from what is known of them.
+
+    Earlier stages enter as a normal distribution, so the joint covariance carries their uncertainty on; after the last stage it is that
+    of one fit to all runs, to first order. Channels are weighted by their own residuals, Q_V = diag(1 / rms^2), and a run whose
+    residuals are correlated counts for fewer samples. `wanted` asks for a search over the whole range of `own` first; `told` hears of
+    better parameters as soon as there are any.
+    """
+    problem = problem_of(tuple(runs), tuple(own), ranges, before)
+    problem, searched = _searched(problem, own, wanted, told)
+    tell = by_name(problem.names, told)
+    problem, point = _fitted(problem, len(before.names), lambda better: tell(better.theta))
+    return _estimate(problem, point, tuple(own), before, searched)
+
+
+def _searched(
+    problem: Problem, own: Sequence[str], wanted: Search | None, told: Told | None
+) -> tuple[Problem, tuple[Searched, ...]]:
+    """The problem from the start that a search found, where one is wanted, and what was found."""
+    if wanted is None:
+        return problem, ()
+    places = [problem.names.index(name) for name in own]
+    found = search(problem, places, wanted, told)
+    return started(problem, places, found[0]), found
+
+
+def _estimate(
+    problem: Problem, point: Point, own: tuple[str, ...], before: Belief, searched: tuple[Searched, ...]
+) -> Estimate:
+    """What the optimum tells."""
+    after = Belief(problem.names, point.theta, inverse(point.H + problem.prior.information))
+    fitted = zip(point.runs, point.blocks, strict=True)
+    return Estimate(
+        belief=after,
+        own=own,
+        dof=max(1.0, float(pieces(point) - len(own))),
+        cost=point.cost,
+        steps=point.steps,
+        unseen=_unseen(problem, point, own, before),
+        contradictions=_contradictions(before, after),
+        at_bound=_at_bound(problem, point),
+        residuals=tuple(test for run, blocks in fitted for test in residual_tests(run, blocks)),
+        runs=point.runs,
+        searched=searched,
+        discords=discords(problem, point),
+    )
+
+
+def _unseen(problem: Problem, point: Point, own: tuple[str, ...], before: Belief) -> tuple[Direction, ...]:
+    """Directions of `own` that neither the data nor what was known before tell."""
+    known = point.H + problem.prior.information - np.diag(_weak(problem, before))
+    places = [problem.names.index(name) for name in own]
+    return unseen(own, marginal(known, places, problem.scale), problem.scale[places])
+
+
+def _at_bound(problem: Problem, point: Point) -> tuple[str, ...]:
+    bounds = zip(problem.names, point.theta, problem.lower, problem.upper, strict=True)
+    return tuple(name for name, value, lower, upper in bounds if value in (lower, upper))
+
+
+def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
+    """Fit, weigh, fit again; the same in half the steps while those move the estimates, and less each time."""
+    before = np.inf
+    while True:
+        weighed, point = _weighed_fit(problem, known, watch)
+        now = shift_sd(weighed, point)
+        if now <= SHIFT_SD or now > before / 2.0 or max(run.substeps for run in point.runs) >= MOST:
+            return weighed, point
+        problem, before = replace(problem, start=point.theta, runs=finer(problem.runs, point)), now
+
+
+def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
+    """Fit, weigh by channel, fit, weigh by correlation, fit; the first `known` parameters are held by what is known of them."""
+    point = solve(problem, watch)
+    for weigh in (_by_channel, _by_correlation):
+        problem = _recentred(_weighed(problem, point, weigh), known)
+        point = solve(problem, watch)
+    return problem, point
+
+
+def problem_of(runs: tuple[Run, ...], own: tuple[str, ...], ranges: Mapping[str, Range], before: Belief) -> Problem:
+    """The problem of fitting `own` with what is known before; those of `before` start at their means."""
+    names, theta = widened(before, own, {name: entry.start for name, entry in ranges.items()})
+    scale = np.array([ranges[name].scale for name in names])
+    return Problem(
+        names=names,
+        start=theta,
+        scale=scale,
+        lower=np.array([ranges[name].lower for name in names]),
+        upper=np.array([ranges[name].upper for name in names]),
+        runs=runs,
+        prior=prior(before, theta, scale),
+    )
+
+
+def _weak(problem: Problem, before: Belief) -> Array:
+    """The diagonal of the prior that stands for no knowledge."""
+    weak = 1.0 / problem.scale**2
+    weak[: len(before.names)] = 0.0
+    return np.asarray(weak)
+
+
+def _weighed(problem: Problem, point: Point, weigh: Callable[[Problem, Point], tuple[Run, ...]]) -> Problem:
+    """The problem from its optimum with other weights."""
+    return replace(problem, start=point.theta, runs=weigh(problem, point))
+
+
+def _recentred(problem: Problem, known: int) -> Problem:
+    """What merely gives a new parameter a size holds it where it is by now: weights that fell must not let it pull back to a far start."""
+    mean = np.concatenate([problem.prior.mean[:known], problem.start[known:]])
+    return replace(problem, prior=replace(problem.prior, mean=mean))
+
+
+def _by_channel(_: Problem, point: Point) -> tuple[Run, ...]:
+    """Each channel's sd set to the rms of its residuals; that of rounded readings only upwards, as their least is known."""
+    runs = []
+    for run, blocks in zip(point.runs, point.blocks, strict=True):
+        sd, residual = run.sd.copy(), np.concatenate([block.residual for block in blocks])
+        for number in range(len(run.channels)):
+            mine = run.channel == number
+            if mine.sum() > 1:
+                rounded = run.step.size > 0 and run.step[number] > 0.0
+                sd[mine] *= max(float(np.sqrt(np.mean(residual[mine] ** 2))), 1.0 if rounded else 1e-3)
+        runs.append(with_sd(run, sd))
+    return tuple(runs)
+
+
+def _by_correlation(problem: Problem, point: Point) -> tuple[Run, ...]:
+    """All sd of a channel widened by as much as its residuals' correlation asks."""
+    weak = np.diag(1.0 / problem.scale**2)
+    return tuple(
+        with_sd(run, run.sd * np.sqrt(found)[run.channel])
+        for run, found in zip(point.runs, inflations(point, weak), strict=True)
+    )
+
+
+def _contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
+    """Parameters that moved by more than new data can explain: the variance of an update is that before less that after."""
+    found = []
+    for place, name in enumerate(before.names):
+        spread = before.covariance[place, place] - after.covariance[place, place]
+        moved = float(after.mean[place] - before.mean[place])
+        sds = abs(moved) / float(np.sqrt(max(spread, 1e-4 * before.covariance[place, place])))
+        if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
+            found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
+    return tuple(found)

@@ -1,0 +1,46 @@
+"""The size of a parameter that is absent from a plant file (value and sd 0), by what it would do to these data."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.fit.ranges import Range
+from identification.runs.prediction import blocks
+from identification.runs.run import Run
+
+Array = NDArray[np.float64]
+SHARE = 0.1  # an absent parameter is taken to matter a tenth as much as the others
+LEAST = 1e-9  # a friction of exactly 0 has no slope: it does not act at all
+REACH, BOUND = 100.0, 1e-3
+
+
+def with_sizes(runs: Sequence[Run], ranges: Mapping[str, Range], absent: Sequence[str]) -> dict[str, Range]:
+    """The ranges with size, bounds and, for what cannot be negative, a start above 0 for the parameters `absent`.
+
+    The size is that at which the parameter moves the readings by `SHARE` of what the other parameters do at theirs.
+    """
+    if not absent:
+        return dict(ranges)
+    names = tuple(ranges)
+    start = np.array([LEAST if name in absent else ranges[name].start for name in names])
+    effect = np.zeros(len(names))
+    for run in runs:
+        for block in blocks(run, names, start):
+            effect += np.sum(block.by_parameter**2, axis=0)
+    effect = np.sqrt(effect)
+    others = [effect[k] * ranges[name].scale for k, name in enumerate(names) if name not in absent]
+    common = SHARE * float(np.median(others)) if others else 1.0
+    found = dict(ranges)
+    for name in absent:
+        own = effect[names.index(name)]
+        size = common / own if own > 0.0 else ranges[name].scale
+        found[name] = _range(ranges[name], float(size))
+    return found
+
+
+def _range(old: Range, size: float) -> Range:
+    """Bounds of the user stay as they are: only those that were a guess, multiples of the old size, move."""
+    never_negative = old.lower >= 0.0
+    lower = BOUND * size if never_negative else -REACH * size
+    return Range(size if never_negative else 0.0, lower, REACH * size, size)

@@ -1,0 +1,194 @@
+"""The stages of the paper: each subsystem from the experiment made for it, what is known handed on with its covariance."""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.experiments.kind import Kind
+from identification.experiments.table import informed, kinds_of
+from identification.fit.belief import NOTHING, Belief
+from identification.fit.ranges import Range, ranges_of
+from identification.fit.solve import Told
+from identification.runs.run import Run, coefficient_names, known_names
+from identification.search.methods import Search
+from identification.stages.estimate import Estimate, estimate
+from records.errors import BadInput
+from records.experiment import Experiment
+from sim.bind import BoundPlant
+
+ANGLE_SIZE_RAD = 0.1
+POOR = 5.0  # residuals so many times above what the sensor leaves call for a look at the mount
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """One experiment's estimate; `belief` is over the plant's parameters alone, `aids` over what the experiment needed besides."""
+
+    kind: str
+    result: Estimate
+    belief: Belief
+    aids: Belief
+
+
+def identify_staged(
+    bound: BoundPlant, experiments: Sequence[Experiment], limits: Mapping[str, tuple[float, float]] | None = None
+) -> tuple[Stage, ...]:
+    """All stages in order, from the plant's values; raises BadInput for a wrong plant, mount or lock."""
+    stages: list[Stage] = []
+    for experiment in in_order(experiments):
+        belief = stages[-1].belief if stages else NOTHING
+        stages.append(identify_stage(bound, experiment, belief, limits))
+    return tuple(stages)
+
+
+def in_order(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """The experiments in the order of the paper's numbers; raises BadInput for an unknown kind."""
+    return tuple(sorted(experiments, key=lambda entry: _kind(entry).number))
+
+
+def title(experiment: Experiment) -> str:
+    """Number and name of an experiment."""
+    kind = _kind(experiment)
+    return f"experiment {kind.number}, {kind.title}"
+
+
+def _kind(experiment: Experiment) -> Kind:
+    kinds = kinds_of(experiment.plant)
+    if experiment.kind not in kinds:
+        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(kinds)}", "correct its file")
+    return kinds[experiment.kind]
+
+
+def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
+    """Refuse a record of another plant, or of a rig that stood otherwise than the experiment's equations say; raises BadInput."""
+    where = f"experiment {experiment.kind}"
+    if experiment.plant != bound.model.name:
+        raise BadInput(
+            "plant", where, repr(experiment.plant), repr(bound.model.name), "give the record and the plant of one rig"
+        )
+    kind = _kind(experiment)
+    informs = ", ".join(kind.own)
+    if experiment.mount != kind.mount:
+        raise BadInput("mount", where, repr(experiment.mount), repr(kind.mount),
+                       f"run it again on that mount: gravity acts differently on this one, and {informs} would come out wrong")  # fmt: skip
+    if set(experiment.locked) != set(kind.locked):
+        raise BadInput("locked axes", where, repr(list(experiment.locked)), repr(list(kind.locked)),
+                       f"lock these and run it again: {informs} follow from the equations of the other axis alone")  # fmt: skip
+
+
+def identify_stage(
+    bound: BoundPlant,
+    experiment: Experiment,
+    belief: Belief,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    wanted: Search | None = None,
+    free: Collection[str] | None = None,
+    told: Told | None = None,
+) -> Stage:
+    """One experiment added to what is known.
+
+    A parameter that it needs but none before has informed is estimated with it from the plant's value, so a set of experiments with
+    gaps works and says what it cannot tell. `wanted` asks for a search over the whole range of its parameters first. A parameter that
+    the plant states as exact is held, unless it is among those named `free`; then only these are estimated. `told` hears of better
+    parameters as soon as there are any. Raises BadInput for a wrong plant, mount or lock, also where only the motion shows it.
+    """
+    check_setup(experiment, bound)
+    kind = _kind(experiment)
+    run = kind.run(experiment, bound)
+    own = tuple(name for name in needed(run, kind, belief) if _is_free(name, bound, free))
+    ranges = ranges_of(bound, [*belief.names, *own], _limits(kind, limits, wanted)) | _aid_ranges(kind, experiment)
+    coded = None if wanted is None else replace(wanted, bits={name: bits for name, (_, _, bits) in kind.code.items()})
+    before = _with_aids(belief, kind, experiment)
+    unknown = tuple(name for name, facts in kind.aids.items() if facts is None)
+    result = estimate([run], (*own, *unknown), ranges, before, told, coded)
+    check_mount(run, kind, result, ranges, before)
+    names = tuple(name for name in result.belief.names if name not in kind.aids)
+    return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
+
+
+def check_mount(run: Run, kind: Kind, result: Estimate, ranges: Mapping[str, Range], before: Belief) -> None:
+    """Raise BadInput where the motion is badly predicted on the stated mount and far better on the other."""
+    poor = any(test.floor > 0.0 and test.rms > POOR * test.floor for test in result.residuals)
+    other = _on_other_mount(run)
+    if not poor or other is None:
+        return
+    there = estimate([other], result.own, ranges, before)
+    own_rms, other_rms = (max(test.rms for test in found.residuals) for found in (result, there))
+    if other_rms < own_rms / POOR:
+        moved = {"turned": "upright", "upright": "turned"}[kind.mount]
+        raise BadInput(
+            "mount", f"experiment {run.name}", f"a motion as on the mount {moved!r} (residuals {other_rms:.2g} there, {own_rms:.2g} here)",
+            f"one as on the mount {kind.mount!r}", f"run it again on that mount: {', '.join(kind.own)} cannot come from this record",
+        )  # fmt: skip
+
+
+def _on_other_mount(run: Run) -> Run | None:
+    """The run as it would be with gravity in the other direction; None where no axis moves."""
+    names, p = list(coefficient_names(run.bound.model)), run.bound.p.copy()
+    if "mount_rad" in names:
+        place = names.index("mount_rad")
+        p[place] = 0.0 if p[place] else -math.pi / 2
+    elif "turned" in names:
+        place = names.index("turned")
+        p[place] = 1.0 - p[place]
+    else:
+        return None
+    return replace(run, bound=replace(run.bound, p=p))
+
+
+def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
+    """The experiment's own parameters, and those of the paper that its model has but no stage before has informed."""
+    every = informed(run.bound.plant.model)
+    has = {every[place] for place, _ in known_names(run, every)}
+    excited = {name for name in every if name in has and _excited(run, name)}
+    return tuple(name for name in every if name in kind.own or (name in excited and name not in belief.names))
+
+
+def _is_free(name: str, bound: BoundPlant, free: Collection[str] | None) -> bool:
+    """Whether a parameter is to be estimated: as the user says, else unless the plant states it as exact."""
+    if free is not None:
+        return name in free
+    place = coefficient_names(bound.model).index(name)
+    return bool(bound.sd[place] > 0.0 or bound.p[place] == 0.0)
+
+
+def _limits(
+    kind: Kind, limits: Mapping[str, tuple[float, float]] | None, wanted: Search | None
+) -> Mapping[str, tuple[float, float]]:
+    """The user's limits; a search has those of the experiment's code where the user says nothing."""
+    own = {} if wanted is None else {name: (lower, upper) for name, (lower, upper, _) in kind.code.items()}
+    return {**own, **(limits or {})}
+
+
+def _excited(run: Run, name: str) -> bool:
+    """Whether the run's inputs move what the parameter acts on: without voltage a rotor's parameters are not asked for."""
+    inputs = [str(variable) for variable in run.bound.model.inputs]
+    acts = {"M": "u_M_V", "T": "u_T_V"}
+    rotor = name.split("_")[1][-1:] if name.startswith(("p_b", "p_F")) else name[2:] if name in ("K_M", "K_T") else ""
+    column = "turning_rad_s" if name == "K_E" else acts.get(rotor)
+    return column not in inputs or bool(np.any(run.u[:, inputs.index(column)]))
+
+
+def _aid_ranges(kind: Kind, experiment: Experiment) -> dict[str, Range]:
+    found = {}
+    for name, facts in kind.aids.items():
+        start = experiment.facts[facts[0]] if facts else 0.0
+        size = abs(start) or ANGLE_SIZE_RAD
+        found[name] = Range(start, -math.inf, math.inf, size)
+    return found
+
+
+def _with_aids(belief: Belief, kind: Kind, experiment: Experiment) -> Belief:
+    """The belief with what was measured beside the record, independent of all before."""
+    known = [(name, facts) for name, facts in kind.aids.items() if facts]
+    if not known:
+        return belief
+    size = belief.mean.size
+    covariance = np.zeros((size + len(known), size + len(known)))
+    covariance[:size, :size] = belief.covariance
+    for place, (_, (_, sd)) in enumerate(known, start=size):
+        covariance[place, place] = experiment.facts[sd] ** 2
+    mean = np.array([experiment.facts[value] for _, (value, _) in known])
+    return Belief((*belief.names, *(name for name, _ in known)), np.concatenate([belief.mean, mean]), covariance)

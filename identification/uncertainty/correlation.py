@@ -1,0 +1,100 @@
+"""How far estimates may be off: errors that last (rounding, a model's misfit) counted as such, and what the data cannot tell."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.fit.solve import Point, Starts
+from identification.runs.prediction import Block
+from identification.runs.run import Run
+
+Array = NDArray[np.float64]
+PIECE_S = 1.0
+BLIND = 0.5  # a direction whose sd is above half of the parameters' size is not identified
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A combination of parameters, each relative to its size, of which the data know nothing, or just so much: its relative sd."""
+
+    weights: tuple[tuple[str, float], ...]
+    relative_sd: float
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """One run: information H of its residuals taken as independent, scores of its pieces g (pieces, parameters)."""
+
+    H: Array
+    g: Array
+
+    def inflation(self, weak: Array, least: float) -> float:
+        """How many times more the scores vary than independent residuals would let them: trace(M H^-1) per parameter.
+
+        M = sum over pieces of g g^T. Only directions that this run informs count; `weak` is the information that holds the others. So few
+        pieces tell a variance to a share sqrt(2 / pieces) only; twice that is added, which makes it an upper limit.
+        """
+        A = np.linalg.inv(self.H + weak)
+        informed = float(np.trace(A @ self.H))
+        pieces = self.g.shape[0]
+        if informed < 0.5 or pieces <= informed + 1.0:
+            return 1.0
+        M = self.g.T @ self.g * (pieces / (pieces - informed))
+        return max(float(np.trace(A @ M)) / informed, least) * float(1.0 + 2.0 * np.sqrt(2.0 / pieces))
+
+
+def score(run: Run, starts: Starts, blocks: Sequence[Block], channel: int, piece_s: float = PIECE_S) -> Score:
+    """The score of one channel of a run at its optimum, with the windows' starts projected out: J - X C^-1 X^T J."""
+    size = blocks[0].by_parameter.shape[1]
+    H, pieces = np.zeros((size, size)), [np.zeros((0, size))]  # none of a channel that was never read
+    follow = np.linalg.solve(starts.C, np.swapaxes(starts.B, 1, 2))
+    for block, along in zip(blocks, follow, strict=True):
+        mine = run.channel[block.place] == channel
+        if not mine.any():
+            continue
+        J = (block.by_parameter - block.by_start @ along)[mine]
+        H += J.T @ J
+        begins = np.flatnonzero(np.diff(np.floor((block.at_s[mine] - run.t_s[0]) / piece_s), prepend=-1.0))
+        pieces.append(np.add.reduceat(J * block.residual[mine, None], begins, axis=0))
+    return Score(H, np.concatenate(pieces))
+
+
+def inflations(point: Point, weak: Array) -> tuple[Array, ...]:
+    """For each run the inflation of each of its channels."""
+    return tuple(
+        np.array([score(run, starts, own, number).inflation(weak, least) for number, least in enumerate(_least(run))])
+        for run, starts, own in zip(point.runs, point.starts, point.blocks, strict=True)
+    )
+
+
+def _least(run: Run) -> tuple[float, ...]:
+    return run.least_inflation or (1.0,) * len(run.channels)
+
+
+def pieces(point: Point) -> int:
+    """How many pieces of `PIECE_S` all runs have, which is what intervals rest on."""
+    return sum(
+        int(np.unique(np.floor((block.at_s - run.t_s[0]) / PIECE_S)).size)
+        for run, own in zip(point.runs, point.blocks, strict=True)
+        for block in own
+    )
+
+
+def unseen(names: Sequence[str], H: Array, scale: Array) -> tuple[Direction, ...]:
+    """Directions of the scaled information S H S whose relative sd is above `BLIND`, worst first; by its eigenvectors (its SVD)."""
+    values, vectors = np.linalg.eigh(H * np.outer(scale, scale))
+    found = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        sd = float(1.0 / np.sqrt(max(value, 1e-24)))
+        if sd > BLIND:
+            found.append(Direction(_weights(names, vector), sd))
+    return tuple(found)
+
+
+def _weights(names: Sequence[str], vector: Array) -> tuple[tuple[str, float], ...]:
+    """The components that matter, largest first and positive."""
+    order = np.argsort(-np.abs(vector))
+    sign = np.sign(vector[order[0]])
+    return tuple((names[place], float(sign * vector[place])) for place in order if abs(vector[place]) > 0.3)
