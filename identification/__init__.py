@@ -1,1 +1,1 @@
-"""From recorded experiments to a plant file whose standard deviations and correlations are earned."""
+"""From recorded experiments and run logs to a plant file whose standard deviations and correlations are earned."""

@@ -1,1 +1,1 @@
-"""Linear models of a helicopter over its flight envelope, from flights with multistep inputs (seed 003)."""
+"""From flights with multistep inputs to linear models of a helicopter over its flight envelope (seed 003)."""

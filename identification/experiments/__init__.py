@@ -1,1 +1,1 @@
-"""The nine experiments of seed 000: each performed on a simulated rig, and each record made ready for the estimator."""
+"""From a simulated rig, or a record of a real one, to runs for the estimator; each experiment is one entry of `table.BY_PLANT`."""

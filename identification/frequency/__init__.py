@@ -1,1 +1,1 @@
-"""Identification in the frequency domain, as in seed 002: sweeps, conditioned frequency responses, a model that matches them."""
+"""From frequency sweeps to the model that matches their conditioned frequency responses (seed 002)."""
