@@ -8,7 +8,7 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
-from twinlaw.parser import build_parser
+from twinlaw.cli.parser import build_parser
 from twinlaw.verbs import VERBS
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -15,8 +15,8 @@ from dataclasses import asdict
 from jobs.threads import told_late
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
-from twinlaw import console
-from twinlaw.parser import WrongCommandLine, build_parser
+from twinlaw.cli import console
+from twinlaw.cli.parser import WrongCommandLine, build_parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

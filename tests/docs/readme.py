@@ -12,7 +12,7 @@ from pathlib import Path
 from records.log import load_log
 from sim.columns import log_columns
 from sim.plants import MODELS
-from twinlaw.run_report import flight_plot
+from twinlaw.pages.run.report import flight_plot
 
 ROOT = Path(__file__).resolve().parents[2]
 README, PLOT = ROOT / "README.md", ROOT / "docs" / "flight.svg"

@@ -16,8 +16,8 @@ from recordings.files import datasets_folder
 from tests.docs.commands import PAGES, calls, checkout, commands, fenced, mentions
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
-from twinlaw.completion import Command, command_tree
-from twinlaw.parser import build_parser
+from twinlaw.cli.completion import Command, command_tree
+from twinlaw.cli.parser import build_parser
 from twinlaw.verbs import VERBS
 
 RUN = "twinlaw run --plant plants/ce150.toml --out build"  # once for all pages

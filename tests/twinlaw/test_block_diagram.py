@@ -6,7 +6,7 @@ import pytest
 
 from sim.places import Places
 from tests.plants import bound
-from twinlaw.block_diagram import HEIGHT, SIDE, WIDTH, block_diagram
+from twinlaw.pages.block_diagram import HEIGHT, SIDE, WIDTH, block_diagram
 
 
 def points_of(drawn: str) -> list[list[tuple[float, float]]]:

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from twinlaw.cli.completion import SHELLS, Command, command_tree, completion_text
+from twinlaw.cli.parser import build_parser
 from twinlaw.command import main
-from twinlaw.completion import SHELLS, Command, command_tree, completion_text
-from twinlaw.parser import build_parser
 from twinlaw.verbs import VERBS
 
 PATIENCE_S = 60.0

@@ -50,7 +50,7 @@ def test_a_pipe_gets_neither_colours_nor_progress() -> None:
 
 
 def test_who_has_no_home_hears_nothing_of_it() -> None:
-    program = "from twinlaw.command import main; main(['completion', 'bash']); import twinlaw.plots"
+    program = "from twinlaw.command import main; main(['completion', 'bash']); import twinlaw.pages.plots"
     given = {"PATH": os.environ["PATH"], "HOME": "/dev/null/none", "TWINLAW_CACHE": str(CACHE_DIR)}
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, env=given)
     assert (done.returncode, done.stderr) == (0, "")
@@ -67,7 +67,7 @@ def test_a_stream_that_the_caller_closed_changes_no_exit_status(closed: str) -> 
 
 
 def test_only_one_place_knows_colours() -> None:
-    # So that no verb can forget NO_COLOR: the escape is written in twinlaw/console.py alone.
+    # So that no verb can forget NO_COLOR: the escape is written in twinlaw/cli/console.py alone.
     escape = re.compile(r"\\x1b|\\033|\\e\[|\\u001b")
     found = [path for path in (ROOT / "twinlaw").rglob("*.py") if escape.search(path.read_text("utf-8"))]
     assert [path.name for path in found] == ["console.py"]

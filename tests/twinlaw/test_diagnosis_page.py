@@ -24,13 +24,13 @@ from records.diagnosis import (
 )
 from records.plant import load_plant
 from sim.bind import bind
-from twinlaw.diagnosis_page import Predicted, diagnosis_page, verdict_sentence
-from twinlaw.diagnosis_pictures import curves, worst_of_the_retuned, worst_span
-from twinlaw.diagnosis_retune import Moved, moved_most
-from twinlaw.diagnosis_shrinkage import shrinkage_sections
-from twinlaw.diagnosis_summary import summary_text
-from twinlaw.diagnosis_words import class_in_words, plain_notes
-from twinlaw.page import page_text
+from twinlaw.pages.diagnose.pictures import curves, worst_of_the_retuned, worst_span
+from twinlaw.pages.diagnose.report import Predicted, diagnosis_page, verdict_sentence
+from twinlaw.pages.diagnose.retune import Moved, moved_most
+from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
+from twinlaw.pages.diagnose.summary import summary_text
+from twinlaw.pages.diagnose.words import class_in_words, plain_notes
+from twinlaw.pages.page import page_text
 
 ROOT = Path(__file__).resolve().parents[2]
 MOVED = "parameter J_A is +12.0 standard deviations from its stated value: 0.0213 instead of 0.0133"

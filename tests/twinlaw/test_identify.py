@@ -14,9 +14,9 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from tests.twinlaw.interrupts import stops_when_told
-from twinlaw import identifying
 from twinlaw.command import main
-from twinlaw.progress import Progress
+from twinlaw.workflows import identifying
+from twinlaw.workflows.progress import Progress
 
 ROTORS = ("01-main_rotor", "03-gravity", "04-elevation_swing")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from twinlaw import options
+from twinlaw.cli import options
 from twinlaw.command import main
 from twinlaw.verbs import verb_module
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from twinlaw import verbs
-from twinlaw.arithmetics import ARITHMETICS
+from twinlaw.cli.completion import command_tree
+from twinlaw.cli.parser import build_parser
 from twinlaw.command import main
-from twinlaw.completion import command_tree
-from twinlaw.parser import build_parser
 from twinlaw.verbs import VERBS, verb_module, verb_text
+from twinlaw.workflows.arithmetics import ARITHMETICS
 
 
 @pytest.mark.parametrize("word", VERBS)

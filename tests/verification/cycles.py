@@ -15,8 +15,8 @@ from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.image import build_firmware
 from rig.target_law import TargetLaw
-from twinlaw.arithmetics import BY_NAME
-from twinlaw.stages import design_controller
+from twinlaw.workflows.arithmetics import BY_NAME
+from twinlaw.workflows.stages import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus
 
 STEPS = 100_000

@@ -24,8 +24,8 @@ from rig.numbers import numbers_of
 from rig.target_law import TargetLaw
 from sim import bench
 from sim.bench import BenchRow, StepAccuracy
-from twinlaw import console, options
-from twinlaw.stages import design_controller
+from twinlaw.cli import console, options
+from twinlaw.workflows.stages import design_controller
 
 BOARD_STEPS = 20_000
 INSTALL = ".venv/bin/python -m pip install --editable '.[peers]'"

@@ -15,9 +15,11 @@ import blind
 from diagnosis.baselines import BASELINES
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import options, plots, sweeping
-from twinlaw.answering_plainly import plain_answers
-from twinlaw.diagnosing_each import answers, questions
+from twinlaw.cli import options
+from twinlaw.pages import plots
+from twinlaw.workflows import sweeping
+from twinlaw.workflows.answering_plainly import plain_answers
+from twinlaw.workflows.diagnosing_each import answers, questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,9 +12,10 @@ from dataclasses import asdict
 from controllers import loading
 from records.files import remove_all, write_atomic
 from records.table import ControllerTable
-from twinlaw import console, options, summary
-from twinlaw.exchange import image_a2l
-from twinlaw.stages import build_image, generate_sources
+from twinlaw.cli import console, options
+from twinlaw.pages.run import summary
+from twinlaw.workflows.exchange import image_a2l
+from twinlaw.workflows.stages import build_image, generate_sources
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,10 +12,12 @@ import shlex
 
 from controllers.table import CONTROLLERS
 from records.files import write_atomic
-from twinlaw import comparison_tables, console, options, sweeping
-from twinlaw.comparing import Wanted, compare_controllers, demand_equal, eq26_errors, facts
-from twinlaw.comparison_page import page_text, verdict
-from twinlaw.stages import STEPS, load_bound
+from twinlaw.cli import console, options
+from twinlaw.pages.compare import tables
+from twinlaw.pages.compare.report import page_text, verdict
+from twinlaw.workflows import sweeping
+from twinlaw.workflows.comparing import Wanted, compare_controllers, demand_equal, eq26_errors, facts
+from twinlaw.workflows.stages import STEPS, load_bound
 from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
 from verification.comparison.manoeuvres import FIGURES
@@ -56,16 +58,16 @@ def run(chosen: argparse.Namespace) -> int:
     content = facts(bound, rows, wanted, eq26)
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
     for name in FIGURES:
-        write_atomic(chosen.out / f"controllers-{name}.svg", comparison_tables.figure_plot(rows, name))
+        write_atomic(chosen.out / f"controllers-{name}.svg", tables.figure_plot(rows, name))
     command = _command(chosen)
     write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, eq26, command, str(chosen.out)))
     if chosen.json:
         print(json.dumps(content))
     else:
-        print(console.table(comparison_tables.cost_rows(rows), comparison_tables.COST_HEADING))
+        print(console.table(tables.cost_rows(rows), tables.COST_HEADING))
         for axis in ("elevation", "azimuth"):
             print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
-            print(console.table(comparison_tables.spread_rows(rows, axis), comparison_tables.SPREAD_HEADING))
+            print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))
         print(f"\n{verdict(rows)}\n{chosen.out / 'controllers.md'}")
     demand_equal(rows)
     return 0

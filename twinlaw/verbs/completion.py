@@ -9,8 +9,8 @@ The script starts no Python: print it anew after an update.
 
 import argparse
 
-from twinlaw.completion import SHELLS, command_tree, completion_text
-from twinlaw.parser import build_parser
+from twinlaw.cli.completion import SHELLS, command_tree, completion_text
+from twinlaw.cli.parser import build_parser
 from twinlaw.verbs import VERBS
 
 

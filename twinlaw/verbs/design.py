@@ -11,8 +11,9 @@ import json
 from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from records.table import table_text
-from twinlaw import console, options, summary
-from twinlaw.stages import design_controller, design_other
+from twinlaw.cli import console, options
+from twinlaw.pages.run import summary
+from twinlaw.workflows.stages import design_controller, design_other
 
 SCHEDULED = "scheduled"
 

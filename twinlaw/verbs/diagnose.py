@@ -15,11 +15,12 @@ from pathlib import Path
 from records.diagnosis import diagnosis_text
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import console, options, sweeping
-from twinlaw.diagnosing import diagnose_logs, widths, writable
-from twinlaw.diagnosing_each import HEADING, answers, facts, questions, rows
-from twinlaw.diagnosis_retune import moved_most
-from twinlaw.diagnosis_summary import summary_text
+from twinlaw.cli import console, options
+from twinlaw.pages.diagnose.retune import moved_most
+from twinlaw.pages.diagnose.summary import summary_text
+from twinlaw.workflows import sweeping
+from twinlaw.workflows.diagnosing import diagnose_logs, widths, writable
+from twinlaw.workflows.diagnosing_each import HEADING, answers, facts, questions, rows
 
 SCHEMA = "diagnoses/1"
 

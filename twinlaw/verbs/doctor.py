@@ -17,7 +17,7 @@ from typing import Any
 
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
-from twinlaw import console, options
+from twinlaw.cli import console, options
 
 # Asked itself, as what pip noted of it is as old as the last `make`.
 PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"

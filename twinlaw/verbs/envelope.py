@@ -23,10 +23,11 @@ from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import console, options, sweeping
-from twinlaw.envelope_report import SHOWN, envelope_page, notes_of, verdict
-from twinlaw.envelope_tables import by_hand, conditions, interpolation, open_loop
-from twinlaw.page import Table, page_text
+from twinlaw.cli import console, options
+from twinlaw.pages.envelope.report import SHOWN, envelope_page, notes_of, verdict
+from twinlaw.pages.envelope.tables import by_hand, conditions, interpolation, open_loop
+from twinlaw.pages.page import Table, page_text
+from twinlaw.workflows import sweeping
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -19,8 +19,9 @@ from records.experiment import save_experiment
 from records.files import write_atomic
 from records.plant import plant_text
 from sim.bind import BoundPlant
-from twinlaw import console, options, sweeping
-from twinlaw.stages import load_bound
+from twinlaw.cli import console, options
+from twinlaw.workflows import sweeping
+from twinlaw.workflows.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -13,7 +13,7 @@ from records.files import write_atomic
 from records.log import load_log, plant_of_log
 from sim.columns import log_columns
 from sim.plants import MODELS
-from twinlaw import options
+from twinlaw.cli import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -15,8 +15,8 @@ from rig.client import asked_identity
 from rig.emulated_flash import flash_emulated
 from rig.flash import flash_through_boot_loader, flash_through_st_link
 from toolchain.elf import flash_content
-from twinlaw import console, options
-from twinlaw.stages import board_url
+from twinlaw.cli import console, options
+from twinlaw.workflows.stages import board_url
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

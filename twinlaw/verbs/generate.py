@@ -7,8 +7,8 @@ import argparse
 import json
 
 from controllers import loading
-from twinlaw import options
-from twinlaw.stages import generate_sources
+from twinlaw.cli import options
+from twinlaw.workflows.stages import generate_sources
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -23,13 +23,13 @@ from identification.search.methods import METHODS, Search
 from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import console, options
-from twinlaw.identify_proof import proven
-from twinlaw.identify_report import identify_page
-from twinlaw.identify_summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
-from twinlaw.identifying import Wishes, free_names, identify, looked_at, read_inputs, read_limits
-from twinlaw.page import page_text
-from twinlaw.stages import load_bound
+from twinlaw.cli import console, options
+from twinlaw.pages.identify.report import identify_page
+from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
+from twinlaw.pages.page import page_text
+from twinlaw.workflows.identify_proof import proven
+from twinlaw.workflows.identifying import Wishes, free_names, identify, looked_at, read_inputs, read_limits
+from twinlaw.workflows.stages import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -93,7 +93,8 @@ def run(chosen: argparse.Namespace) -> int:
     """Read everything, estimate, write, tell."""
     holdout = options.held_out(chosen, "files")
     if chosen.method == "frequency":
-        from twinlaw.frequency_identifying import identify_by_frequency  # with SciPy's signals, a second to load
+        # With SciPy's signals, a second to load.
+        from twinlaw.workflows.identifying_by_frequency import identify_by_frequency
 
         return identify_by_frequency(chosen, holdout)
     if chosen.band_rad_s is not None:

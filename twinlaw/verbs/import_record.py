@@ -19,7 +19,7 @@ from recordings.exported import SUFFIXES, import_file
 from recordings.library import IMPORTERS, import_record, records
 from records.errors import BadInput
 from records.log import LOOPS, RunLog, save_log
-from twinlaw import options
+from twinlaw.cli import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

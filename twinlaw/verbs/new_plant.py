@@ -11,8 +11,8 @@ from pathlib import Path
 
 from records.errors import BadInput
 from records.files import write_atomic
-from twinlaw import options
-from twinlaw.new_plant import plant_files, rows_to_add
+from twinlaw.cli import options
+from twinlaw.workflows.new_plant import plant_files, rows_to_add
 
 PROJECT = Path(__file__).resolve().parent.parent.parent
 REGISTER = "sim/plants/__init__.py"

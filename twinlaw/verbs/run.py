@@ -10,10 +10,11 @@ from records.files import remove_all, write_atomic
 from records.log import save_log
 from records.table import table_text
 from records.verification import verification_text
-from twinlaw import console, options, summary
-from twinlaw.page import page_text
-from twinlaw.run_report import run_page
-from twinlaw.stages import (
+from twinlaw.cli import console, options
+from twinlaw.pages.page import page_text
+from twinlaw.pages.run import summary
+from twinlaw.pages.run.report import run_page
+from twinlaw.workflows.stages import (
     board_url,
     build_image,
     demand,

@@ -11,9 +11,10 @@ from pathlib import Path
 from controllers import loading
 from records.law_table import FlownTable
 from records.log import save_log
-from twinlaw import console, options, summary
-from twinlaw.arithmetics import ARITHMETICS
-from twinlaw.stages import design_controller, fly_double, fly_host, halved_step, load_bound
+from twinlaw.cli import console, options
+from twinlaw.pages.run import summary
+from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.stages import design_controller, fly_double, fly_host, halved_step, load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

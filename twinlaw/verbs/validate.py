@@ -12,8 +12,9 @@ from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.log import save_log
 from records.validation import validation_text
-from twinlaw import console, options, summary
-from twinlaw.stages import board_url, fly_board, load_bound, validate_board
+from twinlaw.cli import console, options
+from twinlaw.pages.run import summary
+from twinlaw.workflows.stages import board_url, fly_board, load_bound, validate_board
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -13,9 +13,10 @@ from controllers.loading import load_scheduled
 from records.files import write_atomic
 from records.protocol import PROTOCOL
 from records.verification import verification_text
-from twinlaw import console, options, summary
-from twinlaw.proving import with_proofs
-from twinlaw.stages import (
+from twinlaw.cli import console, options
+from twinlaw.pages.run import summary
+from twinlaw.workflows.proving import with_proofs
+from twinlaw.workflows.stages import (
     STEPS,
     build_image,
     demand,

@@ -17,8 +17,8 @@ from records.errors import BadInput
 from records.log import demand_log_place, save_log
 from sim.bind import BoundPlant
 from sim.loop import live_log
-from twinlaw import options
-from twinlaw.console import stage
+from twinlaw.cli import options
+from twinlaw.cli.console import stage
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched

@@ -18,10 +18,10 @@ from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest, flight
 from sim.stepped import SteppedPlant
-from twinlaw.stages import board_url, load_bound
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
+from twinlaw.workflows.stages import board_url, load_bound
 
 
 @dataclass(frozen=True)

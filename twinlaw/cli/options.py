@@ -1,0 +1,110 @@
+"""Options that several verbs share, so that the same thing has the same name everywhere."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from records.errors import BadInput
+
+
+def plant(parser: argparse.ArgumentParser) -> None:
+    """--plant PLANT.toml."""
+    parser.add_argument(
+        "--plant", type=Path, default=Path("plants/ce150.toml"), metavar="PLANT.toml", help="default: %(default)s"
+    )
+
+
+def table(parser: argparse.ArgumentParser) -> None:
+    """--table controller.json."""
+    parser.add_argument(
+        "--table", type=Path, default=Path("build/controller.json"), metavar="TABLE.json", help="default: %(default)s"
+    )
+
+
+def out(parser: argparse.ArgumentParser) -> None:
+    """--out DIR."""
+    parser.add_argument(
+        "--out", type=Path, default=Path("build"), metavar="DIR", help="where files go; default: %(default)s"
+    )
+
+
+def as_json(parser: argparse.ArgumentParser) -> None:
+    """--json."""
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables, and nothing besides")
+
+
+def logs(parser: argparse.ArgumentParser, dest: str, metavar: str, text: str) -> None:
+    """--holdout LOG.csv ..., and what is not held out."""
+    parser.add_argument(
+        "--holdout",
+        type=Path,
+        action="append",
+        nargs="+",
+        default=[],
+        metavar="LOG.csv",
+        help="logs kept for checking, all up to the next option; may be repeated",
+    )
+    parser.add_argument(dest, type=Path, nargs="*", metavar=metavar, help=text)
+
+
+def held_out(chosen: argparse.Namespace, dest: str) -> list[Path]:
+    """The logs of every --holdout; raises BadInput where nothing besides is left, as where the option was given right before the rest."""
+    held = [path for group in chosen.holdout for path in group]
+    if getattr(chosen, dest):
+        return held
+    if held:
+        got, remedy = f"all {len(held)} logs held out", "give --holdout behind the others, or put `--` before them"
+        raise BadInput("logs", "command line", got, "at least one that is not held out", remedy)
+    raise BadInput(dest, "command line", "none", "at least one", "name it behind the options")
+
+
+def differing(paths: Sequence[Path]) -> None:
+    """Raises BadInput where two logs have one name, by which all that is found is told."""
+    names = [path.stem for path in paths]
+    for name in names:
+        if names.count(name) > 1:
+            raise BadInput("logs", name, "two of this name", "names that differ", "leave one of them out, or rename it")
+
+
+def arithmetic(parser: argparse.ArgumentParser, *, design_too: bool = False) -> None:
+    """--arithmetic NAME, of the generated law; `design_too` adds the law in double precision and makes it the default."""
+    # With NumPy and all laws behind it, which most verbs do without.
+    from twinlaw.workflows.arithmetics import ARITHMETICS
+
+    choices = ("float64", *ARITHMETICS) if design_too else ARITHMETICS
+    parser.add_argument("--arithmetic", choices=choices, default=choices[0], help="of the law; default: %(default)s")
+
+
+def demanded_arithmetic(parser: argparse.ArgumentParser) -> None:
+    """--arithmetic NAME, of what exists already: without it any will do."""
+    from twinlaw.workflows.arithmetics import ARITHMETICS
+
+    parser.add_argument("--arithmetic", choices=ARITHMETICS, help="refuse an image of another; default: take either")
+
+
+def count(text: str) -> int:
+    """A whole number from 1 on, as the type of an option."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"got {text[:30]!r}, expected a whole number from 1 on")
+    return value
+
+
+def port_name(text: str) -> str:
+    """The name of a port, as the type of an option; an empty one is a shell's variable that was not set."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected a serial port such as /dev/ttyACM0, or `emulated`")
+    return text
+
+
+def port(parser: argparse.ArgumentParser) -> None:
+    """--port PORT."""
+    parser.add_argument(
+        "--port",
+        type=port_name,
+        default="emulated",
+        help="serial port of the board, or `emulated`; default: %(default)s",
+    )

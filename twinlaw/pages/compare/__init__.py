@@ -1,0 +1,1 @@
+"""A comparison of controllers goes in, docs/controllers.md, its tables and its plots come out."""

@@ -1,0 +1,119 @@
+"""docs/controllers.md as text, from a comparison."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from toolchain.templates import text_templates
+from twinlaw.pages.compare import tables
+from twinlaw.workflows.comparing import Compared, Wanted, spread_of
+from verification.comparison.eq26 import ANGLES, FormError
+from verification.comparison.flights import AXES, FILTERED
+from verification.comparison.manoeuvres import FIGURES
+
+OVERSHOOT = 0.05
+_TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+
+
+def page_text(
+    rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError], command: str, out: str
+) -> str:
+    """The page; the same comparison gives the same bytes."""
+    effects = tables.effect_rows(rows)
+    return (
+        text_templates(_TEMPLATES)
+        .get_template("controllers.md.j2")
+        .render(
+            command=command,
+            out=out,
+            rows=[
+                {"name": row.row.name, "title": row.row.title, "source": row.row.source, "digest": row.digest}
+                for row in rows
+            ],
+            notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
+            cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
+            figures=_figures(rows),
+            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
+            angles=ANGLES,
+            runs=wanted.trial.runs,
+            seed=wanted.trial.seed,
+            spread=[
+                (axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES
+            ],
+            filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
+            filtered_verdict=filtered_verdict(rows),
+            filtered=min(FILTERED, wanted.trial.runs),
+            effects=_markdown(*effects),
+            verdict=verdict(rows),
+        )
+    )
+
+
+def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
+    """Each manoeuvre with its figures of merit, axis by axis."""
+    return [
+        {
+            "name": name,
+            "title": figure.title,
+            "tables": [
+                (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
+                for axis in AXES
+            ],
+        }
+        for name, figure in FIGURES.items()
+    ]
+
+
+def verdict(rows: Sequence[Compared]) -> str:
+    """Who leads on the spread plants, by axis and figure of merit, in one sentence."""
+    parts = []
+    for axis in AXES:
+        spread = {row.row.name: spread_of(row.spread, axis) for row in rows}
+        held = {name: found for name, found in spread.items() if not found.unsettled} or spread
+        iae = min(held, key=lambda name: held[name].median_iae_rad_s)
+        swing = min(held, key=lambda name: held[name].worst_swing_V)
+        overshoot = min(held, key=lambda name: held[name].worst_overshoot)
+        parts.append(
+            f"{axis}: least IAE `{iae}` ({math.degrees(held[iae].median_iae_rad_s):.0f} deg s in the median), least overshoot "
+            f"`{overshoot}` ({100.0 * held[overshoot].worst_overshoot:.1f} % at worst), least swing `{swing}` "
+            f"({held[swing].worst_swing_V:.1f} V)"
+        )
+    cheapest = min(rows, key=lambda row: row.cost.cycles_max)
+    return (
+        "Of those that settle on all spread plants, in the "
+        + "; in the ".join(parts)
+        + f". The cheapest step is `{cheapest.row.name}`'s, {cheapest.cost.cycles_max} cycles."
+    )
+
+
+def filtered_verdict(rows: Sequence[Compared]) -> str:
+    """What each reaches behind the filter that suits it best: least median IAE among those with at most OVERSHOOT at worst."""
+    parts = []
+    for axis in AXES:
+        best = sorted((found, row.row.name) for row in rows if (found := _best_filter(row, axis)) is not None)
+        told = ", ".join(
+            f"`{name}` {math.degrees(iae):.0f} deg s ({tables.share(share)})" for (iae, share), name in best
+        )
+        parts.append(f"{axis}: {told or 'none'}")
+    return (
+        f"Each behind the filter of least IAE that overshoots by at most {100.0 * OVERSHOOT:.0f} %: {'; '.join(parts)}."
+    )
+
+
+def _best_filter(row: Compared, axis: str) -> tuple[float, float] | None:
+    """Least median IAE and its filter's share; None where every filter overshoots, or leaves a step unsettled."""
+    found = {share: spread_of(flown, axis) for share, flown in row.filters.items()}
+    held = [
+        (entry.median_iae_rad_s, share)
+        for share, entry in found.items()
+        if not entry.unsettled and entry.worst_overshoot <= OVERSHOOT
+    ]
+    return min(held, default=None)
+
+
+def _markdown(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [heading, ["---"] * len(heading), *rows]
+    return (
+        "\n".join("| " + " | ".join(line) + " |" for line in lines).replace("| --- ", "|---").replace("--- |", "---|")
+    )

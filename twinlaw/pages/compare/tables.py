@@ -1,0 +1,189 @@
+"""The comparison as rows of text and plots: what `twinlaw compare` prints and writes."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid
+from twinlaw.workflows.comparing import Compared, spread_of
+from verification.comparison.eq26 import FormError
+from verification.comparison.flights import AXES
+from verification.comparison.measures import Merit
+
+Row = tuple[str, ...]
+Array = NDArray[np.float64]
+COST_HEADING: Row = (
+    "controller",
+    "cycles",
+    "of 10 ms",
+    "stack",
+    "flash",
+    "RAM",
+    "twin = host = target",
+)
+MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
+SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
+EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
+COLOURS = (BLUE, RED, GREEN, ORANGE, SKY, "#CC79A7")
+DASHES = ("-", "--", "-.", (0, (5, 1)), (0, (3, 1, 1, 1)), ":")
+CYCLES_OF_A_SAMPLE = 640_000  # 10 ms at 64 MHz
+MOST_POINTS = 1200
+
+
+def cost_rows(rows: Sequence[Compared]) -> list[Row]:
+    """What one control step and the image cost."""
+    return [
+        (
+            row.row.name,
+            f"{row.cost.cycles_max}",
+            f"{100.0 * row.cost.cycles_max / CYCLES_OF_A_SAMPLE:.1f} %",
+            f"{row.cost.stack_bytes} B",
+            f"{row.cost.flash_bytes} B",
+            f"{row.cost.ram_bytes} B",
+            _equal(row),
+        )
+        for row in rows
+    ]
+
+
+def _equal(row: Compared) -> str:
+    steps = min(entry.steps for entry in row.equality)
+    return f"{sum(entry.mismatches for entry in row.equality)} of {steps} steps differ"
+
+
+EQ26_FORMS = {"plain": "seven equations in powers of z^-1", "closed": "as on the board"}
+
+
+def eq26_rows(errors: Mapping[tuple[str, str], FormError]) -> list[Row]:
+    """Largest relative errors of each form and axis, and where its slowest pole lies."""
+    return [
+        (
+            EQ26_FORMS[form],
+            axis,
+            f"{error.coefficients:.1e}",
+            f"{error.q_sum:.1e}",
+            f"{error.fastest_rad_s:+.4f} .. {error.slowest_rad_s:+.4f} rad/s",
+        )
+        for (form, axis), error in errors.items()
+    ]
+
+
+def figure_rows(rows: Sequence[Compared], figure: str, axis: str) -> list[Row]:
+    """The merits of one axis in one figure."""
+    return [(row.row.name, *_merit(row.figures[figure][axis])) for row in rows]
+
+
+def _merit(merit: Merit) -> Row:
+    return (
+        f"{100.0 * merit.overshoot:.1f} %",
+        _settling(merit.settling_s),
+        f"{math.degrees(merit.steady_error_rad):.2f} deg",
+        f"{math.degrees(merit.largest_error_rad):.2f} deg",
+        f"{math.degrees(merit.iae_rad_s):.0f} deg s",
+        f"{merit.swing_V:.2f} V",
+        f"{merit.travel_V_s:.2f} V/s",
+    )
+
+
+def _settling(time_s: float | None) -> str:
+    return "never" if time_s is None else f"{time_s:.2f} s"
+
+
+def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
+    """One axis over the spread plants."""
+    shown: list[Row] = []
+    for row in rows:
+        found, runs = spread_of(row.spread, axis), len(row.spread)
+        shown.append(
+            (
+                row.row.name,
+                f"{runs - found.unsettled} of {runs}",
+                f"{100.0 * found.worst_overshoot:.1f} %",
+                _settling(found.worst_settling_s),
+                f"{math.degrees(found.worst_steady_error_rad):.2f} deg",
+                f"{math.degrees(found.median_iae_rad_s):.0f} / {math.degrees(found.worst_iae_rad_s):.0f} deg s",
+                f"{found.worst_swing_V:.2f} V",
+            )
+        )
+    return shown
+
+
+def filter_rows(rows: Sequence[Compared], axis: str) -> tuple[Row, list[Row]]:
+    """Heading and rows: per reference filter and controller, median IAE and the worst overshoot."""
+    heading = ("filter", *(row.row.name for row in rows))
+    shares = rows[0].filters if rows else ()
+    return heading, [(share(part), *(_tracked(row.filters[part], axis) for row in rows)) for part in shares]
+
+
+def share(part: float) -> str:
+    """A reference filter in words: its share of the plant file's time constant."""
+    return f"{100.0 * part:.0f} % of T" if part else "no filter"
+
+
+def _tracked(flown: Sequence[Mapping[str, Merit]], axis: str) -> str:
+    found = spread_of(flown, axis)
+    lost = f", {found.unsettled} unsettled" if found.unsettled else ""
+    return f"{math.degrees(found.median_iae_rad_s):.0f} deg s, {100.0 * found.worst_overshoot:.1f} %{lost}"
+
+
+def effect_rows(rows: Sequence[Compared]) -> tuple[Row, list[Row]]:
+    """Heading and rows: per effect and controller, IAE and largest steady error of the worse axis."""
+    heading = ("effect", *(row.row.name for row in rows))
+    lines = [(effect, *(_struck(row.effects[effect]) for row in rows)) for effect in (rows[0].effects if rows else ())]
+    nominal = ("none", *(_struck(row.figures["fig-23"]) for row in rows))
+    return heading, [nominal, *lines]
+
+
+def _struck(merits: Mapping[str, Merit]) -> str:
+    """IAE of elevation / azimuth in deg s, and the larger steady error; `lost` where a step never settles."""
+    iae = " / ".join(f"{math.degrees(merits[axis].iae_rad_s):.0f}" for axis in AXES)
+    steady = max(math.degrees(merit.steady_error_rad) for merit in merits.values())
+    unsettled = any(merit.settling_s is None for merit in merits.values())
+    return f"{iae}, {steady:.1f} deg{' (unsettled)' if unsettled else ''}"
+
+
+def figure_plot(rows: Sequence[Compared], figure: str) -> str:
+    """Angles over their references and both voltages, all controllers, as SVG."""
+    flown = {row.row.name: row.flights[figure] for row in rows}
+    first = next(iter(flown.values()))
+    looks = dict(zip(flown, zip(COLOURS, DASHES, strict=True), strict=False))
+
+    def curves(values: Mapping[str, Array], axis: int, scale: float) -> list[Curve]:
+        return [
+            Curve(*_thinned(first.t_s, scale * array[:, axis]), name, looks[name][0], looks[name][1])
+            for name, array in values.items()
+        ]
+
+    angles = {name: entry.y_rad for name, entry in flown.items()}
+    voltages = {name: entry.u_V for name, entry in flown.items()}
+    wanted = [
+        Curve(*_thinned(first.t_s, np.degrees(first.reference_rad[:, axis])), "reference", GREY, ":") for axis in (0, 1)
+    ]
+    degrees = 180.0 / math.pi
+    panels = (
+        Panel("elevation [deg]", [*curves(angles, 0, degrees), wanted[0]]),
+        Panel("azimuth [deg]", [*curves(angles, 1, degrees), wanted[1]]),
+        Panel("u_M [V]", sorted(curves(voltages, 0, 1.0), key=_travel, reverse=True)),
+        Panel("u_T [V]", sorted(curves(voltages, 1, 1.0), key=_travel, reverse=True)),
+    )
+    return grid([(panel,) for panel in panels], ("",), "time [s]", height_in=1.9)
+
+
+def _travel(curve: Curve) -> float:
+    """How far its line goes up and down: the busiest is drawn first, so that it hides none."""
+    return float(np.abs(np.diff(curve.y)).sum())
+
+
+def _thinned(t_s: Array, values: Array) -> tuple[Array, Array]:
+    """At most MOST_POINTS points with every peak kept: least and largest of each stretch, in their order."""
+    length = -(-len(values) // (MOST_POINTS // 2))
+    if length < 2:
+        return t_s, values
+    chosen: set[int] = {0, len(values) - 1}
+    for begin in range(0, len(values), length):
+        part = values[begin : begin + length]
+        chosen |= {begin + int(np.argmin(part)), begin + int(np.argmax(part))}
+    rows = np.array(sorted(chosen))
+    return t_s[rows], values[rows]

@@ -1,0 +1,79 @@
+"""A diagnosis in a few lines for a terminal."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from records.diagnosis import Diagnosis
+from twinlaw.cli import console
+from twinlaw.pages.diagnose.answers import surest_answer
+from twinlaw.pages.diagnose.firmware import firmware_first, firmware_in_words
+from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
+from twinlaw.pages.diagnose.words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
+
+MOST = 5
+
+
+def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), widths: Mapping[str, float] = {}) -> str:
+    """Verdict, ranked effects, places, shrinkage, firmware, notes; `moved` are the plant's own numbers that moved
+    most, `widths` see `sized`."""
+    return "\n".join(_lines(diagnosis, moved, widths)) + "\n"
+
+
+def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> Iterator[str]:
+    p = diagnosis.false_alarm_probability
+    if firmware_first(diagnosis.firmware):
+        yield firmware_first(diagnosis.firmware)
+    if p is None:
+        yield diagnosis.verdict
+    elif diagnosis.verdict == "gap":
+        yield f"gap (chance of so large a gap without one: {chance(p)})"
+    else:
+        yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis.verdict, p)}"
+    if diagnosis.verdict == "gap":
+        yield console.table(_rows(diagnosis, moved, widths))
+    if diagnosis.unknown.form:
+        yield f"sparse regression suggests: {diagnosis.unknown.form}"
+    if diagnosis.places and diagnosis.verdict == "gap":
+        yield "places: " + ", ".join(f"{row.place} {row.share:.0%}" for row in diagnosis.places[:MOST])
+    if diagnosis.error_responses:
+        yield surest_answer(diagnosis)
+    yield "found: " + (" + ".join(diagnosis.found) or "nothing to add")
+    yield from _retuned(diagnosis, moved)
+    if diagnosis.found and diagnosis.shrinkage is not None and diagnosis.shrinkage.fraction is not None:
+        interval = diagnosis.shrinkage.fraction_ci95
+        within = "" if interval is None else f" (95 %: {interval[0]:.0%} to {interval[1]:.0%})"
+        yield f"hold-out: {diagnosis.shrinkage.fraction:.0%} of the removable error gone{within}"
+    if diagnosis.firmware is not None:
+        yield f"firmware: {firmware_in_words(diagnosis.firmware)}"
+    yield from plain_notes(diagnosis.notes)
+
+
+def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:
+    """All that may explain the gap, the most probable first, and last that nothing does that is known."""
+    ranked = []
+    for h in diagnosis.effects[:MOST]:
+        lines = [
+            (name if place == 0 else f"  with {name}", f"{h.probability:.3f}" if place == 0 else "", size)
+            for place, (name, _, size) in enumerate(sized(h, widths, " ", 2))
+        ]
+        ranked.append((h.probability, lines))
+    alone = parameters_alone(diagnosis)
+    # Beside an effect other numbers move than without it.
+    ranked.append(
+        (alone, [("other parameters alone", f"{alone:.3f}", "" if diagnosis.found else moved_in_words(moved))])
+    )
+    ranked.sort(key=lambda entry: -entry[0])
+    class_ = class_in_words(diagnosis.unknown.class_ or "")
+    return [*(row for _, lines in ranked for row in lines), ("unknown", f"{diagnosis.unknown.probability:.3f}", class_)]
+
+
+def _retuned(diagnosis: Diagnosis, moved: Sequence[Moved]) -> Iterator[str]:
+    """What a re-tune alone does to the hold-out's error, and which numbers moved for it."""
+    parts = []
+    for output, (stated, now) in lowered(diagnosis).items():
+        name, unit, scale = shown(output)
+        parts.append(f"{name} {scale * stated:.3g} -> {scale * now:.3g} {unit.strip('[]')}".rstrip())
+    if parts:
+        yield f"hold-out error as stated -> re-tuned: {', '.join(parts)}"
+    if moved and (parts or diagnosis.found or diagnosis.verdict != "gap"):
+        beside = " beside what was found" if diagnosis.found else ""
+        yield f"moved most{beside}, in standard deviations of what is stated: {moved_in_words(moved)}"

@@ -1,0 +1,149 @@
+"""The report of `twinlaw identify`: estimates and what cannot be told, the fits, Figs. 7, 8, 10 and 13 of the paper redrawn."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.experiments.table import KINDS
+from identification.proof.linear_rotor import linear_rotor, readings_by
+from identification.proof.validation import Comparison
+from identification.results.result import Identification
+from identification.stages.estimate import Estimate
+from records.experiment import Experiment
+from sim.bind import BoundPlant
+from twinlaw.pages.identify.summary import (
+    AID_HEADING,
+    FIT_HEADING,
+    HEADING,
+    aid_rows,
+    estimate_rows,
+    fit_rows,
+    test_rows,
+)
+from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
+
+ROTORS = {"main_rotor": ("main rotor", "Fig. 7"), "tail_rotor": ("tail rotor", "Fig. 8")}
+SHOWN_S = 15.0
+
+
+def identify_page(
+    bound: BoundPlant, result: Identification, experiments: tuple[Experiment, ...], further: Sequence[Section] = ()
+) -> Page:
+    """The whole page; `further` sections come last."""
+    told = sum(entry.identified for entry in result.estimates)
+    sections = [_estimates(result), _correlation(result), _fits(result)]
+    by_kind = {experiment.kind: experiment for experiment in experiments}
+    sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
+    if "gravity" in by_kind:
+        sections.append(_gravity(by_kind["gravity"], result))
+    return Page(
+        title=f"{result.plant.name}: identified",
+        verdict=f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks.",
+        passed=told == len(result.estimates),
+        facts=(("Equations", result.plant.model),),
+        sections=(*sections, *further),
+    )
+
+
+def _estimates(result: Identification) -> Section:
+    tables = [Table(estimate_rows(result.estimates), HEADING)]
+    if result.aids:
+        tables.append(Table(aid_rows(result.aids), AID_HEADING))
+    return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))
+
+
+def _correlation(result: Identification) -> Section:
+    """The pairs that hang together most; the whole matrix is in plant.toml."""
+    matrix, names = result.belief.correlation, result.belief.names
+    pairs = [(abs(matrix[i, j]), names[i], names[j], matrix[i, j]) for i in range(len(names)) for j in range(i)]
+    rows = [(a, b, f"{value:+.3f}") for _, a, b, value in sorted(pairs, key=lambda pair: -pair[0])[:12]]
+    sentence = "Pairs whose errors hang together most: only a combination of such two is known well. The whole matrix is in plant.toml."
+    return Section("Correlation", (sentence,), (Table(rows, ("parameter", "parameter", "correlation")),))
+
+
+def _fits(result: Identification) -> Section:
+    sentence = (
+        "rms of what is left, beside what the sensor's rounding alone leaves; fit = 1 - |y - prediction| / |y - mean|. "
+        "Readings that are more correlated than their rounding explains count for fewer samples in the intervals."
+    )
+    rows = [*fit_rows(result.stages), *test_rows("held out", result.holdout)]
+    return Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))
+
+
+def _rotor(bound: BoundPlant, experiment: Experiment, result: Identification) -> Section:
+    """Speed and thrust over time: measured, polynomial model, the manual's linear one."""
+    name, figure = ROTORS[experiment.kind]
+    stage = next(entry for title, entry in result.stages if KINDS[experiment.kind].title in title)
+    linear = linear_rotor(KINDS[experiment.kind].run(experiment, bound))
+    panels = [_rotor_panel(stage, linear, number, label) for number, label in ((0, "speed [rad/s]"), (1, "thrust [N]"))]
+    rows = [
+        (test.channel, f"{100 * test.fit:.2f} %", f"{100 * straight.fit:.2f} %", f"{straight.rms / test.rms:.1f}")
+        for test, straight in zip(stage.residuals, linear.residuals, strict=True)
+    ]
+    heading = ("channel", "polynomial fit", "linear fit", "linear rms / polynomial rms")
+    return Section(
+        f"{name.capitalize()} ({figure})",
+        (
+            "The model with polynomial friction and thrust beside the manual's linear one, both fitted to the whole record.",
+        ),
+        (Table(rows, heading),),
+        (stack(panels, "time [s]"),),
+    )
+
+
+def _rotor_panel(stage: Estimate, linear: Estimate, number: int, label: str) -> Panel:
+    run = stage.runs[0]
+    mine = (run.channel == number) & (run.at_s < SHOWN_S)
+    t_s = run.at_s[mine]
+    return Panel(
+        label,
+        (
+            Curve(t_s, run.y[mine], "measured", GREY, "", "o"),
+            Curve(t_s, readings_by(linear)[mine], "linear", ORANGE, "--"),
+            Curve(t_s, readings_by(stage)[mine], "polynomial", BLUE),
+        ),
+    )
+
+
+def _gravity(experiment: Experiment, result: Identification) -> Section:
+    """Rest angles over weights and the curve of eq (11)."""
+    found, facts = experiment.streams["balance"], {entry.name: entry.value for entry in result.aids}
+    tau_Nm = next(entry.value for entry in result.estimates if entry.name == "tau_gE")
+    psi = np.linspace(float(found["psi_rad"].min()), float(found["psi_rad"].max()), 100)
+    g = result.plant.parameters["g"].values[0]
+    weight = tau_Nm * np.cos(psi + facts["Psi_m"]) / (facts["lever"] * g * np.cos(psi + facts["lever_angle"]))
+    panel = Panel(
+        "elevation [deg]",
+        (
+            Curve(
+                1e3 * found["weight_kg"], np.degrees(found["psi_rad"]), "at rest, from above and below", BLUE, "", "o"
+            ),
+            Curve(1e3 * weight, np.degrees(psi), f"tau_gE = {tau_Nm:.5g} N m", ORANGE),
+        ),
+    )
+    sentence = "Weights at the tail and the angles at which the arm rests; dry friction lets it rest to either side of its balance."
+    return Section("Gravity torque (Fig. 10)", (sentence,), (), (row((panel,), ("weight [g]",)),))
+
+
+def flight_section(comparison: Comparison) -> Section:
+    """Both flights over one another."""
+    real, here = comparison.real, comparison.identified
+    names = (("psi_rad", "elevation [deg]"), ("phi_rad", "azimuth [deg]"), ("u_M_V", "u_M [V]"), ("u_T_V", "u_T [V]"))
+    panels = []
+    for name, label in names:
+        scale = 180.0 / np.pi if name.endswith("_rad") else 1.0
+        wanted = name.replace("_rad", "_ref_rad")
+        curves = [
+            *([Curve(real.t_s, scale * real.column(wanted), "reference", GREY, ":")] if wanted in real.extra else []),
+            Curve(real.t_s, scale * real.column(name), "real plant", GREEN),
+            Curve(here.t_s, scale * here.column(name), "identified", RED, "--"),
+        ]
+        panels.append(Panel(label, tuple(curves)))
+    rows = [(name, f"{value:.3g}") for name, value in comparison.rms.items()]
+    return Section(
+        "Validation in the control structure (Fig. 13)",
+        ("One controller, designed from the identified plant, flies the real plant and the identified one.",),
+        (Table(rows, ("column", "rms difference")),),
+        (stack(panels, "time [s]"),),
+    )

@@ -1,0 +1,89 @@
+"""Searches over the whole range in the report of `twinlaw identify`: what each method found, side by side, and the evolution of fitness."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from identification.search.methods import Searched
+from identification.stages.estimate import Estimate
+from sim.bind import BoundPlant
+from twinlaw.pages.page import Section, Table
+from twinlaw.pages.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, row
+
+HEADING = ("data", "parameter", "range", "bits")
+COLOURS = (BLUE, ORANGE, GREEN, RED)
+Stages = Sequence[tuple[str, Estimate]]
+
+
+def search_sections(stages: Stages, truth: BoundPlant | None) -> list[Section]:
+    """The table of all stages that searched, and Fig. 6 where generations were counted; nothing where no stage did."""
+    searched = [(title, stage) for title, stage in stages if stage.searched]
+    if not searched:
+        return []
+    return [_side_by_side(searched, _values(truth)), *_evolution(evolution_plot(stages))]
+
+
+def _side_by_side(stages: Stages, truth: Mapping[str, float]) -> Section:
+    methods = [found.method for found in stages[0][1].searched]
+    compared = [cell for method in methods for cell in ((method, "error") if truth else (method,))]
+    known = ("truth",) if truth else ()
+    rows = [line for title, stage in stages for line in _rows(title, stage, truth)]
+    costs = [
+        (_short(title), found.method, f"{found.error:.4g}", f"{found.cpu_s:.2f} s")
+        for title, stage in stages
+        for found in stage.searched
+    ]
+    sentences = (
+        "What each method found by itself within the same ranges; gradient is the compiled least squares, from the best of 50 "
+        "points in them. "
+        "The estimates above start from the first of them.",
+        "Below: what is left, sum |e| with angles in degrees, and CPU time.",
+    )
+    tables = (Table(rows, (*HEADING, *known, *compared)), Table(costs, ("data", "method", "sum |e|", "CPU")))
+    return Section("Search over the whole range", sentences, tables)
+
+
+def _rows(title: str, stage: Estimate, truth: Mapping[str, float]) -> list[tuple[str, ...]]:
+    first, rows = stage.searched[0], []
+    for place, name in enumerate(first.names):
+        bits = f"{first.bits[place]}" if first.bits else ""
+        cells = [_short(title), name, f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}", bits]
+        cells += [f"{truth[name]:.5g}"] if truth else []
+        for found in stage.searched:
+            cells.append(f"{found.values[place]:.5g}")
+            cells += [f"{100.0 * (found.values[place] / truth[name] - 1.0):+.2f} %"] if truth else []
+        rows.append(tuple(cells))
+    return rows
+
+
+def _short(title: str) -> str:
+    """Of "experiment 1, u1: main motor lifts the arm" what is between comma and colon."""
+    return title.partition(", ")[2].partition(":")[0] or title
+
+
+def _values(truth: BoundPlant | None) -> Mapping[str, float]:
+    if truth is None:
+        return {}
+    return dict(zip(map(str, truth.model.parameter_symbols), truth.p.tolist(), strict=True))
+
+
+def _evolution(plot: str) -> list[Section]:
+    sentence = "Fitness 100000 - sum |e| of the best string so far, by generation."
+    return [Section("Evolution (Fig. 6 of seed 001)", (sentence,), (), (plot,))] if plot else []
+
+
+def evolution_plot(stages: Stages) -> str:
+    """Best fitness over generations for each stage with a coded search; "" where there is none."""
+    found = [(title, stage.searched[0]) for title, stage in stages if stage.searched and stage.searched[0].bits]
+    if not found:
+        return ""
+    first, others = found[:1], found[1:]
+    panels = [Panel("fitness / 10^4", _curves(part)) for part in (first, others) if part]
+    return row(panels, ["generation"] * len(panels), height_in=3.0)
+
+
+def _curves(found: Sequence[tuple[str, Searched]]) -> tuple[Curve, ...]:
+    return tuple(
+        Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, _short(title), colour)
+        for (title, entry), colour in zip(found, COLOURS, strict=False)
+    )

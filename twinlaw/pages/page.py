@@ -1,0 +1,51 @@
+"""A report as one self-contained HTML page: sentences, tables and SVG plots, no script and no network."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+_TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under an optional heading."""
+
+    rows: Sequence[Sequence[str]]
+    heading: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Section:
+    """One part of the page: what it says, then its tables, then its plots (SVG text)."""
+
+    title: str
+    sentences: Sequence[str] = ()
+    tables: Sequence[Table] = ()
+    plots: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Page:
+    """A report: its verdict in one sentence, whether that is good news, and named facts under it (digests, files)."""
+
+    title: str
+    verdict: str
+    passed: bool
+    facts: Sequence[tuple[str, str]]
+    sections: Sequence[Section]
+
+
+def page_text(page: Page) -> str:
+    """The page as HTML text; text is escaped, plots are not."""
+    environment = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    facts = {name: getattr(page, name) for name in Page.__dataclass_fields__}
+    return environment.get_template("report.html.j2").render(facts)
