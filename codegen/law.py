@@ -7,8 +7,8 @@ from typing import Any
 import jinja2
 import numpy as np
 
-from codegen.fixed_law import fixed_context
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.context import fixed_context
+from codegen.fixed.twin import FixedTwin
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
 from codegen.law_frame import without_vanishing_powers
 from codegen.numbers import c_float32

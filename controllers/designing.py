@@ -12,8 +12,8 @@ from design.operating_points import equilibria, grid
 from design.settings import DesignSettings
 from design.table import frame_entries
 from records.law_table import AxisTable, LawTable
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
-from sim.effects.api import without_effects
 from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
-from sim.reference import reference
+from sim.kernel.reference import reference
 
 Array = NDArray[np.float64]
 

@@ -17,8 +17,8 @@ from design.settings import AXES, DesignSettings
 from records.errors import BadInput
 from records.plant import plant_text
 from records.table import AxisLaw, ControllerTable
+from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
-from sim.effects.api import linear_part, without_effects
 from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]

@@ -16,9 +16,9 @@ from diagnosis.kit import make_kit
 from diagnosis.predict import SETTLE_S, WINDOW_S, Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.effects.api import without_effects
 
 Array = NDArray[np.float64]
 EVERY_S = 0.05  # between two predictions

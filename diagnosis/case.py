@@ -13,7 +13,7 @@ from diagnosis.start import start_of
 from diagnosis.tape import Tape, tape_of
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.effects.effect import Values
+from sim.effect import Values
 
 Array = NDArray[np.float64]
 UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state

@@ -30,8 +30,8 @@ from diagnosis.usual import with_usual
 from diagnosis.weigh import Weighed, weigh
 from diagnosis.wiring import demand_wiring
 from records.errors import BadInput
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
-from sim.effects.api import without_effects
 
 ALARM = 0.01
 PLAIN_TO_SEE = 40.0  # nats

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from diagnosis.tape import Tape
-from sim.generate import model_header
-from sim.kernel import C_DIR as SIM_C
+from sim.kernel.generate import model_header
+from sim.kernel.kernel import C_DIR as SIM_C
+from sim.kernel.sincos import sincos_header
 from sim.model import Model
-from sim.sincos import sincos_header
 from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 
 C_DIR = Path(__file__).parent / "c"

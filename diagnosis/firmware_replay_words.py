@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed_formats import law_formats
+from codegen.fixed.formats import law_formats
 from codegen.law import generate_law
 from diagnosis.firmware_replay_flight import Flight
 from records.errors import BadInput

@@ -11,7 +11,7 @@ from diagnosis.filter import Pass
 from diagnosis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
 from diagnosis.inputs import LOST_FRAMES, share_slopes
 from diagnosis.kit import is_gust, is_lag
-from sim.effects.effect import EffectParameter
+from sim.effect import EffectParameter
 
 Array = NDArray[np.float64]
 ENOUGH = 0.1  # gain of the log posterior below which a fit has ended

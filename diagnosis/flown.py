@@ -12,9 +12,9 @@ from diagnosis.case import Case
 from diagnosis.fit import SCATTERS
 from diagnosis.hypothesis import Supposed, coefficients
 from diagnosis.kit import Kit, Variant
-from sim.effects.build import paths_with
-from sim.effects.effect import Values
-from sim.paths import Held, OutputStage, Trace, pass_inputs, pass_output
+from sim.composition.build import paths_with
+from sim.effect import Values
+from sim.paths.path import Held, OutputStage, Trace, pass_inputs, pass_output
 from sim.plants import MODELS
 
 Array = NDArray[np.float64]

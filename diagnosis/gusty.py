@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from sim.effects.edits import with_state, with_torque
-from sim.effects.effect import coefficient
-from sim.effects.switch import sleeping
+from sim.composition.switch import sleeping
+from sim.edits import with_state, with_torque
+from sim.effect import coefficient
 from sim.model import Model, ParameterSpec, symbol
 
 

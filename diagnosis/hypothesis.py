@@ -16,7 +16,7 @@ from diagnosis.kit import Kit, Variant, is_gust, is_lag
 from diagnosis.sensors import sensed
 from diagnosis.start import RUB_S
 from diagnosis.tape import Tape
-from sim.effects.effect import Values
+from sim.effect import Values
 
 Array = NDArray[np.float64]
 SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps

@@ -15,7 +15,7 @@ from diagnosis.kit import is_gust
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
-from sim.effects.api import with_effects
+from sim.added_effects import with_effects
 
 Array = NDArray[np.float64]
 DIGITS = 9

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from diagnosis.kit import Kit
 from diagnosis.tape import Tape, with_inputs
-from sim.effects.build import paths_with
-from sim.effects.effect import Values
+from sim.composition.build import paths_with
+from sim.effect import Values
 from sim.plants import MODELS
 from toolchain.host import build_shared, load_shared
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from diagnosis.case import Case
 from diagnosis.ground import Ground
-from sim.effects.effect import Effect, Values
+from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
 TIMES = ("t_0", "t_1", "t_s")

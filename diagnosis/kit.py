@@ -27,11 +27,11 @@ from records.errors import BadInput
 from records.files import write_atomic
 from records.plant import Plant
 from records.reading import read_text
+from sim.added_effects import combined, library, redundant
 from sim.bind import BoundPlant, bind, named_values
-from sim.effects.api import combined, library, redundant
-from sim.effects.build import switched_model
-from sim.effects.effect import Effect, coefficient
-from sim.effects.switch import switch_name
+from sim.composition.build import switched_model
+from sim.composition.switch import switch_name
+from sim.effect import Effect, coefficient
 from sim.model import Model
 from toolchain.cache import CACHE_DIR, is_whole
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import with_output, with_state
-from sim.effects.effect import coefficient
-from sim.effects.switch import sleeping
+from sim.composition.switch import sleeping
+from sim.edits import with_output, with_state
+from sim.effect import coefficient
 from sim.model import Model, ParameterSpec, symbol
 
 

@@ -9,7 +9,7 @@ from diagnosis.hypothesis import Supposed
 from diagnosis.screen import FRICTIONS
 from diagnosis.trial import Tried, evidence
 from diagnosis.unrest import with_unrest
-from sim.effects.effect import Effect, Values
+from sim.effect import Effect, Values
 
 FITTED = 2  # of those that promise most
 FOLD = 2.0  # from one size that is tried to the next

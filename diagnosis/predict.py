@@ -12,7 +12,7 @@ from diagnosis.filter import Noise
 from diagnosis.hypothesis import Supposed, coefficients, noise_of, start_under, tape_under
 from diagnosis.kit import Variant
 from diagnosis.tape import Tape
-from sim.effects.effect import Values
+from sim.effect import Values
 
 Array = NDArray[np.float64]
 WINDOW_S = 1.0

@@ -18,7 +18,7 @@ from diagnosis.kit import Kit, is_lag
 from diagnosis.lattice import coarse_step
 from diagnosis.quantised import likely_steps
 from diagnosis.waves import swings, wave_starts
-from sim.effects.effect import Effect, Values
+from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
 MOST_STARTS = 8

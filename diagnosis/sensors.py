@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from diagnosis.kit import Kit
 from diagnosis.lattice import grid_evidence
 from diagnosis.tape import Tape, late, variance_stated
-from sim.effects.effect import Values
+from sim.effect import Values
 
 Array = NDArray[np.float64]
 # A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).

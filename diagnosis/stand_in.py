@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
-from sim.reference import Reference, reference
+from sim.kernel.reference import Reference, reference
 
 Array = NDArray[np.float64]
 INTEGRAL_S = 1.0  # T_i

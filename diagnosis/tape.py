@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from diagnosis.edges import sharpened
 from records.log import RunLog
 from records.plant import Plant
-from sim.paths import Held, InputStage, pass_inputs
+from sim.paths.path import Held, InputStage, pass_inputs
 
 Array = NDArray[np.float64]
 BEYOND_USUAL = 3.0

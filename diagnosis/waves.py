@@ -11,7 +11,7 @@ from diagnosis.ground import Ground
 from diagnosis.instants import target_of
 from diagnosis.signals import by_step
 from diagnosis.tape import Tape
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)

@@ -12,7 +12,7 @@ from records.live import LiveRow
 from rig.client import BoardClient
 from rig.emulator.serial_port import EmulatedSerial
 from rig.replies import Health
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 
 Angles = tuple[float, float]
 

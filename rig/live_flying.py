@@ -11,7 +11,7 @@ from rig.emulator.board import EmulatedBoard
 from rig.emulator.serial_port import EmulatedSerial
 from rig.live import Angles, BoardTime
 from rig.replies import Health, Telemetry, state_name
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 
 UNKNOWN = (math.nan, math.nan)
 ELEVATION_TIMER, AZIMUTH_TIMER = 2, 3

@@ -3,7 +3,7 @@
 import struct
 from typing import Protocol
 
-from codegen.fixed_formats import law_formats, value_of, word_of
+from codegen.fixed.formats import law_formats, value_of, word_of
 from records.law_table import FlownTable
 from records.table import ControllerTable
 

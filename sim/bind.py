@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.plant import Parameter, Plant
 from records.units import dimensions
-from sim.effects.build import model_with, paths_with
-from sim.effects.effect import coefficient
-from sim.effects.table import Entries, plain_values, read_effects
+from sim.composition.build import model_with, paths_with
+from sim.composition.table import Entries, plain_values, read_effects
+from sim.effect import coefficient
 from sim.model import Model, ParameterSpec
-from sim.paths import InputStage, OutputStage
+from sim.paths.path import InputStage, OutputStage
 from sim.plants import MODELS
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
-from sim.effects.api import without_effects
+from sim.kernel.reference import reference
 from sim.model import Axis
-from sim.reference import reference
 from sim.start import start_state
 
 MAX_ITERATIONS = 60

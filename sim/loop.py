@@ -13,8 +13,8 @@ from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name
 from sim.manoeuvres import Manoeuvre
+from sim.runs.stepped import SteppedPlant
 from sim.simulate import simulate
-from sim.stepped import SteppedPlant
 
 
 class Controller(Protocol):

@@ -8,7 +8,7 @@ from typing import Any
 import sympy
 
 from sim.places import Places
-from sim.slopes import corners_of
+from sim.symbolic.slopes import corners_of
 
 TIME = sympy.Symbol("t_s", real=True)
 

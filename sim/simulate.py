@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.bind import BoundPlant
-from sim.compiled_run import CController, Drive, Noise, Runs, run_equations
-from sim.on_the_way import run_loop, run_open
+from sim.runs.compiled_run import CController, Drive, Noise, Runs, run_equations
+from sim.runs.on_the_way import run_loop, run_open
 from sim.start import start_state
 
 __all__ = ["CController", "Drive", "Noise", "Runs", "simulate"]

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from codegen.fixed_constants import FixedAxis, FixedLaw, fixed_constants
-from codegen.fixed_equations import (
+from codegen.fixed.constants import FixedAxis, FixedLaw, fixed_constants
+from codegen.fixed.equations import (
     AxisState,
     differences,
     drive,
@@ -22,7 +22,7 @@ from codegen.fixed_equations import (
     schedule,
     within_ranges,
 )
-from codegen.fixed_formats import LawFormats, law_formats
+from codegen.fixed.formats import LawFormats, law_formats
 from codegen.law_equations import AxisState as DeclaredState
 from records.table import ControllerTable
 from records.verification import RoundingBound

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed_constants import FixedAxis, fixed_constants, word_number
-from codegen.fixed_equations import AXIS_STATE_FIELDS
-from codegen.fixed_formats import FILTERED_BITS, MISSING, law_formats
+from codegen.fixed.constants import FixedAxis, fixed_constants, word_number
+from codegen.fixed.equations import AXIS_STATE_FIELDS
+from codegen.fixed.formats import FILTERED_BITS, MISSING, law_formats
 from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from verification import stimuli

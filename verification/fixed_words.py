@@ -11,7 +11,7 @@ from typing import Protocol, TypeVar
 
 from flint import arb
 
-from codegen.fixed_arithmetic import Words
+from codegen.fixed.arithmetic import Words
 from verification.affine import upper_bound
 
 W = TypeVar("W")

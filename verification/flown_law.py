@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from sim.compiled_run import CController
+from sim.runs.compiled_run import CController
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 
 _DRIVER = Path(__file__).with_name("law_flight.c")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed_formats import value_of, word_of
+from codegen.fixed.formats import value_of, word_of
 from codegen.law import generate_law
 from records.table import ControllerTable
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.fixed_formats import law_formats
+from codegen.fixed.formats import law_formats
 from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable

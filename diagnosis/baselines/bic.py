@@ -12,9 +12,9 @@ import numpy as np
 from diagnosis.baselines.windows import Array, Windows, errors, windows_of
 from records.diagnosis import Diagnosis, Estimate, Hypothesis, PlaceShare, Unknown
 from records.log import RunLog
+from sim.added_effects import combined, library, redundant, with_values
 from sim.bind import BoundPlant
-from sim.effects.api import combined, library, redundant, with_values
-from sim.effects.effect import Effect
+from sim.effect import Effect
 
 STEP = 1e-3  # of a parameter: how far its difference quotient goes
 SHOWN = 10

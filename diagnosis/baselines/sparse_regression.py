@@ -12,8 +12,8 @@ from diagnosis.baselines.windows import Array, derivatives, measured_axes, state
 from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
 from records.log import RunLog
 from sim.bind import BoundPlant
+from sim.kernel.reference import reference
 from sim.model import Axis
-from sim.reference import reference
 
 KEPT = 0.15  # of the largest term: smaller ones are dropped
 ROUNDS = 10

@@ -10,9 +10,9 @@ import sympy
 from numpy.typing import NDArray
 
 from sim.bind import evaluated
-from sim.kernel import Kernel, kernel
+from sim.kernel.kernel import Kernel, kernel
 from sim.model import Model
-from sim.sensitivities import column_names
+from sim.runs.sensitivities import column_names
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def move(
     columns: tuple[str, ...],
     substeps: int = 1,
 ) -> Motion:
-    """What sim.sensitivities gives, for windows of rows, each from its own x0 (windows, states), in `substeps` steps per sample.
+    """What sim.runs.sensitivities gives, for windows of rows, each from its own x0 (windows, states), in `substeps` steps per sample.
 
     t_s (n,), u (n, inputs), p (parameters,). Rows in no window are left unset; raises KeyError for a column that the model does not
     know.

@@ -9,7 +9,7 @@ import sympy
 from numpy.typing import NDArray
 
 from sim.model import Model
-from sim.slopes import jacobian
+from sim.symbolic.slopes import jacobian
 
 Array = NDArray[np.float64]
 Function = Callable[[Array, Array, Array], Array]

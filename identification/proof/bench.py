@@ -17,12 +17,12 @@ from identification.runs.run import Run, coefficient_names
 from identification.stages.estimate import problem_of
 from identification.stages.logs import identify_logs
 from records.log import RunLog
-from sim.bench_peers import module
+from sim.bench.peers import module
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.equilibrium import equilibrium
+from sim.runs.stepped import SteppedPlant
 from sim.simulate import simulate
-from sim.stepped import SteppedPlant
 
 Array = NDArray[np.float64]
 NAMES = ("K_M", "J_E", "tau_gE", "b_vE", "b_cE", "K_T", "J_A", "b_vA", "b_cA", "K_A")

@@ -12,7 +12,7 @@ import sympy
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from sim.bench_peers import module, symbolic_rates
+from sim.bench.peers import module, symbolic_rates
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from sim.effect import Effect
 from sim.effects import (
     axial_inflow,
     backlash,
@@ -52,7 +53,6 @@ from sim.effects import (
     warmup,
     waves,
 )
-from sim.effects.effect import Effect
 from sim.model import Model
 
 FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (

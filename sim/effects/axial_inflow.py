@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

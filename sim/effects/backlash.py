@@ -6,11 +6,11 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import short
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import short
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.paths_input import InputPlay
-from sim.paths_output import Play
+from sim.paths.input_stages import InputPlay
+from sim.paths.output_stages import Play
 
 
 def effects(model: Model) -> Iterator[Effect]:

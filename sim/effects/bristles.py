@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import NOTHING, axis_of, short, sign_of, with_axis, with_state
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import NOTHING, axis_of, short, sign_of, with_axis, with_state
+from sim.effect import Effect, EffectParameter
 from sim.effects.hysteresis import strain_rate
 from sim.model import Model, symbol
 

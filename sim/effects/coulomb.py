@@ -5,8 +5,8 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import axis_of, short, with_friction
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, short, with_friction
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import NOTHING, axis_of, short, with_axis
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import NOTHING, axis_of, short, with_axis
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 GIVEN_WAY = 0.99  # of the level, at rest

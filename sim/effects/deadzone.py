@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import knee
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import knee
+from sim.effect import Effect, EffectParameter
 from sim.effects.saturation import SHARP
 from sim.model import Model
 

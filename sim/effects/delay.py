@@ -5,11 +5,11 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import short
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import short
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.paths_input import Delay
-from sim.paths_output import OutputDelay
+from sim.paths.input_stages import Delay
+from sim.paths.output_stages import OutputDelay
 
 SECOND = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05))
 JITTER = EffectParameter("jitter", "s", 0.0, 0.1, 0.0, None, (0.0, 1e-3), refining=True)

@@ -5,8 +5,8 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import EDGE_S, step, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import EDGE_S, step, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

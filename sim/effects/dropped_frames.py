@@ -5,9 +5,9 @@
 
 from collections.abc import Iterator
 
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.paths_input import DroppedFrames
+from sim.paths.input_stages import DroppedFrames
 
 
 def effects(model: Model) -> Iterator[Effect]:

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, positive, short, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, positive, short, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 FARTHEST, STARTS = 1.5, (0.05, 0.25, 0.5, 0.75)  # before the stop, in units of the angle

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import positive, short, sign_of, with_axis
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import positive, short, sign_of, with_axis
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -6,7 +6,7 @@
 
 from collections.abc import Iterator
 
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import EDGE_S, axis_of, lever, short, step, with_axis, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import EDGE_S, axis_of, lever, short, step, with_axis, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
 

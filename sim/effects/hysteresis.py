@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, short, with_state, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, short, with_state, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 
 SETTLING_S = 0.008  # the shortest time in which z settles

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.edits import axis_of, short, with_axis
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, short, with_axis
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -5,11 +5,11 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import short
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import short
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.paths_input import Lag
-from sim.paths_output import OutputLag
+from sim.paths.input_stages import Lag
+from sim.paths.output_stages import OutputLag
 
 LATE = "slow motion shows only the mean time by which both are late"
 

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, lever, short, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, lever, short, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
 

@@ -5,11 +5,11 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import short
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import short
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
-from sim.paths_input import Quantised
-from sim.paths_output import OutputSteps
+from sim.paths.input_stages import Quantised
+from sim.paths.output_stages import OutputSteps
 
 
 def effects(model: Model) -> Iterator[Effect]:

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import with_thrust
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import with_thrust
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

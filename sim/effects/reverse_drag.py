@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import knee
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import knee
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent

@@ -8,8 +8,8 @@
 
 from collections.abc import Iterator
 
-from sim.effects.edits import short, step, with_output
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import short, step, with_output
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import SensorPlace
 

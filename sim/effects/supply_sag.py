@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 NOMINAL = 10.0  # [V]; scales s to a share

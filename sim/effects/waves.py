@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.effects.edits import axis_of, short, with_output, with_torque
-from sim.effects.effect import Effect, EffectParameter
+from sim.edits import axis_of, short, with_output, with_torque
+from sim.effect import Effect, EffectParameter
 from sim.model import TIME, Model
 from sim.places import AxisPlace, SensorPlace
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyval
 
-from codegen.fixed_controllers import fixed_controllers
+from codegen.fixed.controllers import fixed_controllers
 from design.rounding import FLOAT32
 from records.errors import BadInput
 from tests.law_tables import ce150_table

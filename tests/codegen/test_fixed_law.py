@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.fixed_arithmetic import Scalars
-from codegen.fixed_constants import fixed_constants, word_number
-from codegen.fixed_equations import law_reset, law_step, state_from_words
-from codegen.fixed_formats import MISSING, law_formats, value_of, word_of
-from codegen.fixed_ranges import Interval, Intervals, prove_no_overflow
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.arithmetic import Scalars
+from codegen.fixed.constants import fixed_constants, word_number
+from codegen.fixed.equations import law_reset, law_step, state_from_words
+from codegen.fixed.formats import MISSING, law_formats, value_of, word_of
+from codegen.fixed.ranges import Interval, Intervals, prove_no_overflow
+from codegen.fixed.twin import FixedTwin
 from codegen.law import generate_law
 from codegen.law_equations import STATE_WORDS, LawInput
 from records.errors import BadInput

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from codegen.law import generate_law
-from codegen.trace import names, trace
-from codegen.trace_literals import LEFT_OUT
+from codegen.traceability.literals import LEFT_OUT
+from codegen.traceability.origin import names, trace
 from design.settings import read_settings
 from design.table import design
 from records.errors import BadInput

@@ -11,8 +11,8 @@ from design.settings import read_settings
 from design.table import design
 from records.log import RunLog
 from records.plant import load_plant
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from sim.effects.api import with_effects
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
 

@@ -10,8 +10,8 @@ from diagnosis.kit import make_kit
 from diagnosis.predict import Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import with_effects
 from tests.diagnosis.conftest import Fly
 
 STEP_RAD = 1.534e-3

@@ -9,10 +9,10 @@ from diagnosis.case import Case, make_case
 from diagnosis.flown import Flown
 from diagnosis.hypothesis import Supposed, nothing_supposed
 from diagnosis.kit import make_kit
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import with_effects
 from sim.equilibrium import equilibrium
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 from tests.diagnosis.conftest import Fly
 from tests.law_tables import ce150_table
 from verification.host_law import HostLaw, host_law

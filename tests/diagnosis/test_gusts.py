@@ -11,8 +11,8 @@ from diagnosis.improved import improved_plant
 from diagnosis.kit import make_kit
 from diagnosis.trial import Tried, evidence
 from records.log import RunLog
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from sim.effects.api import with_effects
 from tests.diagnosis.conftest import Fly
 
 # Truth: 1 mN m, a fortieth of what such an axis can be pushed with, forgotten in 0.7 s.

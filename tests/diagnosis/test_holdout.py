@@ -13,8 +13,8 @@ from diagnosis.kit import make_kit
 from diagnosis.result import Result
 from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed
+from sim.added_effects import library
 from sim.bind import BoundPlant
-from sim.effects.api import library
 from tests.diagnosis.conftest import Fly
 
 TWO_SD = 1.1  # times J_A, which its file states to 5 %

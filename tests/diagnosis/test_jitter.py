@@ -12,8 +12,8 @@ from diagnosis.engine import Material, diagnose, nominal_fit
 from diagnosis.jitter import jitter_sd, most_shown_s, with_jitter
 from diagnosis.kit import make_kit
 from records.log import RunLog
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import with_effects
 from sim.loop import fly_law
 from sim.manoeuvres import Manoeuvre, at_rest
 

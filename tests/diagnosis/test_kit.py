@@ -18,7 +18,7 @@ from diagnosis.kit import Kit, make_kit
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.effects.effect import Values
+from sim.effect import Values
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 

@@ -15,7 +15,7 @@ from diagnosis.kit import make_kit
 from diagnosis.lost_frames import APART, SWEEPS, WORTH, _ratios, evidence, likely_share, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.paths_input import uniform
+from sim.paths.input_stages import uniform
 from tests.diagnosis.conftest import Fly
 
 SHARE = 0.3

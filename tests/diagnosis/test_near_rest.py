@@ -15,8 +15,8 @@ from diagnosis.near_rest import needed, yielding
 from diagnosis.tape import tape_of
 from diagnosis.trial import Tried, evidence
 from records.log import RunLog
+from sim.added_effects import with_effects, without_effects
 from sim.bind import BoundPlant, bind
-from sim.effects.api import with_effects, without_effects
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.model import Model

@@ -17,7 +17,7 @@ from diagnosis.result import Judged
 from diagnosis.search import Search
 from diagnosis.trial import Tried
 from diagnosis.weigh import Weighed, weigh
-from sim.effects.effect import EffectParameter
+from sim.effect import EffectParameter
 
 
 def tried(evidence: float = 0.0, **effects: dict[str, float]) -> Tried:

@@ -10,8 +10,8 @@ from diagnosis.hypothesis import nothing_supposed
 from diagnosis.kit import make_kit
 from diagnosis.reflight import closed_loop, refly
 from records.log import RunLog
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import with_effects
 from sim.equilibrium import equilibrium
 from sim.loop import fly
 from sim.manoeuvres import Leg, Manoeuvre, manoeuvre

@@ -18,9 +18,9 @@ from diagnosis.screen import look
 from diagnosis.search import LEAST_GAIN, Search, certainties
 from diagnosis.trial import Job, Tried, evidence, once_more, refined, rough
 from diagnosis.weigh import Weighed
+from sim.added_effects import library
 from sim.bind import BoundPlant
-from sim.effects.api import library
-from sim.effects.effect import Values
+from sim.effect import Values
 from tests.diagnosis.conftest import Fly
 
 STEP_V, OFFSET_RAD = 0.107565, -0.0046

@@ -6,8 +6,8 @@ import pytest
 
 from diagnosis.engine import Material, diagnose
 from diagnosis.result import Result
+from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from sim.effects.api import with_effects
 from tests.diagnosis.conftest import Fly
 
 RIG = 7

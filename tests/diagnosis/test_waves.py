@@ -10,8 +10,8 @@ from diagnosis.instants import target_of
 from diagnosis.kit import make_kit
 from diagnosis.waves import likely_waves, wave_starts
 from records.log import RunLog
+from sim.added_effects import library
 from sim.bind import BoundPlant
-from sim.effects.api import library
 from tests.diagnosis.conftest import Fly
 
 # Truth: 9 and 14 waves a turn, 5 rad/s by the log's clock.

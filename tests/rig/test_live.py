@@ -22,7 +22,7 @@ from rig.port import open_port
 from sim.bind import BoundPlant, bind
 from sim.loop import fly, live_log
 from sim.manoeuvres import at_rest, hop
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 from tests.law_tables import ce150_table
 
 TABLE = ce150_table()

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import sim
-from sim.sincos import sincos_header
+from sim.kernel.sincos import sincos_header
 from toolchain.host import FAST_FLAGS, CText, build_shared, load_shared
 
-C_DIR = Path(sim.__file__).parent / "c"
+C_DIR = Path(sim.__file__).parent / "kernel" / "c"
 RELATIVE = 2e-16
 
 DRIVER = """

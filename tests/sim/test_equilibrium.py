@@ -5,7 +5,7 @@ import pytest
 
 from records.errors import BadInput
 from sim.equilibrium import equilibrium
-from sim.reference import reference
+from sim.kernel.reference import reference
 
 U_M0_V = {
     -45: 4.653,

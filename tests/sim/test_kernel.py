@@ -9,11 +9,11 @@ import sympy
 
 from records.errors import BadInput
 from sim.equilibrium import equilibrium
-from sim.generate import model_header
 from sim.halving import step_error
+from sim.kernel.generate import model_header
+from sim.kernel.reference import reference
 from sim.manoeuvres import flight, hop
 from sim.model import TIME, Axis
-from sim.reference import reference
 from sim.simulate import CController, Noise, simulate
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 

@@ -9,7 +9,7 @@ from records.log import load_log, save_log
 from sim.columns import log_columns
 from sim.loop import fly, fly_law
 from sim.manoeuvres import FLIGHT_AZIMUTH, FLIGHT_ELEVATION, FLIGHT_S, Leg, at_rest, flight, hop, manoeuvre, profile_rad
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 
 
 class Fixed:

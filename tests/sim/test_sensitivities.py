@@ -5,7 +5,7 @@ import pytest
 
 from records.errors import BadInput
 from sim.manoeuvres import flight
-from sim.sensitivities import column_names, sensitivities
+from sim.runs.sensitivities import column_names, sensitivities
 from sim.simulate import simulate
 
 RELATIVE = 1e-4  # what central differences with the steps below leave of it

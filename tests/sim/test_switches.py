@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 import sympy
 
+from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import library, with_effects
-from sim.effects.build import switched_model
-from sim.effects.effect import coefficient
-from sim.effects.switch import switch_name
-from sim.generate import model_header
-from sim.kernel import C_DIR
+from sim.composition.build import switched_model
+from sim.composition.switch import switch_name
+from sim.effect import coefficient
+from sim.kernel.generate import model_header
+from sim.kernel.kernel import C_DIR
+from sim.kernel.reference import reference
+from sim.kernel.sincos import sincos_header
 from sim.model import Model
-from sim.reference import reference
-from sim.sincos import sincos_header
-from sim.switches import Line, levels, vanishing
+from sim.symbolic.switches import Line, levels, vanishing
 from tests.plants import bound
 from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from identification.proof import bench as fit_bench
-from sim import bench, bench_compiled
+from sim.bench import comparison, compiled_peers
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
 
@@ -13,10 +13,10 @@ from twinlaw.verbs import bench as verb
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
     for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
-        monkeypatch.setattr(bench, name, value)
+        monkeypatch.setattr(comparison, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)
     monkeypatch.setattr(fit_bench, "DURATION_S", 6.0)
-    monkeypatch.setattr(bench_compiled, "module", lambda name: None)  # as where no optional tool is installed
+    monkeypatch.setattr(compiled_peers, "module", lambda name: None)  # as where no optional tool is installed
 
 
 def test_it_tells_ratios_errors_the_board_s_speed_and_how_to_install_what_is_absent(capsys):
@@ -32,7 +32,7 @@ def test_it_tells_ratios_errors_the_board_s_speed_and_how_to_install_what_is_abs
 def test_json_is_one_object_with_the_same_facts(capsys):
     assert main(["bench", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
-    assert said["not_installed"] == list(bench_compiled.PEERS)
+    assert said["not_installed"] == list(compiled_peers.PEERS)
     assert all(row["note"] for row in said["closed_loop"])
     assert max(said["step_accuracy"]["true_rad"]) < 1e-7
     assert said["emulated_board"]["instructions"] > 50 * 1000

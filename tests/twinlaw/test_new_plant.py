@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from records.plant import load_plant
+from sim.added_effects import library
 from sim.bind import BoundPlant, bind
-from sim.effects.api import library
 from sim.plants import MODELS
 from sim.simulate import simulate
 from twinlaw.command import main

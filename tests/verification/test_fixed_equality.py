@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from codegen.fixed_formats import MISSING
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.formats import MISSING
+from codegen.fixed.twin import FixedTwin
 from codegen.law import generate_law
 from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
@@ -46,7 +46,7 @@ def test_no_step_does_what_c_leaves_undefined(table: ControllerTable) -> None:
 from tests.law_tables import ce150_table, dense_table
 from tests.verification.test_fixed_equality import TRAPPING
 from codegen.law import generate_law
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.twin import FixedTwin
 from verification.equality import compare
 from verification.fixed_stimuli import fixed_stimuli
 from verification.host_law import HostLaw

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.fixed_constants import fixed_constants
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.constants import fixed_constants
+from codegen.fixed.twin import FixedTwin
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from design.law import law_reset, law_step
 from records.table import ControllerTable

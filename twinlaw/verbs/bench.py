@@ -22,8 +22,8 @@ from rig.emulator.board import EmulatedBoard
 from rig.image import build_firmware
 from rig.numbers import numbers_of
 from rig.target_law import TargetLaw
-from sim import bench
-from sim.bench import BenchRow, StepAccuracy
+from sim.bench import comparison
+from sim.bench.comparison import BenchRow, StepAccuracy
 from twinlaw.cli import console, options
 from twinlaw.workflows.stages import design_controller
 
@@ -44,9 +44,9 @@ def run(chosen: argparse.Namespace) -> int:
     """Measure and print."""
     designed = design_controller(chosen.plant)
     with console.stage("flying by every tool"):
-        rows = bench.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
+        rows = comparison.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
     with console.stage("flying with finer steps"):
-        accuracy = bench.step_accuracy(designed.bound, designed.table)
+        accuracy = comparison.step_accuracy(designed.bound, designed.table)
     with console.stage("stepping the law on the emulated board"):
         board = _board_speed(designed.table, chosen.arithmetic)
     with console.stage("fitting by every tool"):
@@ -83,7 +83,7 @@ def _told(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> lis
     halving, true = (max(error) for error in (accuracy.halving_rad, accuracy.true_rad))
     lines = [
         f"error of one RK4 step a sample over the whole flight: {halving:.1e} rad by step halving, "
-        f"{true:.1e} rad against {bench.FINE_SUBSTEPS} times finer steps",
+        f"{true:.1e} rad against {comparison.FINE_SUBSTEPS} times finer steps",
         f"emulated board: {board.instructions_per_s / 1e6:.0f} million instructions / CPU s, all counted; "
         f"{board.cycles / BOARD_STEPS:,.0f} cycles a control step",
     ]

@@ -8,7 +8,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from codegen.trace import Trace, names, trace
+from codegen.traceability.origin import Trace, names, trace
 from controllers.loading import load_scheduled
 from design.settings import read_settings
 from twinlaw.cli import console, options

@@ -17,7 +17,7 @@ from rig.port import open_port
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest, flight
-from sim.stepped import SteppedPlant
+from sim.runs.stepped import SteppedPlant
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from codegen.fixed_controllers import fixed_controllers
-from codegen.fixed_twin import FixedTwin
+from codegen.fixed.controllers import fixed_controllers
+from codegen.fixed.twin import FixedTwin
 from codegen.law import ARITHMETIC_CODES
 from codegen.twin import Float32Twin
 from design.rounding import FLOAT32, Rounding

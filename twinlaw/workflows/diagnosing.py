@@ -23,9 +23,9 @@ from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
 from records.table import ControllerTable
 from records.units import unit_suffix
+from sim.added_effects import library, without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
-from sim.effects.api import library, without_effects
 from toolchain.memory import keep_freed_memory
 from twinlaw.cli.console import stage
 from twinlaw.pages.diagnose.firmware import differs

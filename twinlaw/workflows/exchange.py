@@ -1,6 +1,6 @@
 """Files for other tools: the ASAP2 description of an image."""
 
-from codegen.a2l import ImageMap, a2l_text, under
+from codegen.traceability.a2l import ImageMap, a2l_text, under
 from records.table import ControllerTable
 from toolchain.dwarf import variable_members
 from toolchain.elf import image_symbols

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant
-from sim.effects.api import library, with_effects
 
 SPREAD = 0.1
 

@@ -1,6 +1,6 @@
 """The fixed-point law's words as a Gappa script: sums and products are exact, floors are floors, real numbers are in steps of the word.
 
-Products without the product of the low halves are 0 to 3 below the exact ones, as codegen/fixed_arithmetic.py says; for the script
+Products without the product of the low halves are 0 to 3 below the exact ones, as codegen/fixed/arithmetic.py says; for the script
 that difference is a number of which no more is known.
 """
 

@@ -11,7 +11,7 @@ _CODEGEN = Path(__file__).resolve().parents[2] / "codegen"
 # Per arithmetic: the files that are the twin, later ones importing earlier ones, and the class of the last.
 TWINS = {
     "float32": (("law_equations", "twin"), "Float32Twin"),
-    "fixed": (("fixed_arithmetic", "fixed_equations", "fixed_twin"), "FixedTwin"),
+    "fixed": (("fixed/arithmetic", "fixed/equations", "fixed/twin"), "FixedTwin"),
 }
 _OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
@@ -79,12 +79,13 @@ def _tree(module: str) -> ast.Module:
 
 def _executed(module: str, tree: ast.Module, made: dict[str, types.ModuleType]) -> types.ModuleType:
     """The module from its tree; what it imports from the twin's other files comes from `made`."""
-    own = types.ModuleType(f"codegen.{module}")
+    own = types.ModuleType("codegen." + module.replace("/", "."))
     kept = []
     for statement in tree.body:
-        source = (statement.module or "") if isinstance(statement, ast.ImportFrom) else ""
-        if isinstance(statement, ast.ImportFrom) and source.removeprefix("codegen.") in made:
-            other = made[source.removeprefix("codegen.")]
+        imported = (statement.module or "") if isinstance(statement, ast.ImportFrom) else ""
+        source = imported.removeprefix("codegen.").replace(".", "/")
+        if isinstance(statement, ast.ImportFrom) and source in made:
+            other = made[source]
             for alias in statement.names:
                 setattr(own, alias.asname or alias.name, getattr(other, alias.name))
         else:

@@ -8,7 +8,7 @@ sound by itself, so that the smaller one holds.
 import math
 import re
 
-from codegen.fixed_formats import law_formats
+from codegen.fixed.formats import law_formats
 from codegen.law_constants import law_constants
 from codegen.law_equations import LawInput, state_from_words, words_from_state
 from records.table import ControllerTable

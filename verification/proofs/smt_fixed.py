@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from codegen.fixed_constants import FixedLaw, fixed_constants, word_number
-from codegen.fixed_equations import polynomial, powers_of
-from codegen.fixed_formats import FILTERED_BITS, MISSING, count_format, law_formats
-from codegen.fixed_twin import duty_ratio
+from codegen.fixed.constants import FixedLaw, fixed_constants, word_number
+from codegen.fixed.equations import polynomial, powers_of
+from codegen.fixed.formats import FILTERED_BITS, MISSING, count_format, law_formats
+from codegen.fixed.twin import duty_ratio
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import ControllerTable
 from verification.proofs.questions import Question

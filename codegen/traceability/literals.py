@@ -1,0 +1,87 @@
+"""How the C of each arithmetic writes a constant: its literal, and the number that this stands for."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from codegen.fixed.constants import FixedPolynomial, fixed_constants
+from codegen.fixed.formats import count_format, law_formats
+from codegen.numbers import c_float32
+from records.table import ControllerTable
+
+
+@dataclass(frozen=True)
+class Literal:
+    """Text in the C, and the number that it stands for in decimal digits."""
+
+    text: str
+    number: str
+
+
+# From a constant's name and value to its literal; None for a constant that the C of this arithmetic does not have.
+Write = Callable[[str, float], Literal | None]
+
+_WHOLE = ("_US", "_TICKS", "_PLACES")
+
+LEFT_OUT = Literal("left out, as it would not reach the last place", "0")
+
+
+def float32_literals(table: ControllerTable) -> Write:
+    """Of a float32 law: nine digits each, whole numbers of the header aside."""
+    return lambda name, value: _whole(name, value) or _float32(value)
+
+
+def fixed_literals(table: ControllerTable) -> Write:
+    """Of a law in fixed point: a word and its places; raises BadInput for a table that no words can hold."""
+    words = dict(_words(table))
+
+    def write(name: str, value: float) -> Literal | None:
+        is_coefficient = name.endswith("]")
+        return _whole(name, value) or words.get(name, LEFT_OUT if is_coefficient else None)
+
+    return write
+
+
+LITERALS: Mapping[str, Callable[[ControllerTable], Write]] = {"float32": float32_literals, "fixed": fixed_literals}
+
+
+def _float32(value: float) -> Literal:
+    text = c_float32(value)
+    return Literal(text, text.removesuffix("f"))
+
+
+def _whole(name: str, value: float) -> Literal | None:
+    return Literal(f"{value:.0f}", f"{value:.0f}") if name.endswith(_WHOLE) else None
+
+
+def _word(value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> Literal:
+    word = round(value * 2.0**places + made_up)
+    return Literal(f"{word} /* {places} places */", repr(word * 2.0**-places))
+
+
+def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
+    law = fixed_constants(table, _word)
+    for axis, angle, voltage in ((law.elevation, "PSI", "U_M"), (law.azimuth, "PHI", "U_T")):
+        for term in axis.terms:
+            suffix = "_V_rad" if term.coefficient.startswith("q") else ""
+            yield from _coefficients(f"{axis.name}_{term.coefficient}{suffix}", term.polynomial)
+        yield from _coefficients(f"{axis.name}_u_ff_V", axis.feedforward_V)
+        yield f"LAW_{voltage}_MIN_V", axis.u_min_V
+        yield f"LAW_{voltage}_MAX_V", axis.u_max_V
+        yield f"LAW_{voltage}_SAFE_V", axis.u_safe_V
+        yield f"LAW_{angle}_REF_MIN_RAD", axis.reference_min_rad
+        yield f"LAW_{angle}_REF_MAX_RAD", axis.reference_max_rad
+        if axis.prefilter_gain is not None:
+            yield f"{axis.name}_limits.prefilter_gain", axis.prefilter_gain
+    formats = law_formats(table)
+    for own, angle in ((table.elevation, "PSI"), (table.azimuth, "PHI")):
+        places = formats.angle_places + count_format(formats, own).shift
+        yield f"LAW_{angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
+    yield "LAW_PSI_MIN_RAD", law.psi_min_rad
+    yield "LAW_PSI_MAX_RAD", law.psi_max_rad
+    yield "LAW_ANGLE_LIMIT_RAD", law.angle_max_rad
+
+
+def _coefficients(name: str, polynomial: FixedPolynomial[Literal]) -> Iterator[tuple[str, Literal]]:
+    yield f"{name}[0]", polynomial.constant
+    for part in polynomial.powers:
+        yield f"{name}[{part.power}]", part.coefficient

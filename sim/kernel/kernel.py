@@ -1,0 +1,76 @@
+"""Compiled kernels: a model's equations in C with the fixed loops of sim/kernel/c, single and side by side."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.kernel.generate import model_header
+from sim.kernel.sincos import sincos_header
+from sim.model import Model
+from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
+
+C_DIR = Path(__file__).parent / "c"
+SINGLE = ("single.c", "events.c", "sensitivity.c")
+BATCH = ("batch.c", "events.c")  # a library of its own: most models never fly side by side
+HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
+BATCH_LANES = 8
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """A model's compiled functions: `lib` as declared in sim/kernel/c/exports.h, called through `ffi`."""
+
+    model: Model
+    ffi: Any
+    lib: Any
+
+    @property
+    def batch(self) -> Any:
+        """The library with `run_batch`, compiled when it is first asked for."""
+        return _batch(self)
+
+    @property
+    def constants(self) -> int:
+        """Length of the array of constants."""
+        return int(self.lib.constants_count())
+
+    def pointer(self, array: NDArray[Any] | None) -> Any:
+        """The C address of a contiguous array; NULL for None."""
+        return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+
+
+@lru_cache(maxsize=64)
+def kernel(model: Model) -> Kernel:
+    """The kernel of `model`, compiled once for each content; raises BadInput when the compiler refuses."""
+    ffi, lib = load_shared(_declarations(), _built(model, f"kernel-{model.name}", SINGLE))
+    return Kernel(model, ffi, lib)
+
+
+@lru_cache(maxsize=64)
+def _batch(single: Kernel) -> Any:
+    return single.ffi.dlopen(str(_built(single.model, f"batch-{single.model.name}", BATCH)))
+
+
+def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
+    sources: list[Source] = [
+        CText("model.h", _header(model)),
+        CText("sincos_coefficients.h", sincos_header()),
+        *(C_DIR / file for file in files),
+    ]
+    return build_shared(name, sources, include_dirs=[C_DIR], flags=(*FAST_FLAGS, f"-DBATCH_LANES={BATCH_LANES}"))
+
+
+@lru_cache(maxsize=64)
+def _header(model: Model) -> str:
+    return model_header(model)
+
+
+def _declarations() -> str:
+    """What cffi must know, from the headers themselves: it reads C without the preprocessor."""
+    lines = [line for name in HEADERS for line in (C_DIR / name).read_text(encoding="utf-8").splitlines()]
+    return "\n".join(line for line in lines if not line.startswith("#"))

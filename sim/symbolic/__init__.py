@@ -1,0 +1,1 @@
+"""Symbolic expressions in; their derivatives and short lists of C assignments out."""

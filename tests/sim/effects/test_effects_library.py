@@ -1,0 +1,156 @@
+"""The library of effects is whole and consistent: the contract's table, places, bounds, twins, words."""
+
+import pytest
+import sympy
+
+from records.plant import load_plant
+from records.units import dimension
+from sim.composition.build import model_with
+from sim.effects import effects_for
+from sim.model import Model
+from sim.plants import MODELS
+from tests.sim.conftest import PLANTS
+
+CE150 = """
+main_input.deadzone d; tail_input.deadzone d; main_input.saturation limit; tail_input.saturation limit;
+main_input.supply_sag s; tail_input.supply_sag s; main_input.delay tau; tail_input.delay tau;
+main_input.slew_limit r; tail_input.slew_limit r; main_input.quantization q; tail_input.quantization q;
+main_input.lag tau; tail_input.lag tau; main_rotor.warmup a T; tail_rotor.warmup a T;
+main_rotor.dry_friction c; tail_rotor.dry_friction c; main_rotor.ground_effect a psi_0; tail_rotor.reverse_asymmetry r;
+tail_rotor.downwash a; elevation.coulomb b; azimuth.coulomb b; elevation.stribeck b_s v_s; azimuth.stribeck b_s v_s;
+elevation.quadratic_drag c; azimuth.quadratic_drag c; elevation.cable_spring k angle_0; azimuth.cable_spring k angle_0;
+elevation.centre_of_gravity delta; elevation.weight_shift Delta t_1; elevation.tail_coupling k;
+elevation.rotor_acceleration J; azimuth.rotor_acceleration J; elevation.disturbance torque t_0 duration;
+azimuth.disturbance torque t_0 duration; elevation.flexible_mode gain omega_n zeta; azimuth.flexible_mode gain omega_n zeta;
+azimuth.tilt m Phi_0; azimuth.gyroscopic K; azimuth.friction_asymmetry difference;
+psi_sensor.offset offset; psi_sensor.scale scale; psi_sensor.quantization q; psi_sensor.delay tau; psi_sensor.lag tau;
+psi_sensor.backlash width; phi_sensor.offset offset; phi_sensor.scale scale; phi_sensor.quantization q; phi_sensor.delay tau;
+phi_sensor.lag tau; phi_sensor.backlash width; loop.delay tau; loop.dropped_frames p
+"""
+OTHERS = {
+    "quanser_aero": "main_rotor.lag tail_rotor.lag main_input.gain tail_input.gain pitch.offset_force yaw.offset_force "
+    "pitch.friction_asymmetry yaw.friction_asymmetry pitch.coulomb yaw.tilt theta_sensor.scale loop.delay",
+    "aeroshield": "rotor.lag rotor.quadratic_thrust input.gain arm.offset_force arm.friction_asymmetry input.deadzone "
+    "arm.coulomb theta_sensor.offset",
+    "antx_2dof_drone": "rotor.quadratic_thrust input.gain input.delay pitch.offset_force pitch.friction_asymmetry",
+    "emps": "input.gain carriage.coulomb carriage.offset_force carriage.friction_asymmetry q_sensor.scale motor.warmup",
+    "pamh_aeropendulum": "rotor.lag rotor.quadratic_thrust input.gain arm.offset_force arm.coulomb arm.friction_asymmetry",
+}
+PLACES = {
+    "ce150": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
+    "ce150_velagic": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
+    "quanser_aero": "main_input tail_input main_rotor tail_rotor pitch yaw theta_sensor psi_sensor loop",
+    "aeroshield": "input rotor arm theta_sensor loop",
+    "aeroshield_two_clocks": "input rotor arm theta_sensor loop",
+    "pamh_aeropendulum": "input rotor arm theta_sensor loop",
+    "antx_2dof_drone": "input rotor pitch theta_sensor loop",
+    "emps": "input motor carriage q_sensor loop",
+}
+
+
+@pytest.fixture(params=list(MODELS))
+def model(request: pytest.FixtureRequest) -> Model:
+    """Each nominal model in turn."""
+    return MODELS[request.param]()
+
+
+def test_the_contract_s_table_is_there_with_its_symbols() -> None:
+    library = effects_for(MODELS["ce150"]())
+    for entry in CE150.replace("\n", " ").split(";"):
+        name, *symbols = entry.split()
+        own, further = library[name].parameters[: len(symbols)], library[name].parameters[len(symbols) :]
+        assert [parameter.symbol for parameter in own] == symbols
+        # What the contract's formula does not have leaves it as it is: a shape that is 0 where a plant file does not give it.
+        assert not any(parameter.refining for parameter in own), name
+        assert all(parameter.refining for parameter in further), name
+
+
+def test_what_refines_a_formula_is_a_shape_that_may_be_0(model: Model) -> None:
+    for effect in effects_for(model).values():
+        for parameter in effect.parameters:
+            if parameter.refining:
+                assert parameter.first == 0.0, effect.name
+                assert not parameter.is_size, effect.name
+
+
+@pytest.mark.parametrize("plant", list(OTHERS))
+def test_other_plants_have_the_effects_that_apply(plant: str) -> None:
+    assert set(OTHERS[plant].split()) <= set(effects_for(MODELS[plant]()))
+
+
+@pytest.mark.parametrize("plant", list(PLACES))
+def test_places_are_the_contract_s(plant: str) -> None:
+    assert set(MODELS[plant]().places.names) == set(PLACES[plant].split())
+
+
+def test_every_effect_acts_at_a_place_of_its_plant(model: Model) -> None:
+    for name, effect in effects_for(model).items():
+        assert effect.place in model.places.names
+        assert effect.name == name == f"{effect.place}.{effect.kind}"
+        assert effect.class_text == f"{effect.depends} on {effect.place}"
+
+
+def test_every_effect_acts_in_one_way(model: Model) -> None:
+    for effect in effects_for(model).values():
+        ways = (effect.edit, effect.applied, effect.on_input, effect.on_output)
+        assert sum(way is not None for way in ways) == 1, effect.name
+
+
+def test_parameters_begin_and_vanish_within_their_bounds(model: Model) -> None:
+    for effect in effects_for(model).values():
+        assert any(parameter.is_size for parameter in effect.parameters), effect.name
+        for parameter in effect.parameters:
+            for value in (parameter.reference, parameter.first, parameter.touched, *parameter.starts):
+                assert parameter.lower <= value <= parameter.upper, (effect.name, parameter.symbol)
+            dimension(parameter.unit)
+        assert effect.size.reference != effect.size.zero
+
+
+def test_an_effect_that_needs_a_grid_has_one_or_acts_at_a_time(model: Model) -> None:
+    for effect in effects_for(model).values():
+        if not effect.smooth:
+            times = {"t_0", "t_1", "t_s"} & set(effect.parameter)
+            assert times or any(parameter.starts for parameter in effect.parameters), effect.name
+
+
+def test_coefficients_of_all_effects_together_have_names_of_their_own(model: Model) -> None:
+    together = model_with(model.name, tuple(effects_for(model)))
+    names = [str(symbol) for symbol in (*together.parameter_symbols, *together.states, *together.inputs)]
+    assert len(set(names)) == len(names)
+    assert all(name.isidentifier() for name in names)
+
+
+def test_twins_are_effects_of_the_plant_or_its_parameters(model: Model) -> None:
+    library = effects_for(model)
+    for effect in library.values():
+        for twin, reason in effect.twins.items():
+            assert twin in library or twin.startswith("parameters"), (effect.name, twin)
+            assert twin != effect.name
+            assert reason
+
+
+def test_every_effect_has_its_words(model: Model) -> None:
+    for effect in effects_for(model).values():
+        assert effect.story.endswith("."), effect.name
+        assert effect.equation
+        assert effect.source
+
+
+def test_a_nominal_parameter_that_does_the_same_is_one_of_the_plant(model: Model) -> None:
+    parameters = load_plant(PLANTS / f"{model.name}.toml").parameters
+    for effect in effects_for(model).values():
+        assert not effect.same_as or effect.same_as in parameters
+
+
+def test_the_same_set_in_any_order_is_the_same_object() -> None:
+    one = model_with("ce150", ("azimuth.tilt", "elevation.coulomb", "loop.delay"))
+    assert one is model_with("ce150", ("elevation.coulomb", "azimuth.tilt"))
+    assert model_with("ce150", ()) is MODELS["ce150"]()
+
+
+def test_what_arrives_of_an_input_is_known_to_be_real(model: Model) -> None:
+    """Where it is not, SymPy searches the equations for imaginary parts, minutes long once several effects act on one input."""
+    for effect in effects_for(model).values():
+        if effect.applied is not None:
+            for expression in effect.applied(*effect.symbols).values():
+                assert sympy.sympify(expression).is_extended_real, effect.name
