@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rig.client import asked_identity
-from rig.emulator.pty_port import PtyBootLoader
+from rig.emulator.ports.pty_port import PtyBootLoader
 from rig.flash import flash_through_boot_loader
 from rig.replies import Identity
 

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from records.live import LiveRow
 from rig.client import BoardClient
-from rig.emulator.serial_port import EmulatedSerial
+from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.replies import Health
 from sim.runs.stepped import SteppedPlant
 

@@ -8,7 +8,7 @@ from records.errors import BadInput
 from records.live import LiveRow
 from rig.client import BoardClient
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.serial_port import EmulatedSerial
+from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.live import Angles, BoardTime
 from rig.replies import Health, Telemetry, state_name
 from sim.runs.stepped import SteppedPlant

@@ -7,7 +7,7 @@ import serial
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.emulator.serial_port import register_emulated_ports
+from rig.emulator.ports.serial_port import register_emulated_ports
 
 
 def open_port(url: str, *, timeout_s: float) -> Any:

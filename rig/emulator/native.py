@@ -9,7 +9,8 @@ from cffi import FFI
 from toolchain.host import build_shared, load_shared
 
 FOLDER = Path(__file__).resolve().parent
-HEADER = FOLDER / "host.h"
+C_DIRS = tuple(FOLDER / room for room in ("line", "machine", "core", "peripherals", "host"))
+HEADER = FOLDER / "host" / "host.h"
 # Guaranteed tail calls need an optimising build; the arithmetic is integer only.
 FLAGS = ("-O3", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fno-sanitize=undefined", "-fomit-frame-pointer")
 
@@ -23,5 +24,6 @@ def declarations(header: str) -> str:
 @cache
 def library() -> tuple[FFI, Any]:
     """(ffi, lib) of the simulator, compiled at the first use on a machine and kept in the cache."""
-    path = build_shared("emulator", sorted(FOLDER.glob("*.c")), include_dirs=[FOLDER], flags=FLAGS)
+    sources = [source for folder in C_DIRS for source in sorted(folder.glob("*.c"))]
+    path = build_shared("emulator", sources, include_dirs=C_DIRS, flags=FLAGS)
     return load_shared(declarations(HEADER.read_text(encoding="utf-8")), path)

@@ -11,6 +11,7 @@ from tests.firmware.box import HERE as BOX
 from toolchain.host import CText, build_shared, load_shared
 
 HERE = BOX.parent / "rig"
+LINE = EMULATOR / "line"
 BIT_PS = 1_085_069
 _CDEF = """
 typedef struct { uint8_t type; uint16_t sequence; uint32_t psi_ref_word; } accepted_frame;
@@ -27,8 +28,8 @@ carried line_box_carry(void *self, const uint8_t *sent, size_t count, uint8_t *b
 def compiled() -> tuple[Any, Any]:
     """Line and control path as (ffi, lib)."""
     texts = [CText(name, text) for name, text in protocol_source(PROTOCOL).items()]
-    sources = [*control_sources(), BOX / "law.c", EMULATOR / "line.c", HERE / "line_box.c", *texts]
-    return load_shared(_CDEF, build_shared("line_box", sources, include_dirs=[FIRMWARE_DIR / "control", BOX, EMULATOR]))
+    sources = [*control_sources(), BOX / "law.c", LINE / "line.c", HERE / "line_box.c", *texts]
+    return load_shared(_CDEF, build_shared("line_box", sources, include_dirs=[FIRMWARE_DIR / "control", BOX, LINE]))
 
 
 class LineBox:

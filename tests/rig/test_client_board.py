@@ -11,7 +11,7 @@ from records.errors import BadInput
 from records.protocol import PROTOCOL
 from rig.client import BoardClient
 from rig.controller import BoardController
-from rig.emulator.pty_port import PtyBoard
+from rig.emulator.ports.pty_port import PtyBoard
 from rig.image import build_firmware
 from rig.numbers import Float32Numbers
 from rig.port import open_port

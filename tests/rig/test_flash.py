@@ -10,9 +10,9 @@ import pytest
 from codegen.law import generate_law
 from records.errors import BadInput, VerificationFailed
 from rig.client import BoardClient, asked_identity
-from rig.emulator.boot_loader import Command, LoaderFaults
 from rig.emulator.image import FLASH_BASE, FLASH_BYTES
-from rig.emulator.pty_port import PtyBootLoader
+from rig.emulator.ports.boot_loader import Command, LoaderFaults
+from rig.emulator.ports.pty_port import PtyBootLoader
 from rig.flash import (
     boot_loader_command,
     flash_through_boot_loader,

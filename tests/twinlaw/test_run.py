@@ -14,7 +14,7 @@ from serial import SerialException
 from recordings.files import datasets_folder
 from records.log import load_log, save_log
 from records.table import load_table
-from rig.emulator.serial_port import EmulatedSerial
+from rig.emulator.ports.serial_port import EmulatedSerial
 from sim.columns import log_columns
 from sim.plants import MODELS
 from sim.tracking import tracking

@@ -9,7 +9,7 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
 from rig.client import DEFAULT_TIMEOUT_S, BoardClient
-from rig.emulator.serial_port import EmulatedSerial
+from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.live import LiveFlight, LoopFlight, time_of
 from rig.live_flying import EmulatedRig, FlyingFlight, RealRig
 from rig.numbers import numbers_of

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.emulator.boot_loader import ACK, NACK, PAGE_BYTES, SYNCHRONISE, BootLoader, Command, LoaderFaults
 from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SRAM_BASE, SRAM_BYTES
+from rig.emulator.ports.boot_loader import ACK, NACK, PAGE_BYTES, SYNCHRONISE, BootLoader, Command, LoaderFaults
 
 YES, NO = bytes([ACK]), bytes([NACK])
 USED = bytes(range(1, 256)) * (FLASH_BYTES // 255 + 1)  # no byte of it reads as erased or as zero

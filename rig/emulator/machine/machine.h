@@ -70,7 +70,7 @@ struct machine {
     uint32_t stack_limit;   /* 0: not checked */
     bool stop_on_fault, stop_on_reset, in_call;
     uint32_t slow_address, slow_access; /* from a load or store to its slow path */
-    op *code;               /* predecoded instructions of all code regions, see decode.c */
+    op *code;               /* predecoded instructions of all code regions, see core/decode.c */
     op *flash_code;         /* those of the flash at its own address */
     _Alignas(8) uint8_t sram[SRAM_BYTES];
     _Alignas(8) uint8_t flash[FLASH_BYTES];
