@@ -4,9 +4,9 @@ import pytest
 
 from codegen.law import generate_law
 from tests.law_tables import ce150_table
-from verification.proofs.behaviour import alarms_of, analyses, prove
-from verification.proofs.eva_fixed import decision_view
-from verification.proofs.eva_source import comparison_view
+from verification.proofs.behaviour.eva_fixed import decision_view
+from verification.proofs.behaviour.eva_source import comparison_view
+from verification.proofs.behaviour.proof import alarms_of, analyses, prove
 from verification.proofs.subject import Subject
 from verification.proofs.tools import FRAMA_C
 

@@ -8,7 +8,7 @@ from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
 from tests.law_tables import ce150_table
-from verification.proofs.coverage import DEVIATIONS, prove, stimuli_words
+from verification.proofs.conformance.coverage import DEVIATIONS, prove, stimuli_words
 from verification.proofs.deviations import Deviation, Finding, judge, load_deviations
 from verification.proofs.subject import Subject
 from verification.proofs.tools import CLANG

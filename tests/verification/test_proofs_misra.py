@@ -9,8 +9,8 @@ from codegen.law import generate_law
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
 from tests.law_tables import ce150_table
+from verification.proofs.conformance.misra import DEVIATIONS, findings_in, prove
 from verification.proofs.deviations import Deviation, Finding, judge, load_deviations
-from verification.proofs.misra import DEVIATIONS, findings_in, prove
 from verification.proofs.subject import Subject
 from verification.proofs.tools import CPPCHECK
 

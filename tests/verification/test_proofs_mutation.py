@@ -12,13 +12,13 @@ from codegen.twin import Float32Twin
 from tests.law_tables import ce150_table, dense_table
 from verification.fixed_stimuli import EDGES
 from verification.host_law import HostLaw
-from verification.proofs import mutation
-from verification.proofs.mutants_c import mutated_c
-from verification.proofs.mutants_python import mutated_twin, python_mutants
-from verification.proofs.mutation import LEAST_SCORE, Score, c_score, prove
-from verification.proofs.mutation_c import judged_c
-from verification.proofs.mutation_judge import stepped, stimuli_of
-from verification.proofs.mutation_twin import Truth, is_twin_noticed, table_mutants
+from verification.proofs.mutation import proof as mutation
+from verification.proofs.mutation.judge import stepped, stimuli_of
+from verification.proofs.mutation.law import judged_c
+from verification.proofs.mutation.mutants_c import mutated_c
+from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
+from verification.proofs.mutation.proof import LEAST_SCORE, Score, c_score, prove
+from verification.proofs.mutation.twin import Truth, is_twin_noticed, table_mutants
 from verification.proofs.subject import Subject
 
 

@@ -12,9 +12,9 @@ from tests.law_tables import ce150_table
 from verification.fixed_rounding import fixed_rounding_bound
 from verification.fixed_rounding import restricted_voltages as restricted_words
 from verification.proofs import PROOFS, Proof, Subject, run_proof
-from verification.proofs.gappa_script import GappaArithmetic, Prover
-from verification.proofs.gappa_words import GappaWords
-from verification.proofs.rounding import ask_gappa, gappa_bound, prove, tighter_bound
+from verification.proofs.rounding.gappa_script import GappaArithmetic, Prover
+from verification.proofs.rounding.gappa_words import GappaWords
+from verification.proofs.rounding.proof import ask_gappa, gappa_bound, prove, tighter_bound
 from verification.proofs.tools import GAPPA, Tool
 from verification.ranges import Motion, declared_ranges
 from verification.rounding import restricted_voltages, rounding_bound

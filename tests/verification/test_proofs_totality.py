@@ -6,10 +6,10 @@ import pytest
 
 from codegen.law import generate_law
 from tests.law_tables import ce150_table, changed_axis
-from verification.proofs.questions import Question
-from verification.proofs.smt_fixed import fixed_questions, polynomial_ranges
-from verification.proofs.smt_text import PREAMBLE, coefficient_ranges, questions
-from verification.proofs.totality import holds
+from verification.proofs.totality.proof import holds
+from verification.proofs.totality.questions import Question
+from verification.proofs.totality.smt_fixed import fixed_questions, polynomial_ranges
+from verification.proofs.totality.smt_text import PREAMBLE, coefficient_ranges, questions
 
 pytest.importorskip("bitwuzla", reason="bitwuzla is not installed (pip install --editable '.[proofs]')")
 TABLE = ce150_table()

@@ -6,7 +6,7 @@ from dataclasses import replace
 from records.verification import ProofResult, Verification
 from twinlaw.cli.console import stage
 from verification.proofs import PROOFS, Proof, Subject, run_proof
-from verification.proofs.rounding import tighter_bound
+from verification.proofs.rounding.proof import tighter_bound
 
 
 def with_proofs(verification: Verification, subject: Subject, proofs: Sequence[Proof] = PROOFS) -> Verification:

@@ -1,4 +1,4 @@
-"""Proofs about one controller table and the C made from it: one file each, each skipped with a reason where its tool is absent."""
+"""Proofs, a room each: one controller table and the C made from it in, a result out; skipped with a reason where its tool is absent."""
 
 from verification.proofs.rows import PROOFS as PROOFS
 from verification.proofs.subject import Proof as Proof

@@ -1,8 +1,13 @@
 """The table of proofs, in the order in which they run."""
 
-from verification.proofs import behaviour, cost, coverage, misra, mutation, rounding, totality
+from verification.proofs import cost
+from verification.proofs.behaviour import proof as behaviour
+from verification.proofs.conformance import coverage, misra
+from verification.proofs.mutation import proof as mutation
+from verification.proofs.rounding import proof as rounding
 from verification.proofs.subject import Proof
 from verification.proofs.tools import BITWUZLA, CLANG, CPPCHECK, FRAMA_C, GAPPA
+from verification.proofs.totality import proof as totality
 
 PROOFS: tuple[Proof, ...] = (
     Proof(rounding.NAME, "what rounding can change of real numbers in one step", (GAPPA,), rounding.prove),

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from verification.host_law import HostLaw
-from verification.proofs.mutants_c import Mutant, mutated_c
-from verification.proofs.mutation_judge import whole_behaviour
+from verification.proofs.mutation.judge import whole_behaviour
+from verification.proofs.mutation.mutants_c import Mutant, mutated_c
 from verification.stimuli import Stimulus
 
 _FLAGS = ("-O1", "-std=c11", "-ffp-contract=off", "-fwrapv", "-fno-sanitize=undefined", "-w")

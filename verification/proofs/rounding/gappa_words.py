@@ -4,7 +4,7 @@ Products without the product of the low halves are 0 to 3 below the exact ones, 
 that difference is a number of which no more is known.
 """
 
-from verification.proofs.gappa_script import GappaBook, Pair, dyadic
+from verification.proofs.rounding.gappa_script import GappaBook, Pair, dyadic
 
 
 class GappaWords(GappaBook):

@@ -4,10 +4,10 @@ No sample is taken: the solver shows that no counterexample exists among all 2^3
 """
 
 from records.verification import ProofResult
-from verification.proofs.questions import Question
-from verification.proofs.smt_fixed import fixed_questions
-from verification.proofs.smt_text import questions
 from verification.proofs.subject import Subject
+from verification.proofs.totality.questions import Question
+from verification.proofs.totality.smt_fixed import fixed_questions
+from verification.proofs.totality.smt_text import questions
 
 NAME = "totality and ranges"
 _ASKED = {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-_CODEGEN = Path(__file__).resolve().parents[2] / "codegen"
+_CODEGEN = Path(__file__).resolve().parents[3] / "codegen"
 # Per arithmetic: the files that are the twin, later ones importing earlier ones, and the class of the last.
 TWINS = {
     "float32": (("law_equations", "twin"), "Float32Twin"),

@@ -14,8 +14,8 @@ from codegen.law_equations import LawInput, state_from_words, words_from_state
 from records.table import ControllerTable
 from records.verification import ProofResult, RoundingBound
 from verification import fixed_rounding
-from verification.proofs.gappa_script import GappaArithmetic, Pair
-from verification.proofs.gappa_words import GappaWords
+from verification.proofs.rounding.gappa_script import GappaArithmetic, Pair
+from verification.proofs.rounding.gappa_words import GappaWords
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
 from verification.ranges import Motion, declared_ranges

@@ -18,8 +18,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from records.verification import ProofResult
-from verification.proofs.eva_fixed import DECISIONS_DRIVER, DRIVER, decision_view
-from verification.proofs.eva_source import PREDICATES_DRIVER, comparison_view, driver_in_range, driver_of_any_bits
+from verification.proofs.behaviour.eva_fixed import DECISIONS_DRIVER, DRIVER, decision_view
+from verification.proofs.behaviour.eva_source import (
+    PREDICATES_DRIVER,
+    comparison_view,
+    driver_in_range,
+    driver_of_any_bits,
+)
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
 from verification.ranges import declared_ranges

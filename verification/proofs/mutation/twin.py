@@ -15,8 +15,8 @@ from codegen.law_frame import without_vanishing_powers
 from codegen.self_test import self_test
 from records.table import AxisLaw, ControllerTable, Polynomial
 from verification.equality import BatchStepper
-from verification.proofs.mutants_python import PythonMutant, mutated_twin
-from verification.proofs.mutation_judge import Behaviour, stepped
+from verification.proofs.mutation.judge import Behaviour, stepped
+from verification.proofs.mutation.mutants_python import PythonMutant, mutated_twin
 from verification.stimuli import Stimulus
 
 

@@ -2,7 +2,7 @@
 
 Three groups, each to be noticed to 95 % at least: the generated law.c, the controller table, the Python twin. Without
 `everything`, a seeded sample of tables and twins is taken (a mutant of the twin is a run in Python); every mutant of the C runs
-always. Survivors are told one by one. Mutants that do what the original does are justified in mutation_equivalents.toml and not counted.
+always. Survivors are told one by one. Mutants that do what the original does are justified in equivalents.toml and not counted.
 """
 
 import re
@@ -17,14 +17,14 @@ from records.verification import ProofResult
 from verification.equality import BatchStepper
 from verification.host_law import HostLaw
 from verification.proofs.deviations import Finding, judge, load_deviations
-from verification.proofs.mutants_python import mutated_twin, python_mutants
-from verification.proofs.mutation_c import judged_c
-from verification.proofs.mutation_judge import stepped, stimuli_of
-from verification.proofs.mutation_twin import Truth, is_table_noticed, is_twin_noticed, table_mutants
+from verification.proofs.mutation.judge import stepped, stimuli_of
+from verification.proofs.mutation.law import judged_c
+from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
+from verification.proofs.mutation.twin import Truth, is_table_noticed, is_twin_noticed, table_mutants
 from verification.proofs.subject import Subject
 
 NAME = "mutation score"
-EQUIVALENTS = Path(__file__).with_name("mutation_equivalents.toml")
+EQUIVALENTS = Path(__file__).with_name("equivalents.toml")
 LEAST_SCORE = 0.95
 SAMPLE = 40
 C_STEPS = (4_000, 60_000)

@@ -16,7 +16,7 @@ from codegen.law_equations import polynomial
 from codegen.numbers import float32_bits
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, ControllerTable
-from verification.proofs.questions import Question
+from verification.proofs.totality.questions import Question
 
 _COMMENTED_RANGE = re.compile(r"(\w+)\[\d+\] = \{ /\* [^,]+, range (\S+?)\.\.(\S+) \*/")
 _SHOWN_DIGITS = 4

@@ -16,7 +16,7 @@ from codegen.fixed.formats import FILTERED_BITS, MISSING, count_format, law_form
 from codegen.fixed.twin import duty_ratio
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import ControllerTable
-from verification.proofs.questions import Question
+from verification.proofs.totality.questions import Question
 
 _STATED = re.compile(r"\[(-?\d+)\.\.(-?\d+)\] \*/\nstatic int32_t (\w+)\(")
 _LARGEST_HALF, _LEAST_HALF, _LOW_HALF = 2**15 - 1, -(2**15), 2**16 - 1
