@@ -10,7 +10,7 @@ import pytest
 from codegen.law import generate_law
 from records.table import ControllerTable, table_text
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from toolchain.dwarf import variable_members
 from toolchain.elf import image_symbols

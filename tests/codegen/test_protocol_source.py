@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
 from records.wire import Message, canonical_text
-from rig.frames import encode_frame, parse_content
+from rig.link.frames import encode_frame, parse_content
 from toolchain.host import CText, build_shared, load_shared
 
 WITH_FIELDS = [message for message in PROTOCOL.messages if message.fields]

@@ -5,8 +5,8 @@ import pytest
 
 from controllers.table import CONTROLLERS
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware, control_sources
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware, control_sources
 from sim.loop import fly
 from sim.manoeuvres import Leg, hop, manoeuvre
 from tests.controllers.rows import ROWS, ce150, designed

@@ -6,9 +6,9 @@ from typing import Any
 
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
-from rig.frames import Frame, FrameReceiver, encode_frame
-from rig.image import FIRMWARE_DIR, control_sources
-from rig.numbers import Float32Numbers
+from rig.link.frames import Frame, FrameReceiver, encode_frame
+from rig.link.numbers import Float32Numbers
+from rig.programming.image import FIRMWARE_DIR, control_sources
 from toolchain.host import CText, build_shared, load_shared
 
 HERE = Path(__file__).resolve().parent

@@ -6,7 +6,7 @@ from typing import Any
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
-from rig.frames import Frame, FrameReceiver, encode_frame
+from rig.link.frames import Frame, FrameReceiver, encode_frame
 from tests.firmware.box import DIGEST, word
 
 MODES = {choice.name: choice.code for choice in PROTOCOL.enumeration("mode").choices}

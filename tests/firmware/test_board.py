@@ -7,7 +7,7 @@ from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.image import FLASH_BASE
-from rig.image import build_firmware
+from rig.programming.image import build_firmware
 from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
 from tests.firmware.desk import MODES, STATES, Desk
 from tests.law_tables import ce150_table

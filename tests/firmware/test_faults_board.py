@@ -4,7 +4,7 @@ import pytest
 
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
-from rig.image import build_firmware
+from rig.programming.image import build_firmware
 from tests.firmware.box import stand_in_law
 from tests.firmware.desk import Desk
 

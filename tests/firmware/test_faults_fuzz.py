@@ -8,7 +8,7 @@ import pytest
 
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
-from rig.image import FIRMWARE_DIR, control_sources
+from rig.programming.image import FIRMWARE_DIR, control_sources
 from tests.firmware.box import HERE
 from tests.soak import SOAK
 from toolchain.host import run_zig

@@ -6,8 +6,8 @@ import pytest
 
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
-from rig.frames import line_length
-from rig.image import build_firmware
+from rig.link.frames import line_length
+from rig.programming.image import build_firmware
 from tests.firmware.box import DIGEST, stand_in_law
 from tests.firmware.desk import MODES, STATES, Desk
 from tests.soak import SOAK

@@ -8,7 +8,7 @@ from crccheck.crc import Crc32
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.cobs import cobs_decode, cobs_encode
+from rig.link.cobs import cobs_decode, cobs_encode
 from tests.firmware.box import compiled
 
 BLOCK_BORDERS = [0, 1, 2, 253, 254, 255, 256, 507, 508, 509, 510, 762, 1016]

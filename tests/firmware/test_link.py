@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from records.protocol import PROTOCOL
-from rig.frames import encode_frame
+from rig.link.frames import encode_frame
 from tests.firmware.box import Box, sample_words, word
 
 REFUSALS = (

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from records.protocol import PROTOCOL
-from rig.frames import Frame, encode_frame
+from rig.link.frames import Frame, encode_frame
 from tests.firmware.box import Box
 
 Disturb = Callable[[bytes], bytes]

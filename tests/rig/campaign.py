@@ -11,9 +11,9 @@ from random import Random
 from typing import Any
 
 from records.protocol import PROTOCOL
-from rig.frames import Frame, FrameReceiver, encode_frame
-from rig.hostile_line import Channel
-from rig.hostile_line_faults import (
+from rig.link.frames import Frame, FrameReceiver, encode_frame
+from rig.link.hostile_line import Channel
+from rig.link.hostile_line_faults import (
     Babble,
     Direction,
     DoubleBytes,

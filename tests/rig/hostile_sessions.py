@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from records.errors import BadInput
-from rig.client import BoardClient
-from rig.numbers import Float32Numbers
+from rig.link.client import BoardClient
+from rig.link.numbers import Float32Numbers
 from tests.firmware.box import DIGEST
 
 

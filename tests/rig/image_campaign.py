@@ -15,13 +15,13 @@ import numpy as np
 from codegen.law import generate_law
 from records.errors import BadInput
 from records.table import ControllerTable
-from rig.client import BoardClient
-from rig.hostile_line import HostileLine
-from rig.hostile_line_faults import Direction, Noise
-from rig.image import build_firmware
-from rig.line_law import LineLaw
-from rig.numbers import numbers_of
-from rig.port import open_port
+from rig.flight.line_law import LineLaw
+from rig.link.client import BoardClient
+from rig.link.hostile_line import HostileLine
+from rig.link.hostile_line_faults import Direction, Noise
+from rig.link.numbers import numbers_of
+from rig.link.port import open_port
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from tests.rig.campaign import REFUSALS, usual_faults
 from verification.fixed_stimuli import fixed_sequences

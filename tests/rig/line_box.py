@@ -6,7 +6,7 @@ from typing import Any
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
 from rig.emulator.native import FOLDER as EMULATOR
-from rig.image import FIRMWARE_DIR, control_sources
+from rig.programming.image import FIRMWARE_DIR, control_sources
 from tests.firmware.box import HERE as BOX
 from toolchain.host import CText, build_shared, load_shared
 

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.client import BoardClient
-from rig.controller import BoardController
-from rig.frames import DELIMITER, FrameReceiver, encode_frame
-from rig.numbers import Float32Numbers
+from rig.flight.controller import BoardController
+from rig.link.client import BoardClient
+from rig.link.frames import DELIMITER, FrameReceiver, encode_frame
+from rig.link.numbers import Float32Numbers
 from tests.firmware.box import DIGEST
 from tests.rig.box_port import BoxPort
 

@@ -9,12 +9,12 @@ import pytest
 from codegen.law import generate_law
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.client import BoardClient
-from rig.controller import BoardController
 from rig.emulator.ports.pty_port import PtyBoard
-from rig.image import build_firmware
-from rig.numbers import Float32Numbers
-from rig.port import open_port
+from rig.flight.controller import BoardController
+from rig.link.client import BoardClient
+from rig.link.numbers import Float32Numbers
+from rig.link.port import open_port
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from verification.host_law import HostLaw
 

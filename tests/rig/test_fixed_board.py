@@ -6,10 +6,10 @@ import pytest
 
 from codegen.law import generate_law
 from records.errors import BadInput
-from rig.client import BoardClient
-from rig.image import FirmwareImage, build_firmware, refuse_soft_arithmetic
-from rig.line_law import LineLaw
-from rig.numbers import FixedNumbers, Float32Numbers, numbers_of
+from rig.flight.line_law import LineLaw
+from rig.link.client import BoardClient
+from rig.link.numbers import FixedNumbers, Float32Numbers, numbers_of
+from rig.programming.image import FirmwareImage, build_firmware, refuse_soft_arithmetic
 from tests.law_tables import ce150_table
 from toolchain.calls import callers_of
 from verification.equality import compare

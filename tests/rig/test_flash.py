@@ -9,19 +9,19 @@ import pytest
 
 from codegen.law import generate_law
 from records.errors import BadInput, VerificationFailed
-from rig.client import BoardClient, asked_identity
 from rig.emulator.image import FLASH_BASE, FLASH_BYTES
 from rig.emulator.ports.boot_loader import Command, LoaderFaults
 from rig.emulator.ports.pty_port import PtyBootLoader
-from rig.flash import (
+from rig.link.client import BoardClient, asked_identity
+from rig.link.numbers import numbers_of
+from rig.programming.flash import (
     boot_loader_command,
     flash_through_boot_loader,
     flash_through_st_link,
     identify_command,
     openocd_command,
 )
-from rig.image import build_firmware
-from rig.numbers import numbers_of
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from twinlaw.command import main
 

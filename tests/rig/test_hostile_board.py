@@ -8,9 +8,9 @@ import pytest
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.frames import encode_frame
-from rig.hostile_line import HostileLine
-from rig.hostile_line_faults import (
+from rig.link.frames import encode_frame
+from rig.link.hostile_line import HostileLine
+from rig.link.hostile_line_faults import (
     BaudMismatch,
     BoardReset,
     Direction,
@@ -24,8 +24,8 @@ from rig.hostile_line_faults import (
     StuckLine,
     TruncateFrames,
 )
-from rig.image import build_firmware
-from rig.port import open_port
+from rig.link.port import open_port
+from rig.programming.image import build_firmware
 from tests.firmware.box import stand_in_law
 from tests.rig.campaign import usual_faults
 from tests.rig.hostile_sessions import complete_or_one_line, connect, counted_steps, session

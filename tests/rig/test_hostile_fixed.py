@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from rig.hostile_line import HostileLine
-from rig.hostile_line_faults import AtByte, Direction
-from rig.port import open_port
+from rig.link.hostile_line import HostileLine
+from rig.link.hostile_line_faults import AtByte, Direction
+from rig.link.port import open_port
 from tests.law_tables import ce150_table
 from tests.rig.image_campaign import built_url, connected, differing_steps, flown, told
 from tests.soak import SOAK

@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from rig.hostile_line import Channel, HostileLine
-from rig.hostile_line_faults import (
+from rig.link.hostile_line import Channel, HostileLine
+from rig.link.hostile_line_faults import (
     AtByte,
     Babble,
     Direction,
@@ -20,8 +20,8 @@ from rig.hostile_line_faults import (
     SwapFrames,
     TruncateFrames,
 )
-from rig.image import build_firmware
-from rig.port import open_port
+from rig.link.port import open_port
+from rig.programming.image import build_firmware
 from tests.firmware.box import stand_in_law
 from tests.rig.campaign import usual_faults
 from tests.rig.hostile_sessions import connect, counted_steps, session

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from codegen.protocol_source import protocol_source
 from records.protocol import PROTOCOL
-from rig.cobs import cobs_encode
-from rig.frames import Frame, FrameReceiver, encode_frame
-from rig.image import FIRMWARE_DIR
+from rig.link.cobs import cobs_encode
+from rig.link.frames import Frame, FrameReceiver, encode_frame
+from rig.programming.image import FIRMWARE_DIR
 from tests.firmware.box import HERE as BOX
 from tests.soak import SOAK
 from toolchain.host import CText, build_shared, load_shared

@@ -8,7 +8,7 @@ import pytest
 from modm_devices.parser import DeviceParser
 
 from records.errors import BadInput
-from rig.image import FIRMWARE_DIR, build_firmware, describe_image
+from rig.programming.image import FIRMWARE_DIR, build_firmware, describe_image
 from tests.firmware.box import stand_in_law
 from toolchain.host import CText
 from toolchain.target import build_image

@@ -12,13 +12,13 @@ from codegen.law import generate_law
 from records.errors import BadInput
 from records.plant import load_plant
 from records.protocol import PROTOCOL
-from rig.client import BoardClient
-from rig.controller import BoardController
-from rig.image import build_firmware
-from rig.live import LoopFlight, time_of
-from rig.live_flying import EmulatedRig, FlyingFlight
-from rig.numbers import Float32Numbers
-from rig.port import open_port
+from rig.flight.controller import BoardController
+from rig.flight.live import LoopFlight, time_of
+from rig.flight.live_flying import EmulatedRig, FlyingFlight
+from rig.link.client import BoardClient
+from rig.link.numbers import Float32Numbers
+from rig.link.port import open_port
+from rig.programming.image import build_firmware
 from sim.bind import BoundPlant, bind
 from sim.loop import fly, live_log
 from sim.manoeuvres import at_rest, hop

@@ -3,12 +3,12 @@
 import pytest
 
 from records.errors import BadInput
-from rig.client import Refused
-from rig.controller import BoardController
-from rig.hostile_line import HostileLine
-from rig.hostile_line_faults import HostPause
-from rig.loop_session import ATTEMPTS, LoopSession
-from rig.timing import ROUNDS, SAMPLES, line_timing
+from rig.flight.controller import BoardController
+from rig.flight.loop_session import ATTEMPTS, LoopSession
+from rig.flight.timing import ROUNDS, SAMPLES, line_timing
+from rig.link.client import Refused
+from rig.link.hostile_line import HostileLine
+from rig.link.hostile_line_faults import HostPause
 from tests.rig.hostile_sessions import connect, counted_steps
 from tests.rig.timed_box import BYTE_S, TICK_S, TimedBox
 

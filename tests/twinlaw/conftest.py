@@ -11,7 +11,7 @@ import pytest
 from codegen.law import generate_law
 from records.log import save_log
 from records.table import table_text
-from rig.image import build_firmware
+from rig.programming.image import build_firmware
 from sim.loop import fly_law
 from sim.manoeuvres import hop
 from twinlaw.verbs.watch import page_bytes

@@ -17,8 +17,8 @@ import pytest
 
 from diagnosis.ahead import Lookahead
 from records.log import load_log
-from rig.client import BoardClient
 from rig.emulator.ports.pty_port import PtyBoard
+from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS
 from tests.twinlaw.conftest import PATIENT_S, PLANT, Open, Watch

@@ -13,8 +13,8 @@ from codegen.law import generate_law
 from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware
 from twinlaw.workflows.arithmetics import BY_NAME
 from twinlaw.workflows.stages import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus

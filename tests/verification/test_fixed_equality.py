@@ -13,8 +13,8 @@ from codegen.fixed.twin import FixedTwin
 from codegen.law import generate_law
 from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table, changed_axis, dense_table
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.equality import compare

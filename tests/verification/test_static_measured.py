@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 
 from codegen.law import generate_law
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from tests.verification.cycles import nasty_floats, stimuli
 from tests.verification.static_programs import program

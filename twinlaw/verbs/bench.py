@@ -19,9 +19,9 @@ from identification.proof.bench import FitRow
 from records.table import ControllerTable
 from rig.emulator.bench import Speed
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
-from rig.numbers import numbers_of
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.link.numbers import numbers_of
+from rig.programming.image import build_firmware
 from sim.bench import comparison
 from sim.bench.comparison import BenchRow, StepAccuracy
 from twinlaw.cli import console, options

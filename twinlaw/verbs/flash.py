@@ -11,9 +11,9 @@ import json
 from pathlib import Path
 
 from records.errors import BadInput
-from rig.client import asked_identity
-from rig.emulated_flash import flash_emulated
-from rig.flash import flash_through_boot_loader, flash_through_st_link
+from rig.link.client import asked_identity
+from rig.programming.emulated_flash import flash_emulated
+from rig.programming.flash import flash_through_boot_loader, flash_through_st_link
 from toolchain.elf import flash_content
 from twinlaw.cli import console, options
 from twinlaw.workflows.stages import board_url

@@ -12,8 +12,8 @@ from records.errors import BadInput
 from records.law_table import FlownTable
 from records.live import LiveRow
 from records.protocol import PROTOCOL
-from rig.live import LiveFlight
-from rig.replies import Health
+from rig.flight.live import LiveFlight
+from rig.link.replies import Health
 from twinlaw.watching.source import DEG, Step
 
 HEALTH_EVERY = 100  # samples

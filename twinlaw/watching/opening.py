@@ -8,12 +8,12 @@ from controllers import loading
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
-from rig.client import DEFAULT_TIMEOUT_S, BoardClient
 from rig.emulator.ports.serial_port import EmulatedSerial
-from rig.live import LiveFlight, LoopFlight, time_of
-from rig.live_flying import EmulatedRig, FlyingFlight, RealRig
-from rig.numbers import numbers_of
-from rig.port import open_port
+from rig.flight.live import LiveFlight, LoopFlight, time_of
+from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
+from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient
+from rig.link.numbers import numbers_of
+from rig.link.port import open_port
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest, flight

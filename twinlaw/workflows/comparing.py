@@ -17,8 +17,8 @@ from records.files import write_atomic
 from records.protocol import PROTOCOL
 from records.verification import Equality, equality_table
 from rig.emulator.board import EmulatedBoard
-from rig.image import build_firmware
-from rig.target_law import TargetLaw
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import build_firmware
 from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
 from verification.comparison.eq26 import FormError, form_errors

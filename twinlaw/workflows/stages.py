@@ -24,14 +24,14 @@ from records.protocol import PROTOCOL
 from records.table import ControllerTable
 from records.validation import Validation
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
-from rig.client import BoardClient
-from rig.controller import BoardController
 from rig.emulator.board import EmulatedBoard
-from rig.image import FirmwareImage, build_firmware
-from rig.line_law import LineLaw
-from rig.numbers import numbers_of
-from rig.target_law import TargetLaw
-from rig.timing import line_timing
+from rig.flight.controller import BoardController
+from rig.flight.line_law import LineLaw
+from rig.flight.target_law import TargetLaw
+from rig.flight.timing import line_timing
+from rig.link.client import BoardClient
+from rig.link.numbers import numbers_of
+from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from sim.halving import StepError, step_error

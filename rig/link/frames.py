@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
-from rig.cobs import cobs_decode, cobs_encode
+from rig.link.cobs import cobs_decode, cobs_encode
 
 Value = int | bytes
 DELIMITER = b"\0"

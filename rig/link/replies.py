@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from records.protocol import PROTOCOL
-from rig.frames import Frame, Received
-from rig.numbers import Numbers
+from rig.link.frames import Frame, Received
+from rig.link.numbers import Numbers
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """A board as the controller of a simulated closed loop."""
 
-from rig.client import BoardClient
-from rig.loop_session import LoopSession
+from rig.flight.loop_session import LoopSession
+from rig.link.client import BoardClient
 
 
 class BoardController:

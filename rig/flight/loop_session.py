@@ -5,8 +5,8 @@ depend on what it was given since its reset and on nothing else, so that the sam
 the same state: what comes out is the same whatever the computer does meanwhile.
 """
 
-from rig.client import BoardClient, Refused
-from rig.replies import Answer
+from rig.link.client import BoardClient, Refused
+from rig.link.replies import Answer
 
 Given = tuple[float, float, float, float]
 

@@ -14,7 +14,7 @@ from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_
 from toolchain.host import CText, Source
 from toolchain.target import TARGET_FLAGS, build_image
 
-FIRMWARE_DIR = Path(__file__).resolve().parent.parent / "firmware"
+FIRMWARE_DIR = Path(__file__).resolve().parents[2] / "firmware"
 LINKER_SCRIPT = FIRMWARE_DIR / "board" / "link.ld"
 # Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
 SOFT_ARITHMETIC = re.compile(

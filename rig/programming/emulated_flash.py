@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from rig.client import asked_identity
 from rig.emulator.ports.pty_port import PtyBootLoader
-from rig.flash import flash_through_boot_loader
-from rig.replies import Identity
+from rig.link.client import asked_identity
+from rig.link.replies import Identity
+from rig.programming.flash import flash_through_boot_loader
 
 
 def flash_emulated(binary: Path) -> Identity:

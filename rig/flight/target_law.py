@@ -7,7 +7,7 @@ from codegen.law_equations import STATE_WORDS
 from rig.emulator.answers import CallsResult
 from rig.emulator.bench import Speed, measure
 from rig.emulator.board import EmulatedBoard
-from rig.numbers import Numbers
+from rig.link.numbers import Numbers
 
 Bits = NDArray[np.uint32]
 

@@ -4,8 +4,8 @@ import statistics
 
 from records.protocol import PROTOCOL
 from records.validation import LineTiming
-from rig.client import BoardClient
-from rig.loop_session import LoopSession
+from rig.flight.loop_session import LoopSession
+from rig.link.client import BoardClient
 
 SAMPLES = 200
 ROUNDS = 5

@@ -7,12 +7,12 @@ from typing import Any, Self
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig import replies
-from rig.frames import Frame, FrameReceiver, Value
-from rig.line import Line
-from rig.numbers import Float32Numbers, Numbers
-from rig.port import open_port
-from rig.replies import Answer, Health, Identity, Telemetry
+from rig.link import replies
+from rig.link.frames import Frame, FrameReceiver, Value
+from rig.link.line import Line
+from rig.link.numbers import Float32Numbers, Numbers
+from rig.link.port import open_port
+from rig.link.replies import Answer, Health, Identity, Telemetry
 
 DIGEST_HEAD_BYTES = 8
 DEFAULT_TIMEOUT_S = 0.25

@@ -1,6 +1,6 @@
 """A board flown sample by sample beside a person: armed and disarmed between two samples, at the pace of whoever calls.
 
-Here in host-in-the-loop mode, with a simulated rig: the power stage of the board stays off. rig/live_flying.py flies on encoders.
+Here in host-in-the-loop mode, with a simulated rig: the power stage of the board stays off. rig/flight/live_flying.py flies on encoders.
 """
 
 import time
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from records.live import LiveRow
-from rig.client import BoardClient
 from rig.emulator.ports.serial_port import EmulatedSerial
-from rig.replies import Health
+from rig.link.client import BoardClient
+from rig.link.replies import Health
 from sim.runs.stepped import SteppedPlant
 
 Angles = tuple[float, float]

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rig.client import BoardClient
-from rig.loop_session import LoopSession
+from rig.flight.loop_session import LoopSession
+from rig.link.client import BoardClient
 
 Bits = NDArray[np.uint32]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from records.errors import BadInput
 from records.protocol import PROTOCOL
-from rig.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
+from rig.link.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
 
 # Three attempts in time for the board, which counts its host as lost after 100 ms; then with the port's own patience, for
 # a board that is still starting or a computer that is busy.

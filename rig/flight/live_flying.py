@@ -6,11 +6,11 @@ from typing import Protocol
 from codegen.twin import FULL_SCALE_V
 from records.errors import BadInput
 from records.live import LiveRow
-from rig.client import BoardClient
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.ports.serial_port import EmulatedSerial
-from rig.live import Angles, BoardTime
-from rig.replies import Health, Telemetry, state_name
+from rig.flight.live import Angles, BoardTime
+from rig.link.client import BoardClient
+from rig.link.replies import Health, Telemetry, state_name
 from sim.runs.stepped import SteppedPlant
 
 UNKNOWN = (math.nan, math.nan)
