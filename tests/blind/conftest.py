@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from blind import make
-from blind.first.manoeuvre import Style, make_flight
-from blind.first.pilot import make_pilot, start_state
-from blind.first.truth import Flight, fly
-from blind.record import Model, Record
-from blind.rig import Rig, load_rig
+from blind.rigs.first.manoeuvre import Style, make_flight
+from blind.rigs.first.pilot import make_pilot, start_state
+from blind.rigs.first.truth import Flight, fly
+from blind.simulation.ce150 import Rig, load_rig
+from blind.simulation.record import Model, Record
 
 PLANT = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"
 Settings = Mapping[tuple[str, int], float]

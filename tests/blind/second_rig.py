@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from blind.bench import Bench, Plan
-from blind.native import set_fields
-from blind.record import Loss, Model, Record
-from blind.rig import Rig, load_rig
-from blind.second.controller import draw_controller
-from blind.second.lab import SecondLab, Style
-from blind.second.simulation import ROUNDED, STEP_S, Bearing, library
+from blind.rigs.bench import Bench, Plan
+from blind.rigs.second.controller import draw_controller
+from blind.rigs.second.lab import SecondLab, Style
+from blind.rigs.second.simulation import ROUNDED, STEP_S, Bearing, library
+from blind.simulation.ce150 import Rig, load_rig
+from blind.simulation.native import set_fields
+from blind.simulation.record import Loss, Model, Record
 from tests.blind.conftest import PLANT
 
 Settings = Mapping[tuple[str, int], float]

@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from blind.effect import Effect, Visited
-from blind.first.effects import CATALOGUE
-from blind.record import Record
-from blind.rig import Rig
+from blind.effects.effect import Effect, Visited
+from blind.rigs.first.effects import CATALOGUE
+from blind.simulation.ce150 import Rig
+from blind.simulation.record import Record
 from tests.blind.conftest import calm_flight, lively_flight
 
 Flown = Callable[..., Record]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from blind import KINDS, make
-from blind.mix import plans
-from blind.rigs import FIRST, kind_of_rig
-from blind.sealed import open_seal
+from blind.cases.mix import plans
+from blind.cases.sealed import open_seal
+from blind.rigs.table import FIRST, kind_of_rig
 from records.errors import BadInput
 from records.log import load_log
 from records.plant import load_plant

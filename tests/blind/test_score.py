@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from blind import markdown, score, to_json
-from blind.effect import Equivalent
-from blind.sealed import Hold, TrueEffect, Truth, seal
-from blind.statistics import calibration_error, clopper_pearson, reliability
+from blind.cases.sealed import Hold, TrueEffect, Truth, seal
+from blind.effects.effect import Equivalent
+from blind.scoring.statistics import calibration_error, clopper_pearson, reliability
 
 BARS = {"psi_rad": 1e-3, "phi_rad": 1e-3}
 HOLD = Hold(BARS, BARS, {"psi_rad": 0.1, "phi_rad": 0.1}, {"psi_rad": 0.01, "phi_rad": 0.01})

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from blind.effect import Effect, Visited
-from blind.record import Loss, Record
-from blind.rigs import RIGS
-from blind.second.effects import CATALOGUE
+from blind.effects.effect import Effect, Visited
+from blind.rigs.second.effects import CATALOGUE
+from blind.rigs.table import RIGS
+from blind.simulation.record import Loss, Record
 from tests.blind.second_rig import NOMINAL, SMOOTH, calm_style, flown, lab_of
 
 ALL = (*CATALOGUE.known, *CATALOGUE.timing, *CATALOGUE.outside)

@@ -10,8 +10,8 @@ import pytest
 
 import blind
 from blind import make
-from blind.make import Order, make_case
-from blind.sealed import open_seal
+from blind.cases.make import Order, make_case
+from blind.cases.sealed import open_seal
 from records.errors import BadInput
 from records.log import RunLog, load_log
 from records.plant import load_plant

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from blind.second.effects import CATALOGUE
-from blind.second.simulation import PRESLIDING, ROUNDED, STEP_S, STICK_SLIP, Bearing
+from blind.rigs.second.effects import CATALOGUE
+from blind.rigs.second.simulation import PRESLIDING, ROUNDED, STEP_S, STICK_SLIP, Bearing
 from tests.blind.second_rig import NOMINAL, Part
 
 Settings = Mapping[tuple[str, int], float]

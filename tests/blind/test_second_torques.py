@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from blind.second.simulation import STEP_S
+from blind.rigs.second.simulation import STEP_S
 from tests.blind.second_rig import NOMINAL, Part
 
 Settings = Mapping[tuple[str, int], float]

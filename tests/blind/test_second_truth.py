@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from blind.record import Loss, Model, Record
-from blind.rig import Rig
-from blind.second.controller import KINDS, draw_controller, linear, rest, stable
-from blind.second.lab import PERIODS_S, draw_bench
-from blind.second.manoeuvre import LIVELY, QUIET, reference
-from blind.second.simulation import PRESLIDING, ROUNDED, STICK_SLIP, Bearing, predict
+from blind.rigs.second.controller import KINDS, draw_controller, linear, rest, stable
+from blind.rigs.second.lab import PERIODS_S, draw_bench
+from blind.rigs.second.manoeuvre import LIVELY, QUIET, reference
+from blind.rigs.second.simulation import PRESLIDING, ROUNDED, STICK_SLIP, Bearing, predict
+from blind.simulation.ce150 import Rig
+from blind.simulation.record import Loss, Model, Record
 from tests.blind.second_rig import NOMINAL, PLAIN, SMOOTH, bench_of, calm_style, flown, lab_of
 
 MAIN_REST_V = {-40: 4.859, -30: 5.191, -20: 5.424, -10: 5.562, 0: 5.607}

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind.first.pilot import rest, rotor_slope
-from blind.first.truth import predict
-from blind.record import Record
-from blind.rig import Rig, draw_rig, restated, stated_zero
+from blind.rigs.first.pilot import rest, rotor_slope
+from blind.rigs.first.truth import predict
+from blind.simulation.ce150 import Rig, draw_rig, restated, stated_zero
+from blind.simulation.record import Record
 from records.plant import load_plant
 from sim.bind import bind
 from sim.simulate import simulate

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from blind.make import make
+from blind.cases.make import make
 from design.settings import read_settings
 from design.table import design
 from records.errors import BadInput
@@ -120,7 +120,7 @@ def test_sealed_cases_are_the_same_from_processes_and_go_on(
     make(6, tmp_path / "here", 2, ("nominal",))
     words = ["blind", "make", "--seed", "6", "--cases", "2", "--kinds", "nominal", "--out", str(tmp_path / "there")]
     with monkeypatch.context() as patch:
-        patch.setattr(sys.modules["blind.make"], "seal", interrupt)
+        patch.setattr(sys.modules["blind.cases.make"], "seal", interrupt)
         assert main([*words, "--workers", "2"]) == 130
     assert "interrupted" in capsys.readouterr().err
     kept = tmp_path / ".there.unfinished"

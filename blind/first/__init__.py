@@ -1,7 +1,0 @@
-"""The first kind of rig: semi-implicit steps, bristles in the bearings, scheduled pole placement, 10 ms rows, three runs of 60 s."""
-
-from blind.bench import RigKind
-from blind.first.effects import CATALOGUE
-from blind.first.lab import draw_bench
-
-KIND = RigKind(CATALOGUE, draw_bench)

@@ -1,0 +1,1 @@
+"""The scorer: sealed cases and answers in, shares of what was right out."""

@@ -1,0 +1,169 @@
+"""One case judged: the truth against the answer."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from blind.cases.sealed import TrueEffect, Truth
+from blind.scoring.results import Answer, Hypothesis, Names, Unreadable
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What was right. `rank`: place of the true cause among the ranked hypotheses from 1, None where it is not among them.
+
+    `wrong_names`: names found that neither the truth nor its look-alikes carry; `stated`: (top probability, whether the top answer is
+    right) for an answer that claims a gap; `shrinkage` as in blind.shrinkage.
+    """
+
+    case: str
+    truth: Truth
+    failure: str | None
+    detected: bool
+    place_right: bool
+    side_right: bool
+    rank: int | None
+    found_right: bool
+    set_hit: bool
+    all_named: bool
+    class_right: bool
+    wrong_names: Names
+    found: Names
+    parameter_errors: tuple[float, ...]
+    shrinkage: float | None
+    stated: tuple[float, bool] | None
+    time_s: float | None
+
+
+def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float | None) -> Judgement:
+    """The judgement of a case; an unreadable answer is wrong everywhere, a gap where there is none included."""
+    if isinstance(answer, Unreadable):
+        return _failed(case, truth, answer.reason, shrinkage)
+    true = frozenset(effect.name for effect in truth.effects)
+    ranks = [i for i, hypothesis in enumerate(answer.hypotheses, 1) if _means(hypothesis.names, truth)]
+    top = answer.hypotheses[0] if answer.hypotheses else None
+    return Judgement(
+        case=case,
+        truth=truth,
+        failure=None,
+        detected=answer.verdict == "gap",
+        place_right=_first_place(answer) in _right_places(truth),
+        side_right=_side(_first_place(answer)) in {_side(place) for place in _right_places(truth)},
+        rank=ranks[0] if ranks else None,
+        found_right=_means(answer.found, truth),
+        set_hit=_set_hit(true, answer),
+        all_named=true <= answer.found,
+        class_right=_class_right(truth, answer),
+        wrong_names=frozenset(name for name in answer.found if not any(_fits(name, e) for e in truth.effects)),
+        found=answer.found,
+        parameter_errors=_parameter_errors(truth, answer.hypotheses),
+        shrinkage=shrinkage,
+        stated=_stated(truth, answer, top) if answer.verdict == "gap" else None,
+        time_s=answer.time_s,
+    )
+
+
+def _failed(case: str, truth: Truth, reason: str, shrinkage: float | None) -> Judgement:
+    alarm = truth.kind == "nominal"
+    return Judgement(
+        case=case,
+        truth=truth,
+        failure=reason,
+        detected=alarm,
+        place_right=False,
+        side_right=False,
+        rank=None,
+        found_right=False,
+        set_hit=False,
+        all_named=False,
+        class_right=False,
+        wrong_names=frozenset(),
+        found=frozenset(),
+        parameter_errors=(),
+        shrinkage=shrinkage,
+        stated=None,
+        time_s=None,
+    )
+
+
+def _fits(name: str, effect: TrueEffect) -> bool:
+    """Whether a name says this effect: its own, a twin's, or for an effect outside the table one that a larger library may use."""
+    if name == effect.name or name in effect.twins:
+        return True
+    place, _, what = name.partition(".")
+    return not effect.known and place in effect.places and any(word in what for word in effect.keywords)
+
+
+def _means(names: Names, truth: Truth) -> bool:
+    """Whether a set of names says exactly the true effects."""
+    return (
+        len(names) == len(truth.effects) > 0
+        and all(any(_fits(name, effect) for name in names) for effect in truth.effects)
+        and all(any(_fits(name, effect) for effect in truth.effects) for name in names)
+    )
+
+
+def _first_place(answer: Answer) -> str:
+    return answer.places[0] if answer.places else answer.unknown_place
+
+
+def _right_places(truth: Truth) -> set[str]:
+    """Every place where one of the effects acts."""
+    return {place for effect in truth.effects for place in effect.places}
+
+
+def _side(place: str) -> str:
+    """A rotor and its input as one: without rotor speeds the equations do not tell them apart."""
+    return place.replace("_rotor", "").replace("_input", "")
+
+
+def _set_hit(true: Names, answer: Answer) -> bool:
+    """Whether what was found is the truth once each found name may stand for its stated look-alikes."""
+    if not answer.found or len(answer.found) != len(true):
+        return False
+    group = set(answer.found)
+    for hypothesis in answer.hypotheses:
+        if hypothesis.names <= answer.found:
+            group |= {name for names in hypothesis.ambiguous_with for name in names}
+            if true in hypothesis.ambiguous_with and hypothesis.names == answer.found:
+                return True
+    return true <= group
+
+
+def _class_right(truth: Truth, answer: Answer) -> bool:
+    """Whether the unknown's class names every signal on which the first effect depends (time apart)."""
+    if not truth.effects:
+        return False
+    signals = _signals(truth.effects[0].depends)
+    return bool(signals) and signals == _signals(answer.unknown_class)
+
+
+def _signals(text: str) -> set[str]:
+    inside = text.partition("(")[2].partition(")")[0]
+    return {
+        part.replace("sgn ", "").replace("_rad_s", "").replace("_rad", "").strip() for part in inside.split(",")
+    } - {""}
+
+
+def _parameter_errors(truth: Truth, hypotheses: Sequence[Hypothesis]) -> tuple[float, ...]:
+    """Relative errors of a single effect's main parameters, from the hypothesis that names it, whatever its rank."""
+    if len(truth.effects) != 1:
+        return ()
+    named = [hypothesis for hypothesis in hypotheses if _means(hypothesis.names, truth)]
+    if not named:
+        return ()
+    errors = []
+    for symbol, true in truth.effects[0].parameters.items():
+        if true.main and symbol in named[0].parameters:
+            estimate = named[0].parameters[symbol]
+            if true.either_sign:
+                errors.append(abs(abs(estimate) - abs(true.value)) / true.scale)
+            else:
+                errors.append(abs(estimate - true.value) / true.scale)
+    return tuple(errors)
+
+
+def _stated(truth: Truth, answer: Answer, top: Hypothesis | None) -> tuple[float, bool]:
+    """Top probability and whether that answer is right; "unknown" is right for an effect that the table does not hold."""
+    if top is None or answer.unknown_probability > top.probability:
+        return answer.unknown_probability, truth.kind == "outside"
+    return top.probability, _means(top.names, truth)
