@@ -3,24 +3,24 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.curve import shape_of
-from diagnosis.detect import FormScores
-from diagnosis.error_response import error_responses
-from diagnosis.holdout import Holdout
-from diagnosis.hypothesis import passes
-from diagnosis.improved import estimates, improved_plant
-from diagnosis.maps import band_map, region_map, removed_energy, time_map
-from diagnosis.next_experiment import next_experiment
-from diagnosis.notes import cannot_tell, notes_of
-from diagnosis.places import place_shares
+from diagnosis.decide.holdout import Holdout
+from diagnosis.decide.unknown import Suspect, suspects
+from diagnosis.decide.weighing import Weighed, alike
+from diagnosis.detect.detection import FormScores
+from diagnosis.experiment.next_experiment import next_experiment
+from diagnosis.experiment.revealing import revealing_experiment
+from diagnosis.explain.curve import shape_of
+from diagnosis.explain.error_response import error_responses
+from diagnosis.explain.improved import estimates, improved_plant
+from diagnosis.explain.maps import band_map, region_map, removed_energy, time_map
+from diagnosis.explain.notes import cannot_tell, notes_of
+from diagnosis.explain.places import place_shares
+from diagnosis.explain.sparse import suggestion
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Judged, Material, Result, Seen
-from diagnosis.reveal import revealing_experiment
-from diagnosis.search import Search
-from diagnosis.sparse import suggestion
-from diagnosis.trial import Tried
-from diagnosis.unknown import Suspect, suspects
-from diagnosis.weigh import Weighed, alike
+from diagnosis.search.beam import Search
+from diagnosis.search.fitting import Tried
 from records.diagnosis import Diagnosis, Hypothesis, Unknown
 
 

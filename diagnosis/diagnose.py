@@ -6,29 +6,29 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.answer import gap, no_gap
-from diagnosis.case import Case, make_case
-from diagnosis.detect import Detection, detect, form_scores
-from diagnosis.doubt import contradicting, doubt
-from diagnosis.fit import Fit, fit
-from diagnosis.ground import ground_of
-from diagnosis.gusts import gusts
-from diagnosis.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.inputs import LOST_FRAMES
-from diagnosis.kit import is_gust, make_kit
-from diagnosis.lost_frames import with_losses
-from diagnosis.near_rest import needed, yielding
+from diagnosis.decide.doubt import contradicting, doubt
+from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
+from diagnosis.decide.unknown import left_beside
+from diagnosis.decide.weighing import Weighed, weigh
+from diagnosis.decide.wiring import demand_wiring
+from diagnosis.detect.detection import Detection, detect, form_scores
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.score_tests import look
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import FIRST_STEP, unrest_of
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.hypothesis.initial_state import FIRST_UNREST
+from diagnosis.hypothesis.usual import with_usual
+from diagnosis.library.effect_library import is_gust, make_kit
+from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.result import Judged, Material, Result, Seen
-from diagnosis.retune import Retune, retune
-from diagnosis.screen import look
-from diagnosis.search import Alone, Search, alone, search
-from diagnosis.start import FIRST_UNREST
-from diagnosis.trial import Tried, evidence
-from diagnosis.unknown import left_beside
-from diagnosis.unrest import FIRST_STEP, unrest_of
-from diagnosis.usual import with_usual
-from diagnosis.weigh import Weighed, weigh
-from diagnosis.wiring import demand_wiring
+from diagnosis.search.beam import Alone, Search, alone, search
+from diagnosis.search.fitting import Tried, evidence
+from diagnosis.search.gusts import gusts
+from diagnosis.search.lost_frames import with_losses
+from diagnosis.search.presliding_friction import needed, yielding
+from diagnosis.search.retune import Retune, retune
 from records.errors import BadInput
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.curve import Shape
-from diagnosis.detect import Detection
-from diagnosis.fit import Fit
-from diagnosis.ground import Ground
-from diagnosis.holdout import Holdout
-from diagnosis.retune import Retune
-from diagnosis.screen import Look
-from diagnosis.search import Search
-from diagnosis.shrinkage import Predicted
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed
+from diagnosis.decide.holdout import Holdout
+from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.detection import Detection
+from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.score_tests import Look
+from diagnosis.explain.curve import Shape
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.hypothesis.case import Case
+from diagnosis.search.beam import Search
+from diagnosis.search.fitting import Tried
+from diagnosis.search.retune import Retune
+from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware
 from records.log import RunLog
 from records.plant import Plant

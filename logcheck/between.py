@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows
 from records.log import RunLog
 
 Hashes = NDArray[np.uint64]

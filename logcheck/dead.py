@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.integrity_finding import Array, Finding, Found, Rows
+from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
 from records.units import unit_suffix
 

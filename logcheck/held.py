@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.integrity_finding import EXCLUDE, Finding, Found, Rows
+from logcheck.finding import EXCLUDE, Finding, Found, Rows
 from records.log import RunLog
 
 SLOWEST = 64  # rows from one reading to the next

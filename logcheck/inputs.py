@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from diagnosis.integrity_finding import Array, Finding, Found, Rows, in_words
-from diagnosis.integrity_values import NEAR_LIMIT, saturations
+from logcheck.finding import Array, Finding, Found, Rows, in_words
+from logcheck.values import NEAR_LIMIT, saturations
 from records.log import RunLog
 
 SATURATED_SHARE = 0.02

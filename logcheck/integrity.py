@@ -9,12 +9,12 @@ from itertools import chain
 
 import numpy as np
 
-from diagnosis.integrity_between import duplicate_findings, plant_pair_findings
-from diagnosis.integrity_finding import REFUSE, Finding, Found, Rows
-from diagnosis.integrity_inputs import input_findings
-from diagnosis.integrity_plant import PlantFacts, plant_facts, plant_findings
-from diagnosis.integrity_time import Timing, timing, timing_findings
-from diagnosis.integrity_values import Excitation, Saturation, excitations, saturations, value_findings
+from logcheck.between import duplicate_findings, plant_pair_findings
+from logcheck.finding import REFUSE, Finding, Found, Rows
+from logcheck.inputs import input_findings
+from logcheck.plant import PlantFacts, plant_facts, plant_findings
+from logcheck.stamps import Timing, timing, timing_findings
+from logcheck.values import Excitation, Saturation, excitations, saturations, value_findings
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnosis.integrity_finding import REFUSE, Array, Finding, Found
+from logcheck.finding import REFUSE, Array, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.model import Axis

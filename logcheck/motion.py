@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnosis.integrity_finding import REFUSE, Finding, Found
+from logcheck.finding import REFUSE, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
 

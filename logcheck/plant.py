@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
-from diagnosis.integrity_locked import locked_findings
-from diagnosis.integrity_motion import motion_findings
-from diagnosis.integrity_units import rate_unit, reference_unit, rotor_unit
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
+from logcheck.locked import locked_findings
+from logcheck.motion import motion_findings
+from logcheck.units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant

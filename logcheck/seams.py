@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.integrity_dead import amount
-from diagnosis.integrity_finding import REFUSE, Array, Finding, Found, Rows
+from logcheck.dead import amount
+from logcheck.finding import REFUSE, Array, Finding, Found, Rows
 from records.log import RunLog
 
 USUAL_PERCENT = 99.0  # of a column's speeds from row to row are usual ones

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
 
 LEAST_ROWS = 50

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import sympy
 
-from diagnosis.integrity_finding import REFUSE, Array, Finding, Found
+from logcheck.finding import REFUSE, Array, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import reference_name

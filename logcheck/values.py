@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.integrity_dead import dead_findings, read_again
-from diagnosis.integrity_finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
-from diagnosis.integrity_held import held_findings
-from diagnosis.integrity_seams import seam_findings
+from logcheck.dead import dead_findings, read_again
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
+from logcheck.held import held_findings
+from logcheck.seams import seam_findings
 from records.log import RunLog
 from sim.columns import reference_name
 

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from codegen.fixed.formats import law_formats
 from codegen.law import generate_law
-from diagnosis.firmware_replay_flight import Flight
 from records.errors import BadInput
 from records.table import ControllerTable
+from replay.flight import Flight
 from verification.fixed_stimuli import words_from_floats
 from verification.host_law import HostLaw
 

@@ -9,9 +9,9 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import Channel
-from diagnosis.firmware_replay_variants import Variant
+from replay.flight import Flight
+from replay.law import Channel
+from replay.variants import Variant
 
 Array = NDArray[np.float64]
 

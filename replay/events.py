@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.firmware_replay_flight import Flight, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
-from diagnosis.firmware_replay_law import FLOAT64, Fold, ReplayLaw, Setup, number_type
+from replay.flight import Flight, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
+from replay.law import FLOAT64, Fold, ReplayLaw, Setup, number_type
 
 Array = NDArray[np.float64]
 

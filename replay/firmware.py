@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.firmware_replay_flight import Flight, flight_of, has_replayable_columns
-from diagnosis.firmware_replay_search import LOG_ROUNDING, channel_cause, explain
-from diagnosis.firmware_replay_words import FIXED, Replayed, replayed, replayed_in_fixed
 from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
+from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
+from replay.flight import Flight, flight_of, has_replayable_columns
+from replay.search import LOG_ROUNDING, channel_cause, explain
 
 NOT_FOUND = "not_found"
 IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"

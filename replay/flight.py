@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.firmware_replay_print import Printing, printing
 from records.log import RunLog
 from records.table import ControllerTable
+from replay.digits import Printing, printing
 from sim.columns import reference_name
 
 Array = NDArray[np.float64]

@@ -7,9 +7,9 @@ from itertools import product
 
 import numpy as np
 
-from diagnosis.firmware_replay_law import AXES, Setup
-from diagnosis.firmware_replay_variants import BY_ANGLES, Variant
 from records.table import ControllerTable
+from replay.law import AXES, Setup
+from replay.variants import BY_ANGLES, Variant
 
 OLDEST_ANGLES = 4  # samples
 OLDEST_REFERENCES = 50

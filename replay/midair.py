@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.law import polynomial
-from diagnosis.firmware_replay_events import Workshop
-from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import ReplayLaw, Setup
 from records.table import ControllerTable
+from replay.events import Workshop
+from replay.flight import Flight
+from replay.law import ReplayLaw, Setup
 
 Array = NDArray[np.float64]
 

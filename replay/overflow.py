@@ -15,11 +15,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import firmware_replay_law as law
-from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import Channel, Fold, Overflow, ReplayLaw, Setup
-from diagnosis.firmware_replay_variants import Variant, grid_step, steps_in_words
 from records.table import ControllerTable
+from replay import law
+from replay.flight import Flight
+from replay.law import Channel, Fold, Overflow, ReplayLaw, Setup
+from replay.variants import Variant, grid_step, steps_in_words
 
 Array = NDArray[np.float64]
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import AXES, ReplayLaw, Setup
-from diagnosis.firmware_replay_variants import Variant
 from records.table import ControllerTable
+from replay.flight import Flight
+from replay.law import AXES, ReplayLaw, Setup
+from replay.variants import Variant
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.firmware_replay_build import fused_outputs
-from diagnosis.firmware_replay_columns import OFFSET, constant_inputs, given_columns, output_lines
-from diagnosis.firmware_replay_events import (
+from records.errors import BadInput
+from records.table import ControllerTable
+from replay.build import fused_outputs
+from replay.columns import OFFSET, constant_inputs, given_columns, output_lines
+from replay.events import (
     GRID_SLACK,
     OUTPUT_HELD,
     RESET,
@@ -22,15 +24,13 @@ from diagnosis.firmware_replay_events import (
     Trace,
     Workshop,
 )
-from diagnosis.firmware_replay_flight import Flight, readings
-from diagnosis.firmware_replay_law import FLOAT32, ReplayLaw, Setup, channel_agrees
-from diagnosis.firmware_replay_lone import lone_variants
-from diagnosis.firmware_replay_midair import begins_in_flight
-from diagnosis.firmware_replay_overflow import angles_that_wrap, output_wraps, sums_that_overflow
-from diagnosis.firmware_replay_prefilter import fitted_prefilters
-from diagnosis.firmware_replay_variants import Variant, variants
-from records.errors import BadInput
-from records.table import ControllerTable
+from replay.flight import Flight, readings
+from replay.law import FLOAT32, ReplayLaw, Setup, channel_agrees
+from replay.lone import lone_variants
+from replay.midair import begins_in_flight
+from replay.overflow import angles_that_wrap, output_wraps, sums_that_overflow
+from replay.prefilter import fitted_prefilters
+from replay.variants import Variant, variants
 
 Array = NDArray[np.float64]
 

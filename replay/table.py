@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
 from records.errors import BadInput
 from records.law_table import SCHEMA
 from records.log import RunLog
 from records.reading import read_json
 from records.table import ControllerTable, load_table
+from replay.firmware import FirmwareReplay, replay_firmware
 
 TABLE_NAME = "controller.json"
 TABLE_NOT_FOUND = "table_not_found"

@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import firmware_replay_law as law
-from diagnosis.firmware_replay_flight import Flight
-from diagnosis.firmware_replay_law import AXES, Channel, Gains, Setup
 from records.table import ControllerTable, Polynomial
+from replay import law
+from replay.flight import Flight
+from replay.law import AXES, Channel, Gains, Setup
 
 Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]

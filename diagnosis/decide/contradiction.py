@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.filter import Pass
-from diagnosis.fit import WIDE, Fit, fit
-from diagnosis.hypothesis import passes
+from diagnosis.filter.kalman import Pass
+from diagnosis.fit.gauss_newton import WIDE, Fit, fit
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import passes
 
 Array = NDArray[np.float64]
 

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.case import Case
-from diagnosis.contradiction import Contradiction, contradiction, parted_gain
-from diagnosis.fit import fit
-from diagnosis.hypothesis import Supposed
-from diagnosis.instants import is_event
-from diagnosis.misfit import ignorance
-from diagnosis.search import Search
-from diagnosis.weigh import UNNAMED, Weighed
+from diagnosis.decide.contradiction import Contradiction, contradiction, parted_gain
+from diagnosis.decide.weighing import UNNAMED, Weighed
+from diagnosis.detect.instants import is_event
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.search.beam import Search
+from diagnosis.validate.misfit import ignorance
 
 WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more
 TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, FormScores, gains
-from diagnosis.generic import Form
+from diagnosis.detect.detection import LEAST_LEFT, MEAN_GAIN, FormScores, gains
+from diagnosis.detect.forms import Form
 
 Array = NDArray[np.float64]
 NATS_PER_FORM = 2.0

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.abreast import each
-from diagnosis.case import Case, Flight
-from diagnosis.fit import Fit
-from diagnosis.start import start_of
-from diagnosis.tape import beginning
+from diagnosis.filter.filter_input import beginning
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.initial_state import start_of
+from jobs.thread_map import each
 from records.errors import BadInput
 
 LOOKED_AT_S = 20.0  # of each log

@@ -9,15 +9,15 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.fit import Fit, away, size_scale, strain
-from diagnosis.generic import Form, forms
-from diagnosis.ground import Ground, Scores
-from diagnosis.hypothesis import passes
-from diagnosis.instants import target_of
-from diagnosis.replicas import Tail, replicas, tail_of
-from diagnosis.screen import Look
+from diagnosis.detect.forms import Form, forms
+from diagnosis.detect.instants import target_of
+from diagnosis.detect.linearisation import Ground, Scores
+from diagnosis.detect.replicas import Tail, replicas, tail_of
+from diagnosis.detect.score_tests import Look
+from diagnosis.fit.gauss_newton import Fit, away, size_scale, strain
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import passes
+from jobs.thread_map import each
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations

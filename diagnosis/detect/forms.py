@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.ground import Ground
-from diagnosis.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
-from diagnosis.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals
-from diagnosis.waves import likely_waves
+from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
+from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals
+from diagnosis.detect.waves import likely_waves
+from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
 REST = 0.02  # of a speed's typical size: below it the sign of the speed fades

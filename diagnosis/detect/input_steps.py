@@ -4,9 +4,9 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.filter import Disturbances
-from diagnosis.ground import Ground
-from diagnosis.tape import Tape
+from diagnosis.detect.linearisation import Ground
+from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.kalman import Disturbances
 
 Array = NDArray[np.float64]
 COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.ground import Ground
+from diagnosis.detect.linearisation import Ground
+from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]

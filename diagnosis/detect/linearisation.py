@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.filter import Disturbances, Filter, Pass, columns_of
-from diagnosis.fit import Fit, flat_slopes, stacked
-from diagnosis.hypothesis import passes, tape_under
-from diagnosis.tape import Tape
+from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
+from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import passes, tape_under
+from jobs.thread_map import each
 
 Array = NDArray[np.float64]
 GRID_S = 0.3

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.ground import Ground
-from diagnosis.hypothesis import noise_of
+from diagnosis.detect.linearisation import Ground
+from diagnosis.hypothesis.hypothesis import noise_of
+from jobs.thread_map import each
 
 Array = NDArray[np.float64]
 COUNT = 48

@@ -7,17 +7,17 @@ from itertools import chain, product
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.filter import Pass
-from diagnosis.fit import flat_slopes, likelihood, size_scale, stacked
-from diagnosis.ground import Ground, Scores
-from diagnosis.hypothesis import passes
-from diagnosis.instants import instants, is_event
-from diagnosis.kit import Kit, is_lag
-from diagnosis.lattice import coarse_step
-from diagnosis.quantised import likely_steps
-from diagnosis.waves import swings, wave_starts
+from diagnosis.detect.input_steps import likely_steps
+from diagnosis.detect.instants import instants, is_event
+from diagnosis.detect.linearisation import Ground, Scores
+from diagnosis.detect.waves import swings, wave_starts
+from diagnosis.filter.kalman import Pass
+from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import passes
+from diagnosis.library.effect_library import Kit, is_lag
+from diagnosis.library.lattice import coarse_step
+from jobs.thread_map import each
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]

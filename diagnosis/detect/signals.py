@@ -8,8 +8,8 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.ground import Ground
+from diagnosis.detect.linearisation import Ground
+from diagnosis.hypothesis.case import Case
 from sim.model import TIME, Model
 
 Array = NDArray[np.float64]

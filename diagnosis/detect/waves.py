@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter import Disturbances, Pass
-from diagnosis.ground import Ground
-from diagnosis.instants import target_of
-from diagnosis.signals import by_step
-from diagnosis.tape import Tape
+from diagnosis.detect.instants import target_of
+from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.signals import by_step
+from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.kalman import Disturbances, Pass
 from sim.effect import Effect, EffectParameter
 
 Array = NDArray[np.float64]

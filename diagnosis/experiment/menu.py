@@ -7,7 +7,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
+from diagnosis.hypothesis.case import Case
 from sim.model import Model
 
 Array = NDArray[np.float64]

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.fit import size_scale
-from diagnosis.hypothesis import Supposed, passes
-from diagnosis.menu import plans
-from diagnosis.next_experiment import EFFORT, law_of, period_of
-from diagnosis.notes import SEEN
-from diagnosis.rehearsal import recorded, rehearse, setting
+from diagnosis.experiment.menu import plans
+from diagnosis.experiment.next_experiment import EFFORT, law_of, period_of
+from diagnosis.experiment.simulated_experiment import recorded, rehearse, setting
+from diagnosis.explain.notes import SEEN
+from diagnosis.fit.gauss_newton import size_scale
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
 
 Array = NDArray[np.float64]
 

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case, make_case
-from diagnosis.fit import Fit, flat_slopes, stacked
-from diagnosis.flown import Flown
-from diagnosis.hypothesis import Supposed, passes
-from diagnosis.menu import Plan, gravity_parameters
-from diagnosis.stand_in import StandIn
+from diagnosis.experiment.menu import Plan, gravity_parameters
+from diagnosis.experiment.stand_in import StandIn
+from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.validate.simulated import Flown
 from records.log import RunLog
 from sim.start import start_state
 

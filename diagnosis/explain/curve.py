@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect import FormScores, gains
-from diagnosis.generic import Form
-from diagnosis.ground import Ground
-from diagnosis.signals import Signals, angle_names, rotor_name, signals
-from diagnosis.unknown import Suspect
+from diagnosis.decide.unknown import Suspect
+from diagnosis.detect.detection import FormScores, gains
+from diagnosis.detect.forms import Form
+from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.signals import Signals, angle_names, rotor_name, signals
 from records.units import unit_suffix
 from sim.places import InputPlace
 

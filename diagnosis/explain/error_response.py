@@ -15,11 +15,11 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.filter import Disturbances
-from diagnosis.ground import Ground
-from diagnosis.hypothesis import coefficients
-from diagnosis.signals import by_step, value_of
-from diagnosis.spectra import BANDS_HZ, TINY, coherence, cross_power, power
+from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.signals import by_step, value_of
+from diagnosis.explain.spectra import BANDS_HZ, TINY, coherence, cross_power, power
+from diagnosis.filter.kalman import Disturbances
+from diagnosis.hypothesis.hypothesis import coefficients
 from records.diagnosis import ErrorResponse
 
 Array = NDArray[np.float64]

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.fit import GRID_SD, SCATTERS, Fit, seen_in_readings
-from diagnosis.gusts import gust_sd
-from diagnosis.hypothesis import coefficients
-from diagnosis.jitter import jitter_sd, scatters
-from diagnosis.kit import is_gust
+from diagnosis.fit.gauss_newton import GRID_SD, SCATTERS, Fit, seen_in_readings
+from diagnosis.fit.jitter import jitter_sd, scatters
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import coefficients
+from diagnosis.library.effect_library import is_gust
+from diagnosis.search.gusts import gust_sd
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.spectra import BANDS_HZ, averages, coherence, power
+from diagnosis.explain.spectra import BANDS_HZ, averages, coherence, power
+from diagnosis.hypothesis.case import Case
 from records.diagnosis import Band, Region, Span
 
 Array = NDArray[np.float64]

@@ -4,13 +4,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.case import Case
-from diagnosis.fit import Fit, Free, away, size_scale
-from diagnosis.hypothesis import coefficients
-from diagnosis.kit import is_gust
-from diagnosis.screen import Look
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed, alike
+from diagnosis.decide.weighing import Weighed, alike
+from diagnosis.detect.score_tests import Look
+from diagnosis.fit.gauss_newton import Fit, Free, away, size_scale
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import coefficients
+from diagnosis.library.effect_library import is_gust
+from diagnosis.search.fitting import Tried
 
 FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence
 SEEN = 4.0  # score that an effect needs to be seen

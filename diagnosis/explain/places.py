@@ -3,9 +3,9 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-from diagnosis.search import Search, certainties
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed
+from diagnosis.decide.weighing import Weighed
+from diagnosis.search.beam import Search, certainties
+from diagnosis.search.fitting import Tried
 from records.diagnosis import PlaceShare
 
 LEAST = 0.005

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.curve import target_of
-from diagnosis.detect import LEAST_LEFT, MEAN_GAIN, FormScores
-from diagnosis.generic import Form
-from diagnosis.ground import Ground
+from diagnosis.detect.detection import LEAST_LEFT, MEAN_GAIN, FormScores
+from diagnosis.detect.forms import Form
+from diagnosis.detect.linearisation import Ground
+from diagnosis.explain.curve import target_of
 
 Array = NDArray[np.float64]
 MOST_TERMS = 3

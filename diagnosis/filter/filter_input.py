@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.edges import sharpened
+from diagnosis.filter.edges import sharpened
 from records.log import RunLog
 from records.plant import Plant
 from sim.paths.path import Held, InputStage, pass_inputs

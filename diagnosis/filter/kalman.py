@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from diagnosis.tape import Tape
+from diagnosis.filter.filter_input import Tape
 from sim.kernel.generate import model_header
 from sim.kernel.kernel import C_DIR as SIM_C
 from sim.kernel.sincos import sincos_header

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.filter import Pass
-from diagnosis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
-from diagnosis.inputs import LOST_FRAMES, share_slopes
-from diagnosis.kit import is_gust, is_lag
+from diagnosis.filter.kalman import Pass
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
+from diagnosis.library.effect_library import is_gust, is_lag
+from diagnosis.library.input_effects import LOST_FRAMES, share_slopes
 from sim.effect import EffectParameter
 
 Array = NDArray[np.float64]

@@ -13,11 +13,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.fit import SCATTERS, likelihood
-from diagnosis.hypothesis import Supposed, passes
-from diagnosis.sensors import rates
+from diagnosis.fit.gauss_newton import SCATTERS, likelihood
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.library.sensor_effects import rates
+from jobs.thread_map import each
 
 SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay
 FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these

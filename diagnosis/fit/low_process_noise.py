@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.case import Case
-from diagnosis.fit import Fit, fit
-from diagnosis.unrest import unrest_of
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import unrest_of
+from diagnosis.hypothesis.case import Case
 
 FARTHEST = 2.0  # decades that the unrest is lowered at most
 LEAST = 0.3  # and at least, for a second look to be worth its time

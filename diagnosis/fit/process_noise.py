@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.case import Case
-from diagnosis.fit import Fit, likelihood_of
-from diagnosis.hypothesis import Supposed
+from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed
 
 LEAST, MOST = -5.0, 1.5
 FIRST_STEP = 0.3

@@ -8,9 +8,9 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.kit import Kit
-from diagnosis.start import start_of
-from diagnosis.tape import Tape, tape_of
+from diagnosis.filter.filter_input import Tape, tape_of
+from diagnosis.hypothesis.initial_state import start_of
+from diagnosis.library.effect_library import Kit
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effect import Values

@@ -7,15 +7,15 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case, Flight
-from diagnosis.filter import Noise, Pass
-from diagnosis.gusty import gust_state
-from diagnosis.inputs import commanded
-from diagnosis.kit import Kit, Variant, is_gust, is_lag
-from diagnosis.sensors import sensed
-from diagnosis.start import RUB_S
-from diagnosis.tape import Tape
+from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.kalman import Noise, Pass
+from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.initial_state import RUB_S
+from diagnosis.library.effect_library import Kit, Variant, is_gust, is_lag
+from diagnosis.library.gust_state import gust_state
+from diagnosis.library.input_effects import commanded
+from diagnosis.library.sensor_effects import sensed
+from jobs.thread_map import each
 from sim.effect import Values
 
 Array = NDArray[np.float64]

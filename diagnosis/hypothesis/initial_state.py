@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter import Noise
-from diagnosis.kit import Kit
-from diagnosis.tape import Tape, beginning
+from diagnosis.filter.filter_input import Tape, beginning
+from diagnosis.filter.kalman import Noise
+from diagnosis.library.effect_library import Kit
 
 Array = NDArray[np.float64]
 START_S = 0.1

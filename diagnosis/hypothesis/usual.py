@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.case import Case
-from diagnosis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
 
 
 def with_usual(case: Case, nominal: Supposed) -> Case:

@@ -18,11 +18,11 @@ import sympy
 from numpy.typing import NDArray
 
 import sim
-from diagnosis.abreast import ahead
-from diagnosis.apart import NotDone, apart
-from diagnosis.filter import Filter, build_filter, equations_text, open_filter
-from diagnosis.gusty import gusty
-from diagnosis.lagged import lagged
+from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
+from diagnosis.library.gust_state import gusty
+from diagnosis.library.sensor_lag_state import lagged
+from diagnosis.library.subprocess import NotDone, apart
+from jobs.thread_map import ahead
 from records.errors import BadInput
 from records.files import write_atomic
 from records.plant import Plant
@@ -273,8 +273,8 @@ def _sources() -> bytes:
     digest = hashlib.sha256()
     root = Path(sim.__file__).resolve().parent
     here = Path(__file__).resolve().parent
-    files = [path for folder in (root, here / "c") for path in folder.rglob("*") if path.suffix in (".py", ".c", ".h")]
-    for path in sorted([*files, *(here / name for name in ("kit.py", "filter.py", "gusty.py", "lagged.py"))]):
+    folders = (root, here.parent / "filter", here)
+    for path in sorted(path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".c", ".h")):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.digest()
 

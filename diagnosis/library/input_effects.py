@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.kit import Kit
-from diagnosis.tape import Tape, with_inputs
+from diagnosis.filter.filter_input import Tape, with_inputs
+from diagnosis.library.effect_library import Kit
 from sim.composition.build import paths_with
 from sim.effect import Values
 from sim.plants import MODELS

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.kit import Kit
-from diagnosis.lattice import grid_evidence
-from diagnosis.tape import Tape, late, variance_stated
+from diagnosis.filter.filter_input import Tape, late, variance_stated
+from diagnosis.library.effect_library import Kit
+from diagnosis.library.lattice import grid_evidence
 from sim.effect import Values
 
 Array = NDArray[np.float64]

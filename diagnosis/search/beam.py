@@ -6,15 +6,15 @@ from itertools import chain
 
 import numpy as np
 
-from diagnosis.abreast import each
-from diagnosis.calm import calmed
-from diagnosis.case import Case
-from diagnosis.exchange import FURTHER_GAIN, exchange, twins_tried
-from diagnosis.fit import Fit
-from diagnosis.ground import Ground, ground_of
-from diagnosis.inputs import LOST_FRAMES
-from diagnosis.screen import Look, look
-from diagnosis.trial import Job, Tried, keep_better, once_more, refined, rough, tried_as
+from diagnosis.detect.linearisation import Ground, ground_of
+from diagnosis.detect.score_tests import Look, look
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.low_process_noise import calmed
+from diagnosis.hypothesis.case import Case
+from diagnosis.library.input_effects import LOST_FRAMES
+from diagnosis.search.exchange import FURTHER_GAIN, exchange, twins_tried
+from diagnosis.search.fitting import Job, Tried, keep_better, once_more, refined, rough, tried_as
+from jobs.thread_map import each
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
 CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems

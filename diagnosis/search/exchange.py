@@ -4,12 +4,12 @@ from collections.abc import Set
 
 import numpy as np
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.fit import fit
-from diagnosis.ground import ground_of
-from diagnosis.screen import look
-from diagnosis.trial import Job, Tried, at_its_place, keep_better, refined
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.score_tests import look
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.hypothesis.case import Case
+from diagnosis.search.fitting import Job, Tried, at_its_place, keep_better, refined
+from jobs.thread_map import each
 
 FURTHER_GAIN = 10.0  # nats that a further effect must promise
 NEAR_BEST = 30.0  # nats that a first fit may be short of the best to be fitted to its end

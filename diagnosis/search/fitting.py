@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.calm import awake
-from diagnosis.case import Case
-from diagnosis.fit import WIDE, Fit, fit, from_zero, likelihood
-from diagnosis.hypothesis import Supposed, passes
-from diagnosis.jitter import scatters, with_jitter
-from diagnosis.kit import is_gust
-from diagnosis.screen import Look, holding
-from diagnosis.start import FIRST_UNREST
-from diagnosis.unrest import unrest_of, with_unrest
+from diagnosis.detect.score_tests import Look, holding
+from diagnosis.fit.gauss_newton import WIDE, Fit, fit, from_zero, likelihood
+from diagnosis.fit.jitter import scatters, with_jitter
+from diagnosis.fit.low_process_noise import awake
+from diagnosis.fit.process_noise import unrest_of, with_unrest
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.initial_state import FIRST_UNREST
+from diagnosis.library.effect_library import is_gust
 
 Array = NDArray[np.float64]
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand

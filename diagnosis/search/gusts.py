@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.abreast import each
-from diagnosis.case import Case
-from diagnosis.fit import fit, likelihood_of
-from diagnosis.hypothesis import Supposed
-from diagnosis.trial import Tried, tried_as
-from diagnosis.unrest import with_unrest
+from diagnosis.fit.gauss_newton import fit, likelihood_of
+from diagnosis.fit.process_noise import with_unrest
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.search.fitting import Tried, tried_as
+from jobs.thread_map import each
 
 TIMES_S = (0.15, 0.5, 1.5, 5.0)
 SHARES = (0.003, 0.01, 0.03, 0.1)  # of the axis' usual torque

@@ -22,14 +22,14 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.abreast import each
-from diagnosis.case import Case, Flight
-from diagnosis.fit import Fit, fit, unfitted
-from diagnosis.ground import Ground, ground_of
-from diagnosis.hypothesis import Supposed, coefficients
-from diagnosis.inputs import LOST_FRAMES, lost_with
-from diagnosis.tape import Tape
-from diagnosis.unrest import with_unrest
+from diagnosis.detect.linearisation import Ground, ground_of
+from diagnosis.filter.filter_input import Tape
+from diagnosis.fit.gauss_newton import Fit, fit, unfitted
+from diagnosis.fit.process_noise import with_unrest
+from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.hypothesis import Supposed, coefficients
+from diagnosis.library.input_effects import LOST_FRAMES, lost_with
+from jobs.thread_map import each
 from sim.bind import evaluated
 from toolchain.host import build_shared, load_shared
 

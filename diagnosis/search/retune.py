@@ -7,11 +7,11 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.fit import Fit, fit
-from diagnosis.notes import moved_effects, moved_parameters
-from diagnosis.trial import Tried, evidence
-from diagnosis.unrest import unrest_of
+from diagnosis.explain.notes import moved_effects, moved_parameters
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import unrest_of
+from diagnosis.hypothesis.case import Case
+from diagnosis.search.fitting import Tried, evidence
 
 Array = NDArray[np.float64]
 WIDER = 8.0

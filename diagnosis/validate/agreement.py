@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.predict import windows
+from diagnosis.validate.prediction import windows
 from identification.margins import (
     ATTITUDE_MARGIN_rad,
     RATE_MARGIN_rad_s,

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import make_case
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.kit import make_kit
-from diagnosis.predict import SETTLE_S, WINDOW_S, Span, predictions
+from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.validate.prediction import SETTLE_S, WINDOW_S, Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
 from sim.added_effects import without_effects

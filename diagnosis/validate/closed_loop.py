@@ -10,14 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.firmware_replay_flight import Flight as Samples
-from diagnosis.firmware_replay_flight import flight_of, has_replayable_columns
-from diagnosis.flown import Flown
-from diagnosis.hypothesis import Supposed, passes
-from diagnosis.predict import SETTLE_S
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.validate.prediction import SETTLE_S
+from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
 from records.table import ControllerTable
+from replay.flight import Flight as Samples
+from replay.flight import flight_of, has_replayable_columns
 from verification.host_law import HostLaw, host_law
 
 Array = NDArray[np.float64]

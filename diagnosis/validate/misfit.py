@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case, Flight
-from diagnosis.hypothesis import Supposed
-from diagnosis.predict import predictions, windows
+from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.validate.prediction import predictions, windows
 
 Array = NDArray[np.float64]
 MOVES = 5.0  # times its sensor's floor that an output must move within a window to count

@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case, Flight
-from diagnosis.filter import Noise
-from diagnosis.hypothesis import Supposed, coefficients, noise_of, start_under, tape_under
-from diagnosis.kit import Variant
-from diagnosis.tape import Tape
+from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.kalman import Noise
+from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.hypothesis import Supposed, coefficients, noise_of, start_under, tape_under
+from diagnosis.library.effect_library import Variant
 from sim.effect import Values
 
 Array = NDArray[np.float64]

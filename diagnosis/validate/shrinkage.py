@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.agreement import agreements
-from diagnosis.case import Case
-from diagnosis.hypothesis import Supposed
-from diagnosis.predict import predictions, windows
-from diagnosis.reflight import closed_loop
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.validate.agreement import agreements
+from diagnosis.validate.closed_loop import closed_loop
+from diagnosis.validate.prediction import predictions, windows
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 

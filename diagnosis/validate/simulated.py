@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.case import Case
-from diagnosis.fit import SCATTERS
-from diagnosis.hypothesis import Supposed, coefficients
-from diagnosis.kit import Kit, Variant
+from diagnosis.fit.gauss_newton import SCATTERS
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Supposed, coefficients
+from diagnosis.library.effect_library import Kit, Variant
 from sim.composition.build import paths_with
 from sim.effect import Values
 from sim.paths.path import Held, OutputStage, Trace, pass_inputs, pass_output

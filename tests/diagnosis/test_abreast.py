@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from diagnosis.abreast import WORKERS, each
+from jobs.thread_map import WORKERS, each
 
 
 def test_answers_come_in_the_order_of_the_items() -> None:

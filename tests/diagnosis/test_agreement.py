@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from diagnosis.agreement import agreements, nrmse_fit_percent
+from diagnosis.validate.agreement import agreements, nrmse_fit_percent
 
 T_S = 0.01 * np.arange(400)
 ANGLE = 0.5 * np.sin(T_S)

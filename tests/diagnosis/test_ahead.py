@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from diagnosis.ahead import EVERY_S, UNREST, Ahead, Lookahead
-from diagnosis.case import make_case
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.kit import make_kit
-from diagnosis.predict import Span, predictions
+from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.validate.ahead import EVERY_S, UNREST, Ahead, Lookahead
+from diagnosis.validate.prediction import Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
 from sim.added_effects import with_effects

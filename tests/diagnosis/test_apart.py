@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from diagnosis.apart import NotDone, apart
-from diagnosis.kit import MADE_FROM, _build, _build_of, make_kit
+from diagnosis.library.effect_library import MADE_FROM, _build, _build_of, make_kit
+from diagnosis.library.subprocess import NotDone, apart
 from tests.plants import bound
 
 

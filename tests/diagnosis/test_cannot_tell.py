@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.engine import Material, diagnose
-from diagnosis.notes import IMITATION, UNFOLLOWED, UNSEEN
+from diagnosis.diagnose import Material, diagnose
+from diagnosis.explain.notes import IMITATION, UNFOLLOWED, UNSEEN
 from records.diagnosis import Diagnosis
 from records.log import RunLog
 from sim.bind import BoundPlant

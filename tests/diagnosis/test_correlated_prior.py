@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.contradiction import contradiction
-from diagnosis.engine import nominal_fit
-from diagnosis.fit import log_prior, strain
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.improved import improved_plant
-from diagnosis.kit import make_kit
+from diagnosis.decide.contradiction import contradiction
+from diagnosis.diagnose import nominal_fit
+from diagnosis.explain.improved import improved_plant
+from diagnosis.fit.gauss_newton import log_prior, strain
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.library.effect_library import make_kit
 from records.correlation import Correlation
 from records.log import RunLog
 from records.plant import plant_text

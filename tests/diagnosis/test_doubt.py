@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.contradiction import contradiction
-from diagnosis.doubt import UNNAMED, Doubt, contradicting
-from diagnosis.engine import nominal_fit
-from diagnosis.kit import Kit, make_kit
-from diagnosis.misfit import ignorance
-from diagnosis.weigh import Weighed
+from diagnosis.decide.contradiction import contradiction
+from diagnosis.decide.doubt import UNNAMED, Doubt, contradicting
+from diagnosis.decide.weighing import Weighed
+from diagnosis.diagnose import nominal_fit
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.validate.misfit import ignorance
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly

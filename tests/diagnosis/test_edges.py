@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.edges import sharpened
+from diagnosis.filter.edges import sharpened
 
 STEP = 1.5e-3
 ROUNDING = STEP**2 / 12.0

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.engine import Material, diagnose
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
 from records.diagnosis import diagnosis_text
 from records.plant import plant_text

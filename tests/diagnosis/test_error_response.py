@@ -5,14 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.case import make_case
-from diagnosis.engine import nominal_fit
-from diagnosis.error_response import error_responses
-from diagnosis.fit import unfitted
-from diagnosis.ground import Ground, ground_of
-from diagnosis.kit import make_kit
-from diagnosis.maps import band_map
-from diagnosis.spectra import averages, coherence
+from diagnosis.detect.linearisation import Ground, ground_of
+from diagnosis.diagnose import nominal_fit
+from diagnosis.explain.error_response import error_responses
+from diagnosis.explain.maps import band_map
+from diagnosis.explain.spectra import averages, coherence
+from diagnosis.fit.gauss_newton import unfitted
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 

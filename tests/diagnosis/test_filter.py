@@ -7,15 +7,15 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.case import UNTOLD_S, Case, make_case
-from diagnosis.engine import nominal_fit
-from diagnosis.filter import C_DIR, FLAGS, PART, Pass
-from diagnosis.fit import Fit, fit
-from diagnosis.ground import ground_of
-from diagnosis.hypothesis import Supposed, coefficients, nothing_supposed, passes
-from diagnosis.kit import Kit, make_kit
-from diagnosis.lost_frames import drives
-from diagnosis.predict import predictions
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.diagnose import nominal_fit
+from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.hypothesis.case import UNTOLD_S, Case, make_case
+from diagnosis.hypothesis.hypothesis import Supposed, coefficients, nothing_supposed, passes
+from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.search.lost_frames import drives
+from diagnosis.validate.prediction import predictions
 from records.log import RunLog
 from sim.bind import BoundPlant, evaluated
 from sim.columns import log_columns
@@ -174,7 +174,7 @@ def test_sums_over_parts_are_those_of_the_whole_answer(
     for target in (1, len(case.kit.states)):
         parts = ground.scores_by([values.__getitem__], target)
         with monkeypatch.context() as patched:
-            patched.setattr("diagnosis.filter.PART", steps)
+            patched.setattr("diagnosis.filter.kalman.PART", steps)
             whole = ground.scores_of(ground.answer([values.__getitem__], target))
         for one, other in ((parts.gram, whole.gram), (parts.score, whole.score), (parts.raw, whole.raw)):
             assert np.allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
 from records.log import RunLog
 from records.table import ControllerTable
+from replay.firmware import FirmwareReplay, replay_firmware
 from sim.loop import fly
 from sim.manoeuvres import flight
 from tests.diagnosis.firmware_flights import Wrapped, edited_law, flown, plant, rows_of, stale

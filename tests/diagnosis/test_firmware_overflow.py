@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
+from replay.firmware import FirmwareReplay, replay_firmware
 from sim.loop import Controller
 from tests.diagnosis.firmware_flights import Command, Lossy, Wrapped, edited_law, flown, rows_of, stale
 from tests.law_tables import ce150_table

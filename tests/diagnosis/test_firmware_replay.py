@@ -8,14 +8,14 @@ import pytest
 
 from codegen.law import generate_law
 from design.law import FloatLaw
-from diagnosis.firmware_replay import FirmwareReplay, replay_firmware
-from diagnosis.firmware_replay_build import fused_outputs
-from diagnosis.firmware_replay_law import ReplayLaw, Setup
-from diagnosis.firmware_replay_table import replay_log
 from records.diagnosis import Firmware
 from records.errors import BadInput
 from records.files import write_atomic
 from records.table import ControllerTable, table_text
+from replay.build import fused_outputs
+from replay.firmware import FirmwareReplay, replay_firmware
+from replay.law import ReplayLaw, Setup
+from replay.table import replay_log
 from sim.loop import Controller, fly
 from sim.manoeuvres import flight
 from tests.controllers.rows import designed

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import make_case
-from diagnosis.fit import fit, likelihood
-from diagnosis.hypothesis import nothing_supposed, passes
-from diagnosis.kit import make_kit
+from diagnosis.fit.gauss_newton import fit, likelihood
+from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
+from diagnosis.library.effect_library import make_kit
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly

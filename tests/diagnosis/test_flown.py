@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.flown import Flown
-from diagnosis.hypothesis import Supposed, nothing_supposed
-from diagnosis.kit import make_kit
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import Supposed, nothing_supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.validate.simulated import Flown
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium

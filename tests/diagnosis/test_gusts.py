@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.gusts import gust_sd, gusts
-from diagnosis.improved import improved_plant
-from diagnosis.kit import make_kit
-from diagnosis.trial import Tried, evidence
+from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.explain.improved import improved_plant
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.library.effect_library import make_kit
+from diagnosis.search.fitting import Tried, evidence
+from diagnosis.search.gusts import gust_sd, gusts
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import pytest
 
-from diagnosis.case import make_case
-from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.fit import fit
-from diagnosis.holdout import Holdout, partly, worse
-from diagnosis.instants import happens
-from diagnosis.kit import make_kit
+from diagnosis.decide.holdout import Holdout, partly, worse
+from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.instants import happens
+from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
 from diagnosis.result import Result
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed
+from diagnosis.search.fitting import Tried
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly

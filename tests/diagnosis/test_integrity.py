@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnosis.integrity import Integrity, demand, examine
+from logcheck.integrity import Integrity, demand, examine
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
 from sim.columns import log_columns

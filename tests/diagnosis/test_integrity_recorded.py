@@ -2,7 +2,7 @@
 
 import pytest
 
-from diagnosis.integrity import examine
+from logcheck.integrity import examine
 from recordings.library import import_record, records
 from tests.plants import bound
 from tests.recorded import FIRST_RECORD, dataset_folder

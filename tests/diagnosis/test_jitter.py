@@ -7,10 +7,10 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.case import make_case
-from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.jitter import jitter_sd, most_shown_s, with_jitter
-from diagnosis.kit import make_kit
+from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.abreast import WORKERS
-from diagnosis.case import make_case
-from diagnosis.filter import Pass
-from diagnosis.hypothesis import nothing_supposed, passes
-from diagnosis.kit import Kit, make_kit
+from diagnosis.filter.kalman import Pass
+from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
+from diagnosis.library.effect_library import Kit, make_kit
+from jobs.thread_map import WORKERS
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.columns import log_columns
@@ -26,9 +26,9 @@ from toolchain.cache import CACHE_DIR
 ASK = """
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
-from diagnosis.case import make_case
-from diagnosis.hypothesis import nothing_supposed, passes
-from diagnosis.kit import make_kit
+from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
+from diagnosis.library.effect_library import make_kit
 from records.log import RunLog
 from sim.columns import log_columns
 from tests.plants import bound
@@ -49,7 +49,7 @@ with ThreadPoolExecutor(3) as pool:
 
 # A search is announced, and the process is through before anything of it is built.
 ANNOUNCE = """
-from diagnosis.kit import make_kit
+from diagnosis.library.effect_library import make_kit
 from tests.plants import bound
 
 kit = make_kit(bound("emps"))
@@ -58,7 +58,7 @@ kit.prepare()
 
 WAIT = """
 import signal, sys
-from diagnosis.abreast import through_when_interrupted
+from jobs.thread_map import through_when_interrupted
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
 try:

@@ -6,13 +6,13 @@ from threading import Barrier
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis import lost_frames
-from diagnosis.case import Case, make_case
-from diagnosis.engine import nominal_fit
-from diagnosis.fit import Fit, fit
-from diagnosis.ground import ground_of
-from diagnosis.kit import make_kit
-from diagnosis.lost_frames import APART, SWEEPS, WORTH, _ratios, evidence, likely_share, with_losses
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.diagnose import nominal_fit
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.library.effect_library import make_kit
+from diagnosis.search.beam import lost_frames
+from diagnosis.search.lost_frames import APART, SWEEPS, WORTH, _ratios, evidence, likely_share, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform

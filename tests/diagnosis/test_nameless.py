@@ -2,8 +2,8 @@
 
 import pytest
 
-from diagnosis.trial import Tried
-from diagnosis.weigh import RETUNE_COST, weigh
+from diagnosis.decide.weighing import RETUNE_COST, weigh
+from diagnosis.search.fitting import Tried
 
 NOMINAL = Tried((), None, 100.0)  # type: ignore[arg-type]
 

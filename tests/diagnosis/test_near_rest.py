@@ -8,12 +8,12 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.case import make_case
-from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.kit import make_kit
-from diagnosis.near_rest import needed, yielding
-from diagnosis.tape import tape_of
-from diagnosis.trial import Tried, evidence
+from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.filter.filter_input import tape_of
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
+from diagnosis.search.fitting import Tried, evidence
+from diagnosis.search.presliding_friction import needed, yielding
 from records.log import RunLog
 from sim.added_effects import with_effects, without_effects
 from sim.bind import BoundPlant, bind

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.fit import fit
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.kit import make_kit
-from diagnosis.menu import gravity_parameters, plans
-from diagnosis.next_experiment import next_experiment
-from diagnosis.rehearsal import missed, recorded, rehearse, setting
-from diagnosis.stand_in import stand_in
-from diagnosis.trial import Tried, evidence
-from diagnosis.unrest import with_unrest
-from diagnosis.weigh import Weighed
+from diagnosis.decide.weighing import Weighed
+from diagnosis.experiment.menu import gravity_parameters, plans
+from diagnosis.experiment.next_experiment import next_experiment
+from diagnosis.experiment.simulated_experiment import missed, recorded, rehearse, setting
+from diagnosis.experiment.stand_in import stand_in
+from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.process_noise import with_unrest
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.search.fitting import Tried, evidence
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 from tests.plants import bound

@@ -2,7 +2,7 @@
 
 import pytest
 
-from diagnosis.engine import Material, diagnose
+from diagnosis.diagnose import Material, diagnose
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 

@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.detect import Detection, FormScores
-from diagnosis.engine import borne_out, confirmed_by
-from diagnosis.fit import Fit, Free
-from diagnosis.ground import Scores
-from diagnosis.holdout import overruled
-from diagnosis.hypothesis import Supposed
-from diagnosis.prior import prior_odds
-from diagnosis.replicas import Tail
+from diagnosis.decide.holdout import overruled
+from diagnosis.decide.prior import prior_odds
+from diagnosis.decide.weighing import Weighed, weigh
+from diagnosis.detect.detection import Detection, FormScores
+from diagnosis.detect.linearisation import Scores
+from diagnosis.detect.replicas import Tail
+from diagnosis.diagnose import borne_out, confirmed_by
+from diagnosis.fit.gauss_newton import Fit, Free
+from diagnosis.hypothesis.hypothesis import Supposed
 from diagnosis.result import Judged
-from diagnosis.search import Search
-from diagnosis.trial import Tried
-from diagnosis.weigh import Weighed, weigh
+from diagnosis.search.beam import Search
+from diagnosis.search.fitting import Tried
 from sim.effect import EffectParameter
 
 

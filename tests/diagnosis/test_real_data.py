@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from diagnosis.engine import Material, diagnose
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
 from records.plant import load_plant
 from sim.bind import bind

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.hypothesis import nothing_supposed
-from diagnosis.kit import make_kit
-from diagnosis.reflight import closed_loop, refly
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import nothing_supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.validate.closed_loop import closed_loop, refly
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
@@ -88,7 +88,7 @@ def test_only_the_first_samples_of_a_long_log_are_flown(case: Case, monkeypatch:
     without = nothing_supposed(case, -4.0)
     bars = dict.fromkeys(("nominal", "before", "after"), without)
     whole = refly(case, "hold", ce150_table(), bars)
-    monkeypatch.setattr("diagnosis.reflight.MOST_SAMPLES", 200)
+    monkeypatch.setattr("diagnosis.validate.closed_loop.MOST_SAMPLES", 200)
     cut = refly(case, "hold", ce150_table(), bars)
     assert whole is not None
     assert cut is not None

@@ -5,19 +5,19 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from diagnosis.calm import calmed
-from diagnosis.case import Case, make_case
-from diagnosis.engine import nominal_fit
-from diagnosis.exchange import exchange, twins_tried
-from diagnosis.fit import Fit, Free, fit
-from diagnosis.ground import ground_of
-from diagnosis.hypothesis import Supposed
-from diagnosis.kit import make_kit
-from diagnosis.places import place_shares
-from diagnosis.screen import look
-from diagnosis.search import LEAST_GAIN, Search, certainties
-from diagnosis.trial import Job, Tried, evidence, once_more, refined, rough
-from diagnosis.weigh import Weighed
+from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.score_tests import look
+from diagnosis.diagnose import nominal_fit
+from diagnosis.explain.places import place_shares
+from diagnosis.fit.gauss_newton import Fit, Free, fit
+from diagnosis.fit.low_process_noise import calmed
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.library.effect_library import make_kit
+from diagnosis.search.beam import LEAST_GAIN, Search, certainties
+from diagnosis.search.exchange import exchange, twins_tried
+from diagnosis.search.fitting import Job, Tried, evidence, once_more, refined, rough
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from sim.effect import Values

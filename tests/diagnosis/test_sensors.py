@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.lattice import coarse_step, grid_evidence
-from diagnosis.sensors import behind_play, standing_rows, unsure_when
-from diagnosis.tape import Tape, late, tape_of
+from diagnosis.filter.filter_input import Tape, late, tape_of
+from diagnosis.library.lattice import coarse_step, grid_evidence
+from diagnosis.library.sensor_effects import behind_play, standing_rows, unsure_when
 from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind

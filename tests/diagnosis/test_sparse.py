@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from diagnosis.case import make_case
-from diagnosis.curve import shape_of
-from diagnosis.detect import FormScores, form_scores
-from diagnosis.engine import nominal_fit
-from diagnosis.ground import Ground, ground_of
-from diagnosis.kit import make_kit
-from diagnosis.sparse import Term, form_text, sparse_form, suggestion
-from diagnosis.unknown import Suspect
+from diagnosis.decide.unknown import Suspect
+from diagnosis.detect.detection import FormScores, form_scores
+from diagnosis.detect.linearisation import Ground, ground_of
+from diagnosis.diagnose import nominal_fit
+from diagnosis.explain.curve import shape_of
+from diagnosis.explain.sparse import Term, form_text, sparse_form, suggestion
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 

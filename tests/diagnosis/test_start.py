@@ -7,9 +7,9 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.kit import Kit, make_kit
-from diagnosis.start import start_of
-from diagnosis.tape import tape_of
+from diagnosis.filter.filter_input import tape_of
+from diagnosis.hypothesis.initial_state import start_of
+from diagnosis.library.effect_library import Kit, make_kit
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.loop import fly_law

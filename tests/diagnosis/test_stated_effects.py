@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from diagnosis.engine import Material, diagnose
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from diagnosis.clock import from_their_start
-from diagnosis.stretches import MOST_READINGS, stretches
+from logcheck.clock import from_their_start
+from logcheck.stretches import MOST_READINGS, stretches
 from records.log import RunLog
 from sim.columns import log_columns
 from tests.plants import bound

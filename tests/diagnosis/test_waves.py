@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from diagnosis.case import make_case
-from diagnosis.engine import Material, diagnose, nominal_fit
-from diagnosis.ground import ground_of
-from diagnosis.instants import target_of
-from diagnosis.kit import make_kit
-from diagnosis.waves import likely_waves, wave_starts
+from diagnosis.detect.instants import target_of
+from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.waves import likely_waves, wave_starts
+from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import make_kit
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant

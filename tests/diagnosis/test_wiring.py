@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.case import Case, make_case
-from diagnosis.engine import nominal_fit
-from diagnosis.fit import Fit
-from diagnosis.kit import Kit, make_kit
-from diagnosis.wiring import demand_wiring, likelier_wiring
+from diagnosis.decide.wiring import demand_wiring, likelier_wiring
+from diagnosis.diagnose import nominal_fit
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.library.effect_library import Kit, make_kit
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant

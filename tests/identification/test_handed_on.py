@@ -7,7 +7,7 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.engine import Material, diagnose
+from diagnosis.diagnose import Material, diagnose
 from identification.results.result import identification
 from identification.runs.run import coefficient_names
 from sim.bind import bind

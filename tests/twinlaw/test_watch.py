@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from diagnosis.ahead import Lookahead
+from diagnosis.validate.ahead import Lookahead
 from records.log import load_log
 from rig.emulator.ports.pty_port import PtyBoard
 from rig.link.client import BoardClient

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from diagnosis.ahead import Ahead
+from diagnosis.validate.ahead import Ahead
 from records.live import LiveRow
 
 KEPT = 1200  # events with rows, at 20 a second

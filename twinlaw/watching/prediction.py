@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from diagnosis.ahead import EVERY_S, MEMORY_S, Lookahead
+from diagnosis.validate.ahead import EVERY_S, MEMORY_S, Lookahead
 from records.live import LiveRow
 from sim.bind import BoundPlant
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from diagnosis.ahead import MEMORY_S
+from diagnosis.validate.ahead import MEMORY_S
 from records.errors import BadInput
 from records.live import LiveRow
 from records.log import RunLog

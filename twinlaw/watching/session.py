@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from queue import Empty, Queue
 from typing import Any
 
-from diagnosis.ahead import Ahead, Lookahead
+from diagnosis.validate.ahead import Ahead, Lookahead
 from records.errors import BadInput
 from records.live import LiveRow
 from twinlaw.watching.events import Events, rows_content

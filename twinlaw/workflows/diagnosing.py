@@ -6,15 +6,13 @@ from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
-from diagnosis.abreast import through_when_interrupted
-from diagnosis.clock import from_their_start
-from diagnosis.engine import Material, diagnose
-from diagnosis.firmware_replay import FirmwareReplay
-from diagnosis.firmware_replay_table import replay_log, table_of
-from diagnosis.integrity import demand, examine
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
-from diagnosis.shrinkage import Predicted
-from diagnosis.stretches import stretches
+from diagnosis.validate.shrinkage import Predicted
+from jobs.thread_map import through_when_interrupted
+from logcheck.clock import from_their_start
+from logcheck.integrity import demand, examine
+from logcheck.stretches import stretches
 from records.diagnosis import Firmware, diagnosis_text
 from records.errors import BadInput
 from records.files import demand_writable, remove_all, write_atomic
@@ -23,6 +21,8 @@ from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
 from records.table import ControllerTable
 from records.units import unit_suffix
+from replay.firmware import FirmwareReplay
+from replay.table import replay_log, table_of
 from sim.added_effects import library, without_effects
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from diagnosis.engine import diagnose
-from diagnosis.firmware_replay_table import TABLE_NAME
+from diagnosis.diagnose import diagnose
 from jobs.crew import Crew
 from jobs.job import Done, Job
 from jobs.keep import Folders
 from records.diagnosis import Diagnosis, parse_diagnosis
 from records.errors import BadInput
 from records.files import remove_all
+from replay.table import TABLE_NAME
 from twinlaw.workflows.diagnosing import earlier_predictions, read_material, result_files
 from twinlaw.workflows.sweeping import swept
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.integrity import LogIntegrity, demand, examine
 from identification.fit.belief import NOTHING, stated
 from identification.model.shown import hidden, unread
 from identification.results.held import leaning
@@ -18,6 +17,7 @@ from identification.search.methods import Search
 from identification.stages.estimate import Estimate
 from identification.stages.logs import best_fit, fits_of_logs, prediction_tests, without_readings
 from identification.stages.staged import check_setup, identify_stage, in_order, title
+from logcheck.integrity import LogIntegrity, demand, examine
 from records import checks
 from records.errors import BadInput
 from records.experiment import SCHEMA as EXPERIMENT_SCHEMA

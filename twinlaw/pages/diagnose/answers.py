@@ -2,7 +2,7 @@
 
 from math import degrees
 
-from diagnosis.error_response import BELIEVED
+from diagnosis.explain.error_response import BELIEVED
 from records.diagnosis import Diagnosis, ErrorResponse
 from twinlaw.pages.diagnose.words import shown
 from twinlaw.pages.page import Section, Table

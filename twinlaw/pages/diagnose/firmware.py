@@ -1,9 +1,9 @@
 """What a diagnosis says of the firmware: whether it was run again, whether it did as its table says, and what that makes doubtful."""
 
-from diagnosis.firmware_replay import NOT_FOUND
-from diagnosis.firmware_replay_columns import OF_THE_COLUMNS
-from diagnosis.firmware_replay_lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 from records.diagnosis import Firmware
+from replay.columns import OF_THE_COLUMNS
+from replay.firmware import NOT_FOUND
+from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
 _OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.curve import Shape
+from diagnosis.explain.curve import Shape
 from records.diagnosis import Diagnosis
 from twinlaw.pages.diagnose.words import shown
 from twinlaw.pages.page import Section

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from diagnosis.curve import Shape
-from diagnosis.notes import HIDDEN, UNSEEN
+from diagnosis.explain.curve import Shape
+from diagnosis.explain.notes import HIDDEN, UNSEEN
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.pages.block_diagram import block_diagram

@@ -1,0 +1,1 @@
+"""From a log and a compiled plant to whitened innovations, their likelihood and their slopes by any coefficient."""

@@ -1,0 +1,1 @@
+"""From a hypothesis to the values that fit best, with evidence, process noise and jitter."""
