@@ -7,20 +7,21 @@ from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.unknown import Suspect, suspects
 from diagnosis.decide.weighing import Weighed, alike
 from diagnosis.detect.detection import FormScores
+from diagnosis.detect.visibility import cannot_tell
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.revealing import revealing_experiment
 from diagnosis.explain.curve import shape_of
 from diagnosis.explain.error_response import error_responses
 from diagnosis.explain.improved import estimates, improved_plant
 from diagnosis.explain.maps import band_map, region_map, removed_energy, time_map
-from diagnosis.explain.notes import cannot_tell, notes_of
+from diagnosis.explain.notes import notes_of
 from diagnosis.explain.places import place_shares
 from diagnosis.explain.sparse import suggestion
+from diagnosis.fit.evidence import Tried
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.search.beam import Search
-from diagnosis.search.fitting import Tried
 from records.diagnosis import Diagnosis, Hypothesis, Unknown
 
 

@@ -14,6 +14,7 @@ from diagnosis.decide.wiring import demand_wiring
 from diagnosis.detect.detection import Detection, detect, form_scores
 from diagnosis.detect.linearisation import ground_of
 from diagnosis.detect.score_tests import look
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import FIRST_STEP, unrest_of
 from diagnosis.hypothesis.case import Case, make_case
@@ -24,7 +25,6 @@ from diagnosis.library.effect_library import is_gust, make_kit
 from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
-from diagnosis.search.fitting import Tried, evidence
 from diagnosis.search.gusts import gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding

@@ -12,10 +12,10 @@ from diagnosis.detect.detection import Detection
 from diagnosis.detect.linearisation import Ground
 from diagnosis.detect.score_tests import Look
 from diagnosis.explain.curve import Shape
+from diagnosis.fit.evidence import Tried
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.beam import Search
-from diagnosis.search.fitting import Tried
 from diagnosis.search.retune import Retune
 from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware

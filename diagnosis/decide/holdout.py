@@ -8,13 +8,13 @@ import numpy as np
 from diagnosis.decide.prior import at_its_end
 from diagnosis.decide.weighing import LEFT_NATS, UNNAMED, Weighed
 from diagnosis.detect.instants import happens
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import seen_in_readings, unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nothing_supposed
 from diagnosis.hypothesis.initial_state import FIRST_UNREST
 from diagnosis.library.effect_library import is_gust
 from diagnosis.library.input_effects import LOST_FRAMES
-from diagnosis.search.fitting import Tried, evidence
 from diagnosis.search.retune import Retune
 from diagnosis.validate.prediction import WINDOW_S
 from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage

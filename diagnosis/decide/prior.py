@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Mapping
 
+from diagnosis.fit.evidence import Tried
 from diagnosis.library.input_effects import LOST_FRAMES
-from diagnosis.search.fitting import Tried
 
 # Effects that rigs of this kind are known for (docs/effects.md names the sources); what else the library holds is rarer.
 COMMON = (

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.decide.prior import prior_odds
+from diagnosis.fit.evidence import Tried
 from diagnosis.fit.gauss_newton import seen_in_readings
-from diagnosis.search.fitting import Tried
 
 Array = NDArray[np.float64]
 # Set on development cases of the sealed benchmark's generator (seed 21): nats below which two hypotheses are alike, and what a form a

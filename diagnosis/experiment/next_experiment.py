@@ -12,8 +12,8 @@ from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import Plan, plans, rooms
 from diagnosis.experiment.simulated_experiment import Rehearsal, missed, outcomes, recorded, rehearse, setting
 from diagnosis.experiment.stand_in import StandIn, stand_in
+from diagnosis.fit.evidence import Tried
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.fitting import Tried
 
 Array = NDArray[np.float64]
 LEAST = 0.02  # of probability that a hypothesis must have, and that must be at stake

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.detect.visibility import SEEN
 from diagnosis.experiment.menu import plans
 from diagnosis.experiment.next_experiment import EFFORT, law_of, period_of
 from diagnosis.experiment.simulated_experiment import recorded, rehearse, setting
-from diagnosis.explain.notes import SEEN
 from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Supposed, passes

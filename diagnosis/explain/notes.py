@@ -2,20 +2,18 @@
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from diagnosis.decide.weighing import Weighed, alike
 from diagnosis.detect.score_tests import Look
-from diagnosis.fit.gauss_newton import Fit, Free, away, size_scale
+from diagnosis.detect.visibility import cannot_tell, hidden, judged
+from diagnosis.fit.evidence import Tried
+from diagnosis.fit.gauss_newton import size_scale
+from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
 from diagnosis.library.effect_library import is_gust
-from diagnosis.search.fitting import Tried
 
 FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence
-SEEN = 4.0  # score that an effect needs to be seen
 IMITATED = 0.995
-BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
 HIDDEN = "effects of the library would go unseen in these logs"
 UNSEEN = "too little excitation to see"
 UNFOLLOWED = "not looked for, as no filter knows where a rotor stands in its turn"
@@ -34,23 +32,6 @@ def notes_of(case: Case, looks: Sequence[Look], chosen: Tried, weighed: Weighed 
     )
 
 
-def cannot_tell(case: Case, looks: Sequence[Look]) -> bool:
-    """Whether most of the library would go unseen in these data even at its reference sizes."""
-    return _share_hidden(case, looks) > BLIND
-
-
-def moved_parameters(case: Case, theta: np.ndarray, far: float = FAR) -> list[int]:
-    """Free coefficients (indices into theta) further than `far` from what is stated, the furthest first."""
-    return [index for index in np.argsort(-np.abs(theta)).tolist() if abs(theta[index]) > far]
-
-
-def moved_effects(fit: Fit, far: float = FAR) -> list[Free]:
-    """Numbers of effects that the plant file states, further than `far` from there."""
-    numbers = [entry for entry in fit.free if entry.stated is not None]
-    distances = away(fit.supposed, fit.free)[len(fit.supposed.theta) :]
-    return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]
-
-
 def _near_rest(case: Case, chosen: Tried) -> Iterator[str]:
     """What is supposed of friction near rest: found in these logs, or stated in the plant file as known exactly."""
     for name, values in chosen.fit.supposed.effects.items():
@@ -65,13 +46,13 @@ def _moved(case: Case, chosen: Tried) -> Iterator[str]:
     names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
     theta = chosen.fit.supposed.theta
     p = coefficients(case, case.kit.plain, chosen.fit.supposed.with_effects({}))  # what cannot be negative is not
-    for index in moved_parameters(case, theta):
+    for index in moved_parameters(case, theta, FAR):
         place = int(case.free[index])
         yield (
             f"parameter {names[place]} is {theta[index]:+.1f} standard deviations from its stated value: "
             f"{p[place]:.4g} instead of {case.kit.bound.p[place]:.4g}"
         )
-    for entry in moved_effects(chosen.fit):
+    for entry in moved_effects(chosen.fit, FAR):
         symbol, stated = entry.parameter.symbol, entry.stated or 0.0
         sd = case.stated_sd[entry.effect][symbol]
         value = chosen.fit.supposed.effects[entry.effect][symbol]
@@ -103,14 +84,14 @@ def _imitated(looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
 
 def _unseen(case: Case, looks: Sequence[Look], chosen: Tried) -> Iterator[str]:
     """How large effects could be without being seen: a sentence for each place, the largest in units of its reference size first."""
-    hidden = _hidden(case, looks)
+    unseen = hidden(case, looks)
     imitated = {entry.effect for entry in looks if entry.absorbed > IMITATED}
-    if _share_hidden(case, looks) > BLIND:
-        whole = len(_judged(case, looks))
-        yield f"{len(hidden)} of {whole} {HIDDEN} at the size that they may well have"
+    if cannot_tell(case, looks):
+        whole = len(judged(case, looks))
+        yield f"{len(unseen)} of {whole} {HIDDEN} at the size that they may well have"
     said = {
         name: ratio
-        for name, ratio in hidden.items()
+        for name, ratio in unseen.items()
         if name not in imitated and name not in chosen.fit.supposed.effects
     }
     for place, names in _by_place(sorted(said, key=lambda name: (-said[name], name))):
@@ -135,24 +116,6 @@ def _up_to(case: Case, name: str, ratio: float) -> str | None:
         return None
     unit = "" if size.unit == "-" else f" {size.unit}"
     return f"{size.symbol} = {(size.zero or 0.0) + away:.3g}{unit}"
-
-
-def _judged(case: Case, looks: Sequence[Look]) -> list[str]:
-    """Effects of which these looks could say something: all but steps of a signal, which are read off the readings themselves."""
-    return [
-        name for name in case.kit.candidates if not name.endswith(".quantization") or name in {e.effect for e in looks}
-    ]
-
-
-def _hidden(case: Case, looks: Sequence[Look]) -> dict[str, float]:
-    """By effect that would go unseen at its reference size: how many times that it could be; inf where it left no trace at all."""
-    power = {entry.effect: entry.power for entry in looks}
-    found = {name: SEEN / max(power[name], 1e-9) if name in power else np.inf for name in _judged(case, looks)}
-    return {name: ratio for name, ratio in found.items() if ratio > 1.0}
-
-
-def _share_hidden(case: Case, looks: Sequence[Look]) -> float:
-    return len(_hidden(case, looks)) / max(len(_judged(case, looks)), 1)
 
 
 def _by_place(names: Sequence[str]) -> list[tuple[str, list[str]]]:

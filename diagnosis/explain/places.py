@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from diagnosis.decide.weighing import Weighed
+from diagnosis.fit.evidence import Tried
 from diagnosis.search.beam import Search, certainties
-from diagnosis.search.fitting import Tried
 from records.diagnosis import PlaceShare
 
 LEAST = 0.005

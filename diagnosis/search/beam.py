@@ -8,12 +8,13 @@ import numpy as np
 
 from diagnosis.detect.linearisation import Ground, ground_of
 from diagnosis.detect.score_tests import Look, look
+from diagnosis.fit.evidence import Tried, tried_as
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.low_process_noise import calmed
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.search.exchange import FURTHER_GAIN, exchange, twins_tried
-from diagnosis.search.fitting import Job, Tried, keep_better, once_more, refined, rough, tried_as
+from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
 from jobs.thread_map import each
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)

@@ -6,9 +6,10 @@ import numpy as np
 
 from diagnosis.detect.linearisation import ground_of
 from diagnosis.detect.score_tests import look
+from diagnosis.fit.evidence import Tried
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.fitting import Job, Tried, at_its_place, keep_better, refined
+from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import each
 
 FURTHER_GAIN = 10.0  # nats that a further effect must promise

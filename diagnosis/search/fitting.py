@@ -7,20 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.detect.score_tests import Look, holding
-from diagnosis.fit.gauss_newton import WIDE, Fit, fit, from_zero, likelihood
+from diagnosis.fit.evidence import Tried, tried_as
+from diagnosis.fit.gauss_newton import Fit, fit, from_zero, likelihood
 from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.low_process_noise import awake
 from diagnosis.fit.process_noise import unrest_of, with_unrest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Supposed, passes
 from diagnosis.hypothesis.initial_state import FIRST_UNREST
-from diagnosis.library.effect_library import is_gust
 
 Array = NDArray[np.float64]
-STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
-WAVE_COST = 5.0  # nats for the choice of a sine's waves among some hundred
-GUST_COST = 10.0  # nats for a gust's size and time, which the fit does not count among its numbers
-SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
 FAR = 1.0  # the same for a fit that was refined
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
@@ -33,35 +29,12 @@ LEVELS = np.geomspace(
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
-    """A hypothesis with its fit: `effects` its names in order, `evidence` the log evidence by Laplace, unscaled."""
-
-    effects: tuple[str, ...]
-    fit: Fit
-    evidence: float
-
-
-@dataclass(frozen=True, eq=False)
 class Job:
     """A further effect to fit from a start, whose air may have been `calm`ed."""
 
     start: Fit
     look: Look
     calm: bool
-
-
-def evidence(found: Fit) -> float:
-    """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
-    size = len(found.supposed.theta)
-    sign, volume = np.linalg.slogdet(found.information)
-    new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
-    prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
-    shapes = [row for row, is_size in new if not is_size]
-    prior -= WAVE_COST * sum(entry.parameter.symbol in ("waves", "rate") for entry in found.free)
-    prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.supposed.effects)
-    prior -= GUST_COST * sum(map(is_gust, found.supposed.effects))
-    own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
-    return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 
 
 def rough(case: Case, job: Job) -> Tried | None:
@@ -174,10 +147,6 @@ def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
     if one is None or other is None:
         return one or other
     return one if one.log_posterior >= other.log_posterior else other
-
-
-def tried_as(case: Case, found: Fit) -> Tried:
-    return Tried(case.added(found.supposed.effects), found, evidence(found))
 
 
 def _whole_counts(case: Case, found: Fit) -> bool:

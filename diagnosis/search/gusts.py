@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.fit.evidence import Tried, tried_as
 from diagnosis.fit.gauss_newton import fit, likelihood_of
 from diagnosis.fit.process_noise import with_unrest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Supposed
-from diagnosis.search.fitting import Tried, tried_as
 from jobs.thread_map import each
 
 TIMES_S = (0.15, 0.5, 1.5, 5.0)

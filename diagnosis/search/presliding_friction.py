@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from diagnosis.detect.score_tests import FRICTIONS
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.process_noise import with_unrest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Supposed
-from diagnosis.search.fitting import Tried, evidence
 from sim.effect import Effect, Values
 
 FITTED = 2  # of those that promise most

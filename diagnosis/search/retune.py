@@ -7,11 +7,11 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.explain.notes import moved_effects, moved_parameters
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.fit.process_noise import unrest_of
 from diagnosis.hypothesis.case import Case
-from diagnosis.search.fitting import Tried, evidence
 
 Array = NDArray[np.float64]
 WIDER = 8.0

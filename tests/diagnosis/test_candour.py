@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.weighing import CANDOUR, candid
+from diagnosis.fit.evidence import Tried
 from diagnosis.search.beam import CLOSE, beam_of
-from diagnosis.search.fitting import Tried
 
 
 @pytest.mark.parametrize("weights", [(0.6, 0.2, 0.2), (1.0, 0.0, 0.0), (1e-9, 0.0, 1.0 - 1e-9), (0.3, 0.1, 0.6)])

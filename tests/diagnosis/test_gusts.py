@@ -6,9 +6,9 @@ import pytest
 
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.explain.improved import improved_plant
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import make_kit
-from diagnosis.search.fitting import Tried, evidence
 from diagnosis.search.gusts import gust_sd, gusts
 from records.log import RunLog
 from sim.added_effects import with_effects

@@ -8,11 +8,11 @@ from diagnosis.decide.holdout import Holdout, partly, worse
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
 from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.fit.evidence import Tried
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import make_kit
 from diagnosis.result import Result
-from diagnosis.search.fitting import Tried
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly

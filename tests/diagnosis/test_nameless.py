@@ -3,7 +3,7 @@
 import pytest
 
 from diagnosis.decide.weighing import RETUNE_COST, weigh
-from diagnosis.search.fitting import Tried
+from diagnosis.fit.evidence import Tried
 
 NOMINAL = Tried((), None, 100.0)  # type: ignore[arg-type]
 

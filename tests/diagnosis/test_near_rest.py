@@ -10,9 +10,9 @@ from design.settings import read_settings
 from design.table import design
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.filter.filter_input import tape_of
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import make_kit
-from diagnosis.search.fitting import Tried, evidence
 from diagnosis.search.presliding_friction import needed, yielding
 from records.log import RunLog
 from sim.added_effects import with_effects, without_effects

@@ -11,12 +11,12 @@ from diagnosis.experiment.menu import gravity_parameters, plans
 from diagnosis.experiment.next_experiment import next_experiment
 from diagnosis.experiment.simulated_experiment import missed, recorded, rehearse, setting
 from diagnosis.experiment.stand_in import stand_in
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.process_noise import with_unrest
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nothing_supposed
 from diagnosis.library.effect_library import make_kit
-from diagnosis.search.fitting import Tried, evidence
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 from tests.plants import bound

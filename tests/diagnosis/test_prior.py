@@ -12,11 +12,11 @@ from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.diagnose import borne_out, confirmed_by
+from diagnosis.fit.evidence import Tried
 from diagnosis.fit.gauss_newton import Fit, Free
 from diagnosis.hypothesis.hypothesis import Supposed
 from diagnosis.result import Judged
 from diagnosis.search.beam import Search
-from diagnosis.search.fitting import Tried
 from sim.effect import EffectParameter
 
 

@@ -10,6 +10,7 @@ from diagnosis.detect.linearisation import ground_of
 from diagnosis.detect.score_tests import look
 from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.places import place_shares
+from diagnosis.fit.evidence import Tried, evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.fit.low_process_noise import calmed
 from diagnosis.hypothesis.case import Case, make_case
@@ -17,7 +18,7 @@ from diagnosis.hypothesis.hypothesis import Supposed
 from diagnosis.library.effect_library import make_kit
 from diagnosis.search.beam import LEAST_GAIN, Search, certainties
 from diagnosis.search.exchange import exchange, twins_tried
-from diagnosis.search.fitting import Job, Tried, evidence, once_more, refined, rough
+from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from sim.effect import Values

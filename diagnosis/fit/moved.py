@@ -1,0 +1,18 @@
+"""Which numbers that the plant file states a fit moved far from there."""
+
+import numpy as np
+
+from diagnosis.fit.gauss_newton import Fit, Free, away
+from diagnosis.hypothesis.case import Case
+
+
+def moved_parameters(case: Case, theta: np.ndarray, far: float) -> list[int]:
+    """Free coefficients (indices into theta) further than `far` from what is stated, the furthest first."""
+    return [index for index in np.argsort(-np.abs(theta)).tolist() if abs(theta[index]) > far]
+
+
+def moved_effects(fit: Fit, far: float) -> list[Free]:
+    """Numbers of effects that the plant file states, further than `far` from there."""
+    numbers = [entry for entry in fit.free if entry.stated is not None]
+    distances = away(fit.supposed, fit.free)[len(fit.supposed.theta) :]
+    return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]
