@@ -1,0 +1,112 @@
+"""Numbers of the pages that code, a plant file or the protocol holds, and where each stands there.
+
+A page says so in a comment behind the text that it speaks of, which no reader sees:
+
+    ... no gap above 0.01, below 40 nats ...
+    <!--0.01=diagnosis.ALARM,40=diagnosis.PLAIN_TO_SEE-->
+
+Left of = stands a number as the page writes it, right of it an expression without spaces or commas, of
+
+- `PACKAGE.NAME` or `PACKAGE.MODULE.NAME`, a constant of a package, in any of its folders, or a field of one; the module where two differ;
+- `protocol.NAME`, a constant of the serial line's declaration;
+- `PLANT.section.key` of plants/PLANT.toml;
+- len, min, max of these.
+
+A comment speaks of the text between the headings about it.
+"""
+
+import re
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from records.protocol import PROTOCOL
+from tests.test_project import ROOT
+
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+_COMMENT = re.compile(rf"<!--((?:{NUMBER}=[^\s,]+?,?)+)-->")
+_BORDER = re.compile(r"^#+ .*$", flags=re.MULTILINE)
+_NAME = re.compile(r"[A-Za-z_]\w*(?:\.\w+)+")
+_KNOWN = {"len": len, "min": min, "max": max, "__builtins__": {}}
+
+
+@dataclass(frozen=True)
+class Held:
+    """A number of a page, the expression that gives it, and the text in which it stands."""
+
+    page: str
+    number: str
+    expression: str
+    text: str
+
+
+def held(page: str) -> Iterator[Held]:
+    """Every number of a page that a comment holds."""
+    for text, comments in scopes(page):
+        for comment in comments:
+            for pair in comment.split(","):
+                number, _, expression = pair.partition("=")
+                yield Held(page, number, expression, text)
+
+
+def scopes(page: str) -> Iterator[tuple[str, list[str]]]:
+    """The texts of a page between headings, each with the comments in it; thousands are written together."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for part in _BORDER.split(text):
+        comments = _COMMENT.findall(part)
+        yield re.sub(r"(?<=\d) (?=\d{3}\b)", "", _COMMENT.sub("", part)), comments
+
+
+def numbers(text: str) -> set[str]:
+    """The numbers of a text as they are written."""
+    return set(re.findall(rf"(?<![\w.]){NUMBER}(?![\w.]*\d)", text))
+
+
+def value(expression: str) -> float:
+    """What an expression gives."""
+    known: dict[str, Any] = dict(_KNOWN)
+
+    def known_as(name: re.Match[str]) -> str:
+        key = f"value_{len(known)}"
+        known[key] = _resolved(name[0])
+        return key
+
+    return float(eval(_NAME.sub(known_as, expression), known))
+
+
+def _resolved(name: str) -> Any:
+    """What a dotted name of an expression stands for."""
+    head, *rest = name.split(".")
+    if head == "protocol":
+        return PROTOCOL.constant(rest[0])
+    if (ROOT / "plants" / f"{head}.toml").is_file():
+        found = _plant(head)
+        for key in rest:
+            found = found[key]
+        return found
+    place = next(index for index, word in enumerate(rest) if word.isupper())
+    values = [
+        attrgetter(".".join(rest[place:]))(import_module(module)) for module in _homes(head, rest[:place], rest[place])
+    ]
+    assert values, f"{name}: no module has it"
+    assert all(np.array_equal(values[0], other) for other in values), f"{name}: name the module, as two differ"
+    return values[0]
+
+
+def _homes(package: str, module: Sequence[str], constant: str) -> list[str]:
+    """The modules of a package, of this name if one is given, that assign a constant."""
+    assigned = re.compile(rf"^(?:\w+, )*{constant}(?:, \w+)*(?:: [^=\n]+)? = ", flags=re.MULTILINE)
+    files = [path for path in sorted((ROOT / package).rglob("*.py")) if not module or path.stem == module[0]]
+    found = [path for path in files if assigned.search(path.read_text(encoding="utf-8"))]
+    return [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in found]
+
+
+@cache
+def _plant(name: str) -> Any:
+    return tomllib.loads((ROOT / "plants" / f"{name}.toml").read_text(encoding="utf-8"))
