@@ -8,8 +8,7 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
-from twinlaw.cli.parser import build_parser
-from twinlaw.verbs import VERBS
+from twinlaw.verbs import VERBS, build_parser
 
 ROOT = Path(__file__).resolve().parent.parent
 

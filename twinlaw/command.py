@@ -16,7 +16,8 @@ from jobs.threads import told_late
 from records.errors import BadInput, VerificationFailed
 from toolchain.cache import CACHE_DIR
 from twinlaw.cli import console
-from twinlaw.cli.parser import WrongCommandLine, build_parser
+from twinlaw.cli.parser import WrongCommandLine
+from twinlaw.verbs import build_parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

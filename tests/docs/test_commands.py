@@ -17,8 +17,7 @@ from tests.docs.commands import PAGES, calls, checkout, commands, fenced, mentio
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 from twinlaw.cli.completion import Command, command_tree
-from twinlaw.cli.parser import build_parser
-from twinlaw.verbs import VERBS
+from twinlaw.verbs import VERBS, build_parser
 
 RUN = "twinlaw run --plant plants/ce150.toml --out build"  # once for all pages
 

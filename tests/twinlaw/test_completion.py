@@ -13,9 +13,8 @@ from pathlib import Path
 import pytest
 
 from twinlaw.cli.completion import SHELLS, Command, command_tree, completion_text
-from twinlaw.cli.parser import build_parser
 from twinlaw.command import main
-from twinlaw.verbs import VERBS
+from twinlaw.verbs import VERBS, build_parser
 
 PATIENCE_S = 60.0
 

@@ -8,9 +8,8 @@ import pytest
 
 from twinlaw import verbs
 from twinlaw.cli.completion import command_tree
-from twinlaw.cli.parser import build_parser
 from twinlaw.command import main
-from twinlaw.verbs import VERBS, verb_module, verb_text
+from twinlaw.verbs import VERBS, build_parser, verb_module, verb_text
 from twinlaw.workflows.arithmetics import ARITHMETICS
 
 

@@ -15,7 +15,7 @@ from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
-from twinlaw.workflows.arithmetics import BY_NAME
+from twinlaw.workflows.arithmetics import ARITHMETICS
 from twinlaw.workflows.stages import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus
 
@@ -68,7 +68,7 @@ def _one_step(name: str, words: Words) -> Stimulus:
 
 def stimuli(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[Stimulus]:
     """Those of the equality checks, and where float32 is slow."""
-    return (*BY_NAME[arithmetic].stimuli(table, steps), *(near_zero(steps // 5) if arithmetic == "float32" else ()))
+    return (*ARITHMETICS[arithmetic].stimuli(table, steps), *(near_zero(steps // 5) if arithmetic == "float32" else ()))
 
 
 def cycles(table: ControllerTable, arithmetic: str, steps: int = STEPS) -> Iterator[tuple[str, int, int]]:
@@ -83,7 +83,7 @@ def cycles(table: ControllerTable, arithmetic: str, steps: int = STEPS) -> Itera
 def told(table: ControllerTable) -> str:
     """The table of docs/proofs.md."""
     lines = ["| arithmetic | given | least | most |", "|---|---|---|---|"]
-    for arithmetic in BY_NAME:
+    for arithmetic in ARITHMETICS:
         lines += [f"| {arithmetic} | {name} | {least} | {most} |" for name, least, most in cycles(table, arithmetic)]
     return "\n".join(lines)
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from toolchain.templates import text_templates
+from twinlaw.templates import TEMPLATES
 
 SHELLS = ("bash", "zsh", "fish")
-_TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def command_tree(parser: argparse.ArgumentParser, path: tuple[str, ...] = ("twin
 
 def completion_text(root: Command, shell: str) -> str:
     """The script for one of SHELLS; the same tree gives the same text."""
-    environment = text_templates(_TEMPLATES)
+    environment = text_templates(TEMPLATES)
     environment.filters["quoted"] = _QUOTED[shell]
     environment.filters["spec"] = lambda text: re.sub(
         r"([\[\]:])", r"\\\1", text

@@ -68,18 +68,20 @@ def differing(paths: Sequence[Path]) -> None:
 
 def arithmetic(parser: argparse.ArgumentParser, *, design_too: bool = False) -> None:
     """--arithmetic NAME, of the generated law; `design_too` adds the law in double precision and makes it the default."""
-    # With NumPy and all laws behind it, which most verbs do without.
-    from twinlaw.workflows.arithmetics import ARITHMETICS
-
-    choices = ("float64", *ARITHMETICS) if design_too else ARITHMETICS
+    choices = ("float64", *_arithmetics()) if design_too else _arithmetics()
     parser.add_argument("--arithmetic", choices=choices, default=choices[0], help="of the law; default: %(default)s")
 
 
 def demanded_arithmetic(parser: argparse.ArgumentParser) -> None:
     """--arithmetic NAME, of what exists already: without it any will do."""
-    from twinlaw.workflows.arithmetics import ARITHMETICS
+    text = "refuse an image of another; default: take either"
+    parser.add_argument("--arithmetic", choices=_arithmetics(), help=text)
 
-    parser.add_argument("--arithmetic", choices=ARITHMETICS, help="refuse an image of another; default: take either")
+
+def _arithmetics() -> tuple[str, ...]:
+    from codegen.law import ARITHMETIC_CODES  # with NumPy and the laws behind it, which most verbs do without
+
+    return tuple(ARITHMETIC_CODES)
 
 
 def count(text: str) -> int:

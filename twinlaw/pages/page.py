@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-_TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
+from twinlaw.templates import TEMPLATES
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Page:
 def page_text(page: Page) -> str:
     """The page as HTML text; text is escaped, plots are not."""
     environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
+        loader=FileSystemLoader(TEMPLATES),
         undefined=StrictUndefined,
         autoescape=True,
         trim_blocks=True,

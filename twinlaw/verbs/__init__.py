@@ -3,11 +3,17 @@
 A verb's file is imported when it is asked for, and only then: the tools behind one verb do not slow the others down.
 """
 
+import argparse
 import ast
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+
+from twinlaw.cli.parser import Parser
+
+DESCRIPTION = "From a plant's equations to a verified flight of a microcontroller, and back."
+EPILOGUE = "Start with: twinlaw run --plant plants/ce150.toml --out build"
 
 # The word that a person types, and the file of this folder that answers it.
 VERBS: Mapping[str, str] = {
@@ -46,3 +52,22 @@ def verb_text(word: str) -> str:
     """What a verb says of itself, read without importing it."""
     source = Path(__file__).with_name(f"{VERBS[word]}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
+
+
+def build_parser(asked: Sequence[str]) -> Parser:
+    """The parser of all verbs, with the options of those that are `asked` for."""
+    parser = Parser(prog="twinlaw", description=DESCRIPTION, epilog=EPILOGUE)
+    verbs = parser.add_subparsers(title="verbs, in the order of the work", metavar="VERB", required=True)
+    for word in VERBS:
+        text = verb_text(word)
+        sub = verbs.add_parser(
+            word,
+            help=text.splitlines()[0].replace("%", "%%"),
+            description=text,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        if word in asked:
+            verb = verb_module(word)
+            verb.add_arguments(sub)
+            sub.set_defaults(run=verb.run)
+    return parser

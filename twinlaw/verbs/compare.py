@@ -14,9 +14,11 @@ from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from twinlaw.cli import console, options
 from twinlaw.pages.compare import tables
+from twinlaw.pages.compare.comparison import Wanted, facts
+from twinlaw.pages.compare.plots import figure_plot
 from twinlaw.pages.compare.report import page_text, verdict
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.comparing import Wanted, compare_controllers, demand_equal, eq26_errors, facts
+from twinlaw.workflows.comparing import compare_controllers, demand_equal, eq26_errors
 from twinlaw.workflows.stages import STEPS, load_bound
 from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
@@ -58,7 +60,7 @@ def run(chosen: argparse.Namespace) -> int:
     content = facts(bound, rows, wanted, eq26)
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
     for name in FIGURES:
-        write_atomic(chosen.out / f"controllers-{name}.svg", tables.figure_plot(rows, name))
+        write_atomic(chosen.out / f"controllers-{name}.svg", figure_plot(rows, name))
     command = _command(chosen)
     write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, eq26, command, str(chosen.out)))
     if chosen.json:

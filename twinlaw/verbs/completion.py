@@ -10,8 +10,7 @@ The script starts no Python: print it anew after an update.
 import argparse
 
 from twinlaw.cli.completion import SHELLS, command_tree, completion_text
-from twinlaw.cli.parser import build_parser
-from twinlaw.verbs import VERBS
+from twinlaw.verbs import VERBS, build_parser
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

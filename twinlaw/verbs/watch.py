@@ -19,6 +19,7 @@ from sim.bind import BoundPlant
 from sim.loop import live_log
 from twinlaw.cli import options
 from twinlaw.cli.console import stage
+from twinlaw.templates import TEMPLATES
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched
@@ -26,8 +27,6 @@ from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
 from twinlaw.watching.source import Source
-
-TEMPLATES = Path(__file__).resolve().parent.parent / "templates"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

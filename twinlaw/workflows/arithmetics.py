@@ -6,7 +6,6 @@ from typing import Any, Protocol
 
 from codegen.fixed.controllers import fixed_controllers
 from codegen.fixed.twin import FixedTwin
-from codegen.law import ARITHMETIC_CODES
 from codegen.twin import Float32Twin
 from design.rounding import FLOAT32, Rounding
 from records.table import ControllerTable
@@ -17,8 +16,6 @@ from verification.fixed_stimuli import fixed_sequences, fixed_stimuli
 from verification.ranges import Motion
 from verification.rounding import rounding_bound
 from verification.stimuli import Stimulus, sequences, standard_stimuli
-
-ARITHMETICS = tuple(ARITHMETIC_CODES)
 
 
 class Bound(Protocol):
@@ -38,7 +35,7 @@ class Arithmetic:
     rounding: Rounding
 
 
-BY_NAME: Mapping[str, Arithmetic] = {
+ARITHMETICS: Mapping[str, Arithmetic] = {
     "float32": Arithmetic(Float32Twin, standard_stimuli, sequences, rounding_bound, FLOAT32),
     "fixed": Arithmetic(
         FixedTwin, fixed_stimuli, fixed_sequences, fixed_rounding_bound, Rounding("fixed", fixed_controllers)

@@ -7,26 +7,22 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from records.errors import BadInput
+from toolchain.templates import text_templates
+from twinlaw.templates import TEMPLATES
 
 WINDOWS_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
-TEMPLATES: Mapping[str, str] = {"sim/plants/{}.py": "plant.py.j2", "plants/{}.toml": "plant.toml.j2"}
+FILES: Mapping[str, str] = {"sim/plants/{}.py": "plant.py.j2", "plants/{}.toml": "plant.toml.j2"}
 
 
 def plant_files(name: str) -> dict[Path, str]:
     """Path inside the project -> text of a new plant's files; raises BadInput where `name` cannot be a plant's."""
     _check(name)
-    templates = Environment(
-        loader=FileSystemLoader(Path(__file__).resolve().parents[1] / "templates"),
-        undefined=StrictUndefined,
-        keep_trailing_newline=True,
-    )
+    templates = text_templates(TEMPLATES)
     title = name.replace("_", " ").capitalize()
     return {
         Path(path.format(name)): templates.get_template(file).render(name=name, title=title)
-        for path, file in TEMPLATES.items()
+        for path, file in FILES.items()
     }
 
 

@@ -40,7 +40,7 @@ from sim.manoeuvres import flight
 from sim.plants import MODELS
 from sim.tracking import Tracking, tracking
 from twinlaw.cli.console import stage
-from twinlaw.workflows.arithmetics import ARITHMETICS, BY_NAME
+from twinlaw.workflows.arithmetics import ARITHMETICS
 from verification.equality import BatchStepper, compare
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
@@ -71,7 +71,7 @@ def design_controller(plant: Path, arithmetic: str = "float32") -> Designed:
     """Design at all operating points, fit, and judge as flown in `arithmetic`; raises BadInput for an unusable plant or table."""
     with stage("designing at the operating points, fitting, judging"), _computable(plant):
         bound = load_bound(plant)
-        table, report = design(bound, read_settings(bound), BY_NAME[arithmetic].rounding)
+        table, report = design(bound, read_settings(bound), ARITHMETICS[arithmetic].rounding)
     return Designed(bound, table, report)
 
 
@@ -162,7 +162,7 @@ def _check(
     steps: int,
 ) -> _Check:
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
-    chosen = BY_NAME[arithmetic]
+    chosen = ARITHMETICS[arithmetic]
     twin, host = chosen.twin(table), HostLaw(law, arithmetic)
     target = TargetLaw(EmulatedBoard(image.elf), arithmetic)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
@@ -228,7 +228,7 @@ def validate_board(table: FlownTable, url: str, steps: int, arithmetic: str = "f
     with BoardClient.connect(url, table_digest=table.digest, numbers=numbers) as client:
         law = LineLaw(client)
         mismatches = client.self_test()
-        equality = _equal(Stateless(host), law, BY_NAME[arithmetic].sequences(table, steps))
+        equality = _equal(Stateless(host), law, ARITHMETICS[arithmetic].sequences(table, steps))
         counters = client.counters()  # before the host falls silent on purpose
         with stage("measuring round trips and ticks"):
             timing = line_timing(client, table.sample_period_s)
@@ -303,7 +303,7 @@ def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "fl
         )
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)
-        return poles_of(report_on(bound, settings, table, BY_NAME[arithmetic].rounding))
+        return poles_of(report_on(bound, settings, table, ARITHMETICS[arithmetic].rounding))
 
 
 def recorded_replay(path: Path, table: ControllerTable, arithmetic: str = "float32") -> Replay:

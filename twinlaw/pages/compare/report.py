@@ -2,18 +2,17 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from toolchain.templates import text_templates
 from twinlaw.pages.compare import tables
-from twinlaw.workflows.comparing import Compared, Wanted, spread_of
+from twinlaw.pages.compare.comparison import Compared, Wanted, spread_of
+from twinlaw.templates import TEMPLATES
 from verification.comparison.eq26 import ANGLES, FormError
 from verification.comparison.flights import AXES, FILTERED
 from verification.comparison.manoeuvres import FIGURES
 
 OVERSHOOT = 0.05
-_TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 
 
 def page_text(
@@ -22,7 +21,7 @@ def page_text(
     """The page; the same comparison gives the same bytes."""
     effects = tables.effect_rows(rows)
     return (
-        text_templates(_TEMPLATES)
+        text_templates(TEMPLATES)
         .get_template("controllers.md.j2")
         .render(
             command=command,

@@ -1,19 +1,14 @@
-"""The comparison as rows of text and plots: what `twinlaw compare` prints and writes."""
+"""The comparison as rows of text: what `twinlaw compare` prints and its page repeats."""
 
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
-from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid
-from twinlaw.workflows.comparing import Compared, spread_of
+from twinlaw.pages.compare.comparison import Compared, spread_of
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
 Row = tuple[str, ...]
-Array = NDArray[np.float64]
 COST_HEADING: Row = (
     "controller",
     "cycles",
@@ -26,10 +21,7 @@ COST_HEADING: Row = (
 MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
 SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
 EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
-COLOURS = (BLUE, RED, GREEN, ORANGE, SKY, "#CC79A7")
-DASHES = ("-", "--", "-.", (0, (5, 1)), (0, (3, 1, 1, 1)), ":")
 CYCLES_OF_A_SAMPLE = 640_000  # 10 ms at 64 MHz
-MOST_POINTS = 1200
 
 
 def cost_rows(rows: Sequence[Compared]) -> list[Row]:
@@ -142,48 +134,3 @@ def _struck(merits: Mapping[str, Merit]) -> str:
     steady = max(math.degrees(merit.steady_error_rad) for merit in merits.values())
     unsettled = any(merit.settling_s is None for merit in merits.values())
     return f"{iae}, {steady:.1f} deg{' (unsettled)' if unsettled else ''}"
-
-
-def figure_plot(rows: Sequence[Compared], figure: str) -> str:
-    """Angles over their references and both voltages, all controllers, as SVG."""
-    flown = {row.row.name: row.flights[figure] for row in rows}
-    first = next(iter(flown.values()))
-    looks = dict(zip(flown, zip(COLOURS, DASHES, strict=True), strict=False))
-
-    def curves(values: Mapping[str, Array], axis: int, scale: float) -> list[Curve]:
-        return [
-            Curve(*_thinned(first.t_s, scale * array[:, axis]), name, looks[name][0], looks[name][1])
-            for name, array in values.items()
-        ]
-
-    angles = {name: entry.y_rad for name, entry in flown.items()}
-    voltages = {name: entry.u_V for name, entry in flown.items()}
-    wanted = [
-        Curve(*_thinned(first.t_s, np.degrees(first.reference_rad[:, axis])), "reference", GREY, ":") for axis in (0, 1)
-    ]
-    degrees = 180.0 / math.pi
-    panels = (
-        Panel("elevation [deg]", [*curves(angles, 0, degrees), wanted[0]]),
-        Panel("azimuth [deg]", [*curves(angles, 1, degrees), wanted[1]]),
-        Panel("u_M [V]", sorted(curves(voltages, 0, 1.0), key=_travel, reverse=True)),
-        Panel("u_T [V]", sorted(curves(voltages, 1, 1.0), key=_travel, reverse=True)),
-    )
-    return grid([(panel,) for panel in panels], ("",), "time [s]", height_in=1.9)
-
-
-def _travel(curve: Curve) -> float:
-    """How far its line goes up and down: the busiest is drawn first, so that it hides none."""
-    return float(np.abs(np.diff(curve.y)).sum())
-
-
-def _thinned(t_s: Array, values: Array) -> tuple[Array, Array]:
-    """At most MOST_POINTS points with every peak kept: least and largest of each stretch, in their order."""
-    length = -(-len(values) // (MOST_POINTS // 2))
-    if length < 2:
-        return t_s, values
-    chosen: set[int] = {0, len(values) - 1}
-    for begin in range(0, len(values), length):
-        part = values[begin : begin + length]
-        chosen |= {begin + int(np.argmin(part)), begin + int(np.argmax(part))}
-    rows = np.array(sorted(chosen))
-    return t_s[rows], values[rows]
