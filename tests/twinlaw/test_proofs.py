@@ -9,7 +9,7 @@ from records.errors import VerificationFailed
 from records.verification import ProofResult, RoundingBound, Verification, verification_text
 from tests.law_tables import ce150_table
 from twinlaw.command import main
-from twinlaw.pages.run.summary import verification_rows
+from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.proving import with_proofs
 from twinlaw.workflows.stages import demand
 from verification.proofs import Proof, Subject

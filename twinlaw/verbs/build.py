@@ -13,7 +13,7 @@ from controllers import loading
 from records.files import remove_all, write_atomic
 from records.table import ControllerTable
 from twinlaw.cli import console, options
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.checks import size_rows
 from twinlaw.workflows.exchange import image_a2l
 from twinlaw.workflows.stages import build_image, generate_sources
 
@@ -41,5 +41,5 @@ def run(chosen: argparse.Namespace) -> int:
         facts = {kind: str(chosen.out / f"firmware.{kind}") for kind in kinds}
         print(json.dumps({**facts, "table_digest": table.digest, **asdict(image.sizes)}))
     else:
-        print(console.table(summary.size_rows(image.sizes), ("memory", "bytes", "of")))
+        print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     return 0

@@ -12,7 +12,7 @@ from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from records.table import table_text
 from twinlaw.cli import console, options
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.design import design_facts, design_heading, design_rows
 from twinlaw.workflows.stages import design_controller, design_other
 
 SCHEDULED = "scheduled"
@@ -38,13 +38,9 @@ def run(chosen: argparse.Namespace) -> int:
     path = chosen.out / "controller.json"
     write_atomic(path, table_text(designed.table))
     if chosen.json:
-        print(
-            json.dumps(
-                {"table": str(path), "table_digest": designed.table.digest, **summary.design_facts(designed.report)}
-            )
-        )
+        print(json.dumps({"table": str(path), "table_digest": designed.table.digest, **design_facts(designed.report)}))
     else:
-        print(console.table(summary.design_rows(designed.report), summary.design_heading(designed.report)))
+        print(console.table(design_rows(designed.report), design_heading(designed.report)))
         print(f"\n{path}  digest {designed.table.digest[:16]}")
     return 0
 

@@ -12,8 +12,10 @@ from records.table import table_text
 from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.checks import size_rows, verification_rows
+from twinlaw.pages.run.design import design_heading, design_rows
 from twinlaw.pages.run.report import run_page
+from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
 from twinlaw.workflows.stages import (
     board_url,
     build_image,
@@ -57,12 +59,12 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         print(json.dumps({"out": str(out), "table_digest": designed.table.digest, "passed": verification.passed}))
         return 0
-    print(console.table(summary.design_rows(designed.report), summary.design_heading(designed.report)))
+    print(console.table(design_rows(designed.report), design_heading(designed.report)))
     print()
-    print(console.table(summary.verification_rows(verification), ("verification", "figures", "")))
+    print(console.table(verification_rows(verification), ("verification", "figures", "")))
     print()
-    print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+    print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
-    print(console.table(summary.size_rows(image.sizes), ("memory", "bytes", "of")))
+    print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
     return 0

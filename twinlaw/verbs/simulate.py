@@ -12,7 +12,7 @@ from controllers import loading
 from records.law_table import FlownTable
 from records.log import save_log
 from twinlaw.cli import console, options
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_facts, tracking_rows
 from twinlaw.workflows.arithmetics import ARITHMETICS
 from twinlaw.workflows.stages import design_controller, fly_double, fly_host, halved_step, load_bound
 
@@ -41,9 +41,9 @@ def run(chosen: argparse.Namespace) -> int:
     save_log(path, flight.log)
     if chosen.json:
         facts = {"log": str(path), "table_digest": table.digest, "step_error_rad": error_rad}
-        print(json.dumps(facts | summary.tracking_facts(flight.tracking)))
+        print(json.dumps(facts | tracking_facts(flight.tracking)))
     else:
-        print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+        print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
         told = ", ".join(f"{output} {error:.1e} rad" for output, error in error_rad.items())
         print(f"\nerror of one integration step a sample, by halving it: {told}\n{path}")
     return 0

@@ -13,7 +13,8 @@ from records.files import write_atomic
 from records.log import save_log
 from records.validation import validation_text
 from twinlaw.cli import console, options
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.checks import validation_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
 from twinlaw.workflows.stages import board_url, fly_board, load_bound, validate_board
 
 
@@ -44,7 +45,7 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         print(text)
         return 0
-    print(console.table(summary.validation_rows(validation)))
+    print(console.table(validation_rows(validation)))
     print()
-    print(console.table(summary.tracking_rows(flight.tracking), summary.TRACKING_HEADING))
+    print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     return 0

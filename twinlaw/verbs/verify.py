@@ -14,7 +14,7 @@ from records.files import write_atomic
 from records.protocol import PROTOCOL
 from records.verification import verification_text
 from twinlaw.cli import console, options
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.proving import with_proofs
 from twinlaw.workflows.stages import (
     STEPS,
@@ -61,6 +61,6 @@ def run(chosen: argparse.Namespace) -> int:
         verification = with_proofs(verification, subject)
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
-    print(text if chosen.json else console.table(summary.verification_rows(verification)))
+    print(text if chosen.json else console.table(verification_rows(verification)))
     demand(verification)
     return 0

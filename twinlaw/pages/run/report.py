@@ -13,7 +13,9 @@ from sim.tracking import Tracking
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
-from twinlaw.pages.run import summary
+from twinlaw.pages.run.checks import size_rows, verification_rows
+from twinlaw.pages.run.design import design_heading, design_rows
+from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
 
 Array = NDArray[np.float64]
 
@@ -76,7 +78,7 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
             "column is how far the other axis' steps push it out of rest.",
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
-        (Table(summary.tracking_rows(tracking), summary.TRACKING_HEADING),),
+        (Table(tracking_rows(tracking), TRACKING_HEADING),),
         (flight_plot(log),),
     )
 
@@ -89,8 +91,8 @@ def _verified(verification: Verification, sizes: ImageSizes) -> Section:
             "target, stepped side by side. The rounding bound is proved, not sampled: " + verification.rounding.method,
         ),
         (
-            Table(summary.verification_rows(verification), ("check", "figures", "")),
-            Table(summary.size_rows(sizes), ("memory", "bytes", "of")),
+            Table(verification_rows(verification), ("check", "figures", "")),
+            Table(size_rows(sizes), ("memory", "bytes", "of")),
         ),
     )
 
@@ -139,7 +141,7 @@ def _margins(report: DesignReport) -> Section:
         (
             f"Of the {report.arithmetic} table, as it flies. The last panel closes both loops on the whole plant, cross-coupling included.",
         ),
-        (Table(summary.design_rows(report), summary.design_heading(report)),),
+        (Table(design_rows(report), design_heading(report)),),
         (stack(panels, "elevation Psi [deg]", panel_height_in=1.7),),
     )
 

@@ -1,0 +1,31 @@
+"""How well a flight tracks its references, as rows of text and for a program."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from sim.tracking import Tracking
+
+Row = tuple[str, ...]
+TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|", "pushed by the other axis")
+
+
+def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
+    """One row per output: the worst overshoot, the worst mean error at rest, the mean error, how far the other axis pushes it."""
+    return [
+        (
+            entry.output,
+            str(entry.holds),
+            f"{100 * entry.overshoot:.1f} %",
+            f"{math.degrees(entry.steady_error_rad):.3f} deg",
+            f"{math.degrees(entry.mean_error_rad):.2f} deg",
+            f"{math.degrees(entry.push_rad):.2f} deg",
+        )
+        for entry in tracking
+    ]
+
+
+def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
+    """The same for a program, by output."""
+    return {"tracking": {entry.output: asdict(entry) for entry in tracking}}
