@@ -1,5 +1,6 @@
 """What the site has beside the pages of this folder: README.md as its first page, and a reference made from the sources."""
 
+import ast
 import os
 import re
 import tomllib
@@ -15,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def on_files(files: Files, config: Any) -> Files:
     """Add the pages that are made."""
-    pages = {"index.md": first_page(), "reference/verbs.md": verbs_page()}
+    pages = {"index.md": first_page(), "reference/verbs.md": verbs_page(), "reference/rooms.md": rooms_page()}
     packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["root_packages"]
     pages |= {f"reference/{name}.md": f"# {name}\n\n::: {name}\n" for name in packages if name != "twinlaw"}
     for path, text in pages.items():
@@ -52,3 +53,15 @@ def verbs_page() -> str:
     verbs = next(action.choices for action in parser._actions if isinstance(action.choices, dict))
     parts = [f"## {word}\n\n```text\n{verbs[word].format_help().rstrip()}\n```\n" for word in VERBS]
     return "\n".join(["# The verbs\n", "`twinlaw VERB --help`, verb by verb.\n", *parts])
+
+
+def rooms_page() -> str:
+    """Every folder of the packages with what its docstring says of it first."""
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["root_packages"]
+    rows = []
+    for file in (path for name in packages for path in sorted((ROOT / name).rglob("__init__.py"))):
+        said = (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").split("\n\n")[0]
+        rows.append(f"| `{file.parent.relative_to(ROOT)}/` | {' '.join(said.split())} |")
+    return "\n".join(
+        ["# The rooms\n", "What goes into each folder and what comes out.\n", "| folder | |", "|---|---|", *rows]
+    )
