@@ -17,7 +17,7 @@ from diagnosis.explain.maps import band_map, region_map, removed_energy, time_ma
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.places import place_shares
 from diagnosis.explain.sparse import suggestion
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from diagnosis.result import Judged, Material, Result, Seen
@@ -29,7 +29,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     """The answer where something is missing."""
     case, found, weighed = seen.case, judged.search, judged.weighed
     blamed = suspects(seen.detection.by_form)
-    before, after = _innovations(case, found.nominal), _innovations(case, found.tried[0])
+    before, after = _innovations(case, found.nominal), _innovations(case, found.fitted[0])
     energy = removed_energy(before, after)
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
     diagnosis = Diagnosis(
@@ -41,19 +41,19 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         when=time_map(case, energy),
         regions=region_map(case, energy),
         bands=band_map(case, before, after),
-        error_responses=error_responses(found.ground),
+        error_responses=error_responses(found.linearisation),
         firmware=material.firmware,
         effects=tuple(
-            _hypothesis(case, weighed, tried, probability)
-            for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True)
+            _hypothesis(case, weighed, fitted, probability)
+            for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True)
         ),
         unknown=_unknown(found, seen.detection.by_form, weighed, blamed[0] if blamed else None),
         found=judged.chosen.effects,
         shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
         next_experiment=next_experiment(case, weighed),
-        notes=(*judged.notes, *notes_of(case, seen.looks, judged.chosen, weighed)),
+        notes=(*judged.notes, *notes_of(case, seen.score_tests, judged.chosen, weighed)),
     )
-    shape = shape_of(found.ground, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
+    shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
     return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape)
 
 
@@ -63,14 +63,14 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
-    blind = cannot_tell(case, seen.looks)
+    blind = cannot_tell(case, seen.score_tests)
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,
         firmware=material.firmware,
         shrinkage=None if holdout is None else holdout.shrinkage(predicted),
-        next_experiment=revealing_experiment(case, seen.retuned.fit.supposed) if blind else None,
-        notes=(*material.notes, *told, *notes_of(case, seen.looks, chosen, None)),
+        next_experiment=revealing_experiment(case, seen.retuned.fit.hypothesis) if blind else None,
+        notes=(*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None)),
     )
     return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted)
 
@@ -79,21 +79,23 @@ def _unknown(found: Search, by_form: FormScores, weighed: Weighed, first: Suspec
     """The effect that no candidate explains; its form is asked for where nothing else is likelier."""
     if first is None:
         return Unknown(weighed.unknown)
-    form = suggestion(found.ground, by_form, first.place) if weighed.nameless else None
+    form = suggestion(found.linearisation, by_form, first.place) if weighed.nameless else None
     return Unknown(weighed.unknown, first.place, first.class_text, form)
 
 
-def _innovations(case: Case, tried: Tried) -> list[NDArray[np.float64]]:
-    runs = passes(case, tried.fit.supposed)
+def _innovations(case: Case, fitted: FittedHypothesis) -> list[NDArray[np.float64]]:
+    runs = passes(case, fitted.fit.hypothesis)
     return [] if runs is None else [run.w for run in runs]
 
 
-def _hypothesis(case: Case, weighed: Weighed, tried: Tried, probability: float) -> Hypothesis:
-    classes = [case.kit.effects[name].class_text for name in tried.effects]
-    own = estimates(case, tried.fit)
-    single = len(tried.effects) == 1
+def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probability: float) -> Hypothesis:
+    classes = [case.library.effects[name].class_text for name in fitted.effects]
+    own = estimates(case, fitted.fit)
+    single = len(fitted.effects) == 1
     parameters = {
-        symbol if single else f"{name}.{symbol}": entry for name in tried.effects for symbol, entry in own[name].items()
+        symbol if single else f"{name}.{symbol}": entry
+        for name in fitted.effects
+        for symbol, entry in own[name].items()
     }
-    same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, tried))
-    return Hypothesis(" + ".join(tried.effects), " + ".join(classes), probability, parameters, same)
+    same = tuple(" + ".join(sorted(entry.effects)) for entry in alike(weighed, fitted))
+    return Hypothesis(" + ".join(fitted.effects), " + ".join(classes), probability, parameters, same)

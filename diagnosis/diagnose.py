@@ -12,16 +12,16 @@ from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.detect.detection import Detection, detect, form_scores
-from diagnosis.detect.linearisation import ground_of
-from diagnosis.detect.score_tests import look
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import FIRST_STEP, unrest_of
+from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.hypothesis.initial_state import FIRST_UNREST
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.hypothesis.initial_state import FIRST_PROCESS_NOISE
 from diagnosis.hypothesis.usual import with_usual
-from diagnosis.library.effect_library import is_gust, make_kit
+from diagnosis.library.effect_library import effect_library, is_gust
 from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.result import Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
@@ -71,7 +71,7 @@ def _nothing(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
     if seen.checked is None:
         return no_gap(seen, material, holdout)
     together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
-    told = contradicting(together, seen.retuned.fit.supposed, [*material.names, *material.holdout_names])
+    told = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
     if told:
         demand_wiring(seen.checked, nominal_fit(seen.checked), nominal_fit, "the hold-out")
     return no_gap(seen, replace(material, notes=(*material.notes, *told)), holdout)
@@ -79,24 +79,32 @@ def _nothing(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
 
 def _seen(bound: BoundPlant, material: Material) -> Seen:
     """Ask whether there is a gap at all."""
-    kit = make_kit(without_effects(bound) if bound.effects else bound)
-    kit.prepare()
+    library = effect_library(without_effects(bound) if bound.effects else bound)
+    library.prepare()
     split = len(material.logs)
-    case = make_case(kit, material.logs, material.used[:split], bound)
-    checked = make_case(kit, material.holdout, material.used[split:], bound) if material.holdout else None
+    case = make_case(library, material.logs, material.used[:split], bound)
+    checked = make_case(library, material.holdout, material.used[split:], bound) if material.holdout else None
     return _looked_at(case, checked)
 
 
 def _looked_at(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and look at the library beside it."""
     nominal = nominal_fit(case)
-    case = with_usual(case, nominal.supposed)
-    ground = ground_of(case, nominal)
-    case, lossy = with_losses(case, ground)
-    ground = replace(ground, case=case)
-    looks = look(case, ground, case.kit.candidates)
-    retuned = Tried((), nominal, evidence(nominal))
-    return Seen(case, checked, retuned, ground, tuple(looks), lossy, detect(case, ground, looks, lossy))
+    case = with_usual(case, nominal.hypothesis)
+    linearisation = linearised(case, nominal)
+    case, lossy = with_losses(case, linearisation)
+    linearisation = replace(linearisation, case=case)
+    score_tests = score_effects(case, linearisation, case.library.candidates)
+    retuned = FittedHypothesis((), nominal, evidence(nominal))
+    return Seen(
+        case,
+        checked,
+        retuned,
+        linearisation,
+        tuple(score_tests),
+        lossy,
+        detect(case, linearisation, score_tests, lossy),
+    )
 
 
 def _explained(seen: Seen) -> tuple[Seen, Search | None]:
@@ -111,18 +119,18 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     again = _yielding(seen, first, EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
     if again is not None:
         further = _searched(again)
-        if needed(seen.case, again.retuned if further is None else further.tried[0]):
+        if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
-    found = search(seen.case, seen.case.kit.candidates, begun)
-    again = _yielding(seen, found.tried[:ASKED])
+    found = search(seen.case, seen.case.library.candidates, begun)
+    again = _yielding(seen, found.fitted[:ASKED])
     if again is None:
         return seen, found
     further = _searched(again)
-    best = again.retuned if further is None else further.tried[0]
-    return (again, further) if best.evidence > found.tried[0].evidence else (seen, found)
+    best = again.retuned if further is None else further.fitted[0]
+    return (again, further) if best.evidence > found.fitted[0].evidence else (seen, found)
 
 
-def _yielding(seen: Seen, found: Sequence[Tried], further: float = 0.0) -> Seen | None:
+def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.0) -> Seen | None:
     """All anew with axes that yield near rest, where that explains the logs better beside one of those found; else None."""
     asked = list(found) if seen.retuned in found else [*found, seen.retuned]
     case = yielding(seen.case, asked, further)
@@ -131,11 +139,13 @@ def _yielding(seen: Seen, found: Sequence[Tried], further: float = 0.0) -> Seen 
 
 def _searched(seen: Seen) -> Search | None:
     """What is found; None where there is no gap."""
-    return None if seen.detection.p > ALARM else search(seen.case, seen.case.kit.candidates, _alone(seen))
+    return None if seen.detection.p > ALARM else search(seen.case, seen.case.library.candidates, _alone(seen))
 
 
 def _alone(seen: Seen) -> Alone:
-    return alone(seen.case, seen.retuned, seen.case.kit.candidates, seen.ground, seen.looks, seen.lossy)
+    return alone(
+        seen.case, seen.retuned, seen.case.library.candidates, seen.linearisation, seen.score_tests, seen.lossy
+    )
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> Judged:
@@ -143,12 +153,12 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     case, retuned = seen.case, seen.retuned
     left, weighed = _weighed(seen, found, beyond)
     if max(weighed.retune, *weighed.probabilities, 0.0) < WELL_EXPLAINED:
-        enough = retuned.evidence + AIR_EXPLAINS * (found.tried[0].evidence - retuned.evidence)
+        enough = retuned.evidence + AIR_EXPLAINS * (found.fitted[0].evidence - retuned.evidence)
         further = [entry for entry in gusts(case, retuned) if entry.evidence > enough]
         if further:
-            found = replace(found, tried=tuple(sorted((*found.tried, *further), key=lambda entry: -entry.evidence)))
+            found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
             left, weighed = _weighed(seen, found, beyond)
-    holdout = _holdout(seen, material, weighed.tried[0].effects if weighed.tried else ())
+    holdout = _holdout(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
     told: tuple[str, ...] = ()
     if holdout is not None:
         weighed, told = partly(holdout, overruled(holdout, weighed, retuned, left), left)
@@ -163,11 +173,11 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
 
 def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
     """What forms still gain beside the best that was found, and the probabilities; all that swings beside a gust is a form of its own."""
-    best = found.tried[0] if found.tried[0].effects else found.tried[-1]
+    best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     own = [name for name in best.effects if not is_gust(name)]
-    left = left_beside(form_scores(ground_of(seen.case, best.fit)), own)
+    left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
-    return left, weigh(found.tried, seen.retuned, left, score, seen.case.kit.frictionless, seen.case.kit.steps)
+    return left, weigh(found.fitted, seen.retuned, left, score, seen.case.library.frictionless, seen.case.library.steps)
 
 
 def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Holdout | None:
@@ -176,7 +186,7 @@ def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Hol
     if checked is None:
         return None
     if LOST_FRAMES in effects:
-        checked = with_losses(checked, ground_of(checked, nominal_fit(checked)))[0]
+        checked = with_losses(checked, linearised(checked, nominal_fit(checked)))[0]
     return holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
 
 
@@ -185,7 +195,7 @@ def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> 
     exp(-x) at most."""
     if detection.largest > PLAIN_TO_SEE:
         return detection
-    explained = [entry.evidence for entry in found.tried if entry.effects and found.sure]
+    explained = [entry.evidence for entry in found.fitted if entry.effects and found.sure]
     explained += [] if beyond is None else [beyond.score]
     best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
     return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))
@@ -197,9 +207,9 @@ def borne_out(detection: Detection, judged: Judged) -> Detection:
 
 
 def nominal_fit(case: Case) -> Fit:
-    """The plant re-tuned within its spread, with the unrest that then remains."""
-    supposed = nothing_supposed(case, FIRST_UNREST)
-    found = fit(case, supposed, rounds=ROUNDS)
+    """The plant re-tuned within its spread, with the process noise that then remains."""
+    hypothesis = nominal_hypothesis(case, FIRST_PROCESS_NOISE)
+    found = fit(case, hypothesis, rounds=ROUNDS)
     for turn in range(ROUNDS):
         if found is None:
             raise BadInput(
@@ -209,9 +219,11 @@ def nominal_fit(case: Case) -> Fit:
                 "a plant that can follow these logs",
                 "check units",
             )
-        calmer = unrest_of(case, found, FIRST_STEP if turn < 2 else 0.1)
-        settled = bool(np.max(np.abs(calmer.unrest - found.supposed.unrest), initial=0.0) < SETTLED)
-        found = fit(case, calmer, rounds=ROUNDS)
+        refined_noise = process_noise_of(case, found, FIRST_STEP if turn < 2 else 0.1)
+        settled = bool(
+            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED
+        )
+        found = fit(case, refined_noise, rounds=ROUNDS)
         if settled and found is not None:
             break
     assert found is not None

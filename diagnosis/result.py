@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from diagnosis.decide.holdout import Holdout
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.detection import Detection
-from diagnosis.detect.linearisation import Ground
-from diagnosis.detect.score_tests import Look
+from diagnosis.detect.linearisation import Linearisation
+from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.explain.curve import Shape
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.beam import Search
@@ -46,9 +46,9 @@ class Seen:
 
     case: Case
     checked: Case | None
-    retuned: Tried
-    ground: Ground
-    looks: tuple[Look, ...]
+    retuned: FittedHypothesis
+    linearisation: Linearisation
+    score_tests: tuple[ScoreTest, ...]
     lossy: Fit | None
     detection: Detection
 
@@ -61,7 +61,7 @@ class Judged:
     search: Search
     beyond: Retune | None
     weighed: Weighed
-    chosen: Tried
+    chosen: FittedHypothesis
     holdout: Holdout | None
     notes: tuple[str, ...]
 

@@ -16,7 +16,7 @@ _AHEAD = ThreadPoolExecutor(WORKERS)  # pieces that will be asked for, which mus
 _HERE = threading.local()
 
 
-def each(function: Callable[..., Found], *items: Iterable[Any]) -> list[Found]:
+def thread_map(function: Callable[..., Found], *items: Iterable[Any]) -> list[Found]:
     """As list(map(function, *items)), on several cores; raises what the first failing piece raised, ValueError for items of unlike lengths.
 
     Pieces may call this again: they then do themselves what no other worker has begun, so none ever waits for one that waits for it.
@@ -29,7 +29,7 @@ def each(function: Callable[..., Found], *items: Iterable[Any]) -> list[Found]:
     return [own[place] if place in own else one.result() for place, one in enumerate(asked)]
 
 
-def ahead(function: Callable[..., object], *items: object) -> None:
+def begin(function: Callable[..., object], *items: object) -> None:
     """Begin what somebody will ask for; the process does not end before it is done."""
     _AHEAD.submit(function, *items)
 

@@ -32,16 +32,16 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     """
     if len(case.flights) < 2:
         return None
-    variant = case.kit.variant(found.supposed.effects)
-    inside = [entry for entry in found.free if entry.effect in variant.names]
-    places = [variant.place(entry.effect, entry.parameter.symbol) for entry in inside]
-    runs = passes(case, found.supposed, [*case.free.tolist(), *places])
+    compiled = case.library.compiled(found.hypothesis.effects)
+    inside = [entry for entry in found.free if entry.effect in compiled.names]
+    places = [compiled.place(entry.effect, entry.parameter.symbol) for entry in inside]
+    runs = passes(case, found.hypothesis, [*case.free.tolist(), *places])
     if runs is None:
         return None
     scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
     before = WIDE**-2 * np.eye(len(scale))
     before[: len(case.free), : len(case.free)] = case.known
-    names = [str(case.kit.bound.model.parameter_symbols[place]) for place in case.free]
+    names = [str(case.library.bound.model.parameter_symbols[place]) for place in case.free]
     names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]
     parts = [_own_numbers(runs, index, scale, before, names) for index in range(len(runs))]
     return max(parts, key=lambda entry: entry.gain)
@@ -49,7 +49,7 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
 
 def parted_gain(case: Case, found: Fit) -> float:
     """Nats that the logs gain if each is fitted by itself: what first order promises of limits and steps is often not there."""
-    apart = [fit(case.with_flights([flight]), found.supposed, rounds=6) for flight in case.flights]
+    apart = [fit(case.with_flights([flight]), found.hypothesis, rounds=6) for flight in case.flights]
     return sum(entry.log_posterior if entry else -np.inf for entry in apart) - found.log_posterior
 
 

@@ -10,7 +10,7 @@ from diagnosis.decide.weighing import UNNAMED, Weighed
 from diagnosis.detect.instants import is_event
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.beam import Search
 from diagnosis.validate.misfit import ignorance
 
@@ -37,7 +37,7 @@ class Doubt:
 def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
     """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs, `worse` how many times
     as large the hold-out's mean square error is with what would be named."""
-    best = found.tried[0]
+    best = found.fitted[0]
     gain = best.evidence - found.nominal.evidence
     sentences, forbids = [], False
     apart = contradiction(case, best.fit)
@@ -46,7 +46,7 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
     if apart is not None and apart.gain > WORTH_TELLING:
         sentences.append(_contradiction(apart, names))
         forbids = apart.gain > TOO_MUCH * gain
-    errors = ignorance(case, best.fit.supposed)
+    errors = ignorance(case, best.fit.hypothesis)
     if errors and min(errors.values()) > KNOWS_NOTHING:
         told = ", ".join(f"{name} {value:.2g}" for name, value in errors.items())
         sentences.append(
@@ -54,13 +54,13 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
             f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
         )
         forbids = True
-    if worse > REFUTED and not any(is_event(case.kit.effects[name]) for name in weighed.tried[0].effects):
-        named = " + ".join(weighed.tried[0].effects)
+    if worse > REFUTED and not any(is_event(case.library.effects[name]) for name in weighed.fitted[0].effects):
+        named = " + ".join(weighed.fitted[0].effects)
         sentences.append(
             f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as without"
         )
         forbids = True
-    furthest = float(np.max(np.abs(best.fit.supposed.theta), initial=0.0))
+    furthest = float(np.max(np.abs(best.fit.hypothesis.theta), initial=0.0))
     if furthest > OTHERS and weighed.unknown > 0.5:
         sentences.append(
             f"these may be logs of another plant: beside every effect a parameter stays {furthest:.0f} standard deviations from what "
@@ -69,9 +69,9 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
     return Doubt(tuple(sentences), forbids)
 
 
-def contradicting(case: Case, supposed: Supposed, names: Sequence[str]) -> tuple[str, ...]:
-    """Which of logs that seem to be of the plant as `supposed`, without a gap, contradicts the others; nothing where none does."""
-    together = fit(case, supposed, rounds=ROUNDS)
+def contradicting(case: Case, hypothesis: Hypothesis, names: Sequence[str]) -> tuple[str, ...]:
+    """Which of logs that seem to be of the plant as `hypothesis`, without a gap, contradicts the others; nothing where none does."""
+    together = fit(case, hypothesis, rounds=ROUNDS)
     apart = None if together is None else contradiction(case, together)
     if together is None or apart is None or apart.gain <= WORTH_TELLING:
         return ()

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.library.input_effects import LOST_FRAMES
 
 # Effects that rigs of this kind are known for (docs/effects.md names the sources); what else the library holds is rarer.
@@ -41,51 +41,53 @@ OWN_PARAMETERS = 3.0  # effects that are parameters of the plant under another n
 SAME_AS_PARAMETERS = ("gain", "balance_weight")
 
 
-def prior_odds(tried: Tried, frictionless: Collection[str] = (), steps: Mapping[str, float] = {}) -> float:
+def prior_odds(fitted: FittedHypothesis, frictionless: Collection[str] = (), steps: Mapping[str, float] = {}) -> float:
     """Log of how much less probable a hypothesis is before the data than one of as many common effects; `frictionless` are the axes
     that have no dry friction as stated, `steps` those of the sensors by place, in the unit of what they read."""
-    one_way = sum(name.endswith(".friction_asymmetry") and name.split(".")[0] in frictionless for name in tried.effects)
-    rounding = sum(_is_rounding(name, tried, steps) for name in tried.effects)
-    return sum(_odds(name, tried) for name in tried.effects) - ONE_WAY_ALONE * one_way - NOTHING_NEW * rounding
+    one_way = sum(
+        name.endswith(".friction_asymmetry") and name.split(".")[0] in frictionless for name in fitted.effects
+    )
+    rounding = sum(_is_rounding(name, fitted, steps) for name in fitted.effects)
+    return sum(_odds(name, fitted) for name in fitted.effects) - ONE_WAY_ALONE * one_way - NOTHING_NEW * rounding
 
 
-def _odds(name: str, tried: Tried) -> float:
+def _odds(name: str, fitted: FittedHypothesis) -> float:
     place, kind = name.split(".")
     common = kind in COMMON or (kind == "offset_force" and place in PUSHED)
     odds = PLAIN * (kind == "offset_force")
     odds += 0.0 if common and not (kind in RARE_AT_INPUTS and place.endswith("_input")) else -RARE
-    if kind in ONE_WAY and tried.fit.supposed.effects[name][ONE_WAY[kind]] < 0.0:
+    if kind in ONE_WAY and fitted.fit.hypothesis.effects[name][ONE_WAY[kind]] < 0.0:
         odds -= WRONG_WAY
-    if kind == "disturbance" and tried.fit.supposed.effects[name]["duration"] > LONG_PULSE_S:
+    if kind == "disturbance" and fitted.fit.hypothesis.effects[name]["duration"] > LONG_PULSE_S:
         odds -= RARE
     if kind == "stribeck":
         odds -= MANY_SHAPES
-    if _left_by_losses(name, tried):
+    if _left_by_losses(name, fitted):
         odds -= NOTHING_NEW
     if kind in SAME_AS_PARAMETERS:
         odds -= OWN_PARAMETERS
-    if at_its_end(name, tried):
+    if at_its_end(name, fitted):
         odds -= AT_ITS_END
     return odds
 
 
-def at_its_end(name: str, tried: Tried) -> bool:
+def at_its_end(name: str, fitted: FittedHypothesis) -> bool:
     """Whether a fitted size of an effect went as far from zero as it may, or a sine has as few waves or as many as it may."""
-    values = tried.fit.supposed.effects[name]
-    own = [entry.parameter for entry in tried.fit.free if entry.effect == name]
+    values = fitted.fit.hypothesis.effects[name]
+    own = [entry.parameter for entry in fitted.fit.free if entry.effect == name]
     numbers = [parameter for parameter in own if parameter.is_size or parameter.symbol == "waves"]
     return any(values[number.symbol] in {number.lower, number.upper} - {number.zero} for number in numbers)
 
 
-def _is_rounding(name: str, tried: Tried, steps: Mapping[str, float]) -> bool:
+def _is_rounding(name: str, fitted: FittedHypothesis, steps: Mapping[str, float]) -> bool:
     """Whether a sensor's cyclic error is less than what its own rounding may be: at a steady speed rounding beats with the samples, which
     swings with the angle too."""
     place, kind = name.split(".")
-    return kind == "cyclic" and abs(tried.fit.supposed.effects[name]["amplitude"]) < 0.5 * steps.get(place, 0.0)
+    return kind == "cyclic" and abs(fitted.fit.hypothesis.effects[name]["amplitude"]) < 0.5 * steps.get(place, 0.0)
 
 
-def _left_by_losses(name: str, tried: Tried) -> bool:
+def _left_by_losses(name: str, fitted: FittedHypothesis) -> bool:
     """Whether an effect is no more than a lossy line's own: a command that is lost arrives one frame late."""
     place, kind = name.split(".")
     late = kind in ("delay", "lag") and (place == "loop" or place.endswith("input"))
-    return late and LOST_FRAMES in tried.effects and tried.fit.supposed.effects[name]["tau"] <= UNSEEN_LOSSES_S
+    return late and LOST_FRAMES in fitted.effects and fitted.fit.hypothesis.effects[name]["tau"] <= UNSEEN_LOSSES_S

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.decide.prior import prior_odds
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import seen_in_readings
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ RETUNE_COST = 10.0
 UNNAMED = 0.95  # probability of an unknown effect where what would be named is refuted
 # Of 445 first answers that stated 0.8 and more on the 900 cases of seeds 900008, 900010 and 900011, 0.91 came true: a further effect
 # too small to see, or one outside the library that looks like one in it, is always possible.
-CANDOUR = 0.91
+CONFIDENCE_CAP = 0.91
 SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
 KEPT = 12
 
@@ -31,7 +31,7 @@ class Weighed:
     """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
     parameters beyond their spread; and the scale in nats on which hypotheses are compared."""
 
-    tried: tuple[Tried, ...]
+    fitted: tuple[FittedHypothesis, ...]
     probabilities: tuple[float, ...]
     unknown: float
     retune: float
@@ -57,8 +57,8 @@ class Weighed:
 
 
 def weigh(
-    tried: Sequence[Tried],
-    nominal: Tried,
+    fitted: Sequence[FittedHypothesis],
+    nominal: FittedHypothesis,
     left: float,
     retune: float | None = None,
     frictionless: Collection[str] = (),
@@ -66,7 +66,7 @@ def weigh(
 ) -> Weighed:
     """Probabilities of hypotheses given that there is a gap; `left` nats are what forms still gain beside the best of them, `retune`
     is the evidence for parameters beyond their spread, `frictionless` and `steps` as in prior.py."""
-    named = [entry for entry in tried if entry.effects]
+    named = [entry for entry in fitted if entry.effects]
     if not named:
         return _nameless(nominal, left, retune)
     first = max(named, key=lambda entry: entry.evidence)
@@ -76,14 +76,14 @@ def weigh(
     scale = ALIKE + OFF_FORM * formed**OFF_POWER + OFF_SHARE * min(formed, FARTHEST)
     scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
     scores += [prior_odds(entry, frictionless, steps) for entry in named]
-    strain = np.array([_strain(entry) for entry in named])
-    scores -= strain - strain.min()
+    prior_chi_squared = np.array([_beyond_spread(entry) for entry in named])
+    scores -= prior_chi_squared - prior_chi_squared.min()
     expected = LEFT_NATS + LEFT_SHARE * whole
     unknown = LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - UNKNOWN
     other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
-    weights = candid(weights)
+    weights = capped(weights)
     order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
     chosen = tuple(named[index] for index in order)
     return Weighed(
@@ -91,23 +91,26 @@ def weigh(
     )
 
 
-def _read_off(named: Sequence[Tried], first: Tried, nominal: Tried) -> Tried:
+def _read_off(
+    named: Sequence[FittedHypothesis], first: FittedHypothesis, nominal: FittedHypothesis
+) -> FittedHypothesis:
     """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
     exact = {name for name in first.effects if seen_in_readings(name)}
     return next((entry for entry in named if set(entry.effects) == exact), nominal)
 
 
-def candid(weights: Array) -> Array:
+def capped(weights: Array) -> Array:
     """The weights, the unknown's last, a share of what is named kept back for it, and as large a share of it for what is named."""
     known, unknown = float(weights[:-1].sum()), float(weights[-1])
     if known <= 0.0:
         return weights
     return np.append(
-        weights[:-1] * (CANDOUR + (1.0 - CANDOUR) * unknown / known), CANDOUR * unknown + (1.0 - CANDOUR) * known
+        weights[:-1] * (CONFIDENCE_CAP + (1.0 - CONFIDENCE_CAP) * unknown / known),
+        CONFIDENCE_CAP * unknown + (1.0 - CONFIDENCE_CAP) * known,
     )
 
 
-def _nameless(nominal: Tried, left: float, retune: float | None) -> Weighed:
+def _nameless(nominal: FittedHypothesis, left: float, retune: float | None) -> Weighed:
     """Where no effect was worth a fit: other parameters alone, or what no candidate explains."""
     if retune is None:
         return Weighed((), (), 1.0, 0.0, ALIKE)
@@ -117,17 +120,17 @@ def _nameless(nominal: Tried, left: float, retune: float | None) -> Weighed:
     return Weighed((), (), 1.0 - alone, alone, ALIKE)
 
 
-def _strain(entry: Tried) -> float:
+def _beyond_spread(entry: FittedHypothesis) -> float:
     """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
-    beyond = np.maximum(np.abs(entry.fit.supposed.theta) - SPREAD, 0.0)
+    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - SPREAD, 0.0)
     return 0.5 * float(beyond @ beyond)
 
 
-def alike(weighed: Weighed, first: Tried) -> list[Tried]:
+def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
     """Hypotheses of as many effects that these data hardly tell from `first`."""
     near = [
         entry
-        for entry in weighed.tried
+        for entry in weighed.fitted
         if entry is not first
         and len(entry.effects) == len(first.effects)
         and abs(entry.evidence - first.evidence) < 3.0 * weighed.scale

@@ -11,12 +11,12 @@ from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case, Flight
 from diagnosis.hypothesis.initial_state import start_of
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 from records.errors import BadInput
 
 LOOKED_AT_S = 20.0  # of each log
 STRAINED = 6.0  # standard deviations that some parameter must have left its statement by
-RESTLESS = -1.3  # or the log10 of an axis' unrest, for columns to be doubted
+RESTLESS = -1.3  # or the log10 of an axis' process noise, for columns to be doubted
 LEAST_GAIN = 200.0  # nats by which another reading of the columns must be likelier
 
 
@@ -51,11 +51,13 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
 
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
-    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs without strain."""
-    short = case.with_flights([replace(flight, tape=beginning(flight.tape, LOOKED_AT_S)) for flight in case.flights])
+    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its parameters where they are stated."""
+    short = case.with_flights(
+        [replace(flight, filter_input=beginning(flight.filter_input, LOOKED_AT_S)) for flight in case.flights]
+    )
     usual = _fitted(short, fitted)
     slips = list(wirings(case))
-    fits = each(lambda wiring: _fitted(_rewired(short, wiring), fitted), slips)
+    fits = thread_map(lambda wiring: _fitted(_rewired(short, wiring), fitted), slips)
     found = [(wiring, fit) for wiring, fit in zip(slips, fits, strict=True) if fit is not None]
     if usual is None or not found:
         return None
@@ -65,8 +67,8 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
 
 
 def _is_strained(fit: Fit) -> bool:
-    supposed = fit.supposed
-    return bool(np.max(np.abs(supposed.theta), initial=0.0) > STRAINED or np.max(supposed.unrest) > RESTLESS)
+    hypothesis = fit.hypothesis
+    return bool(np.max(np.abs(hypothesis.theta), initial=0.0) > STRAINED or np.max(hypothesis.process_noise) > RESTLESS)
 
 
 def _fitted(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
@@ -78,7 +80,7 @@ def _fitted(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
 
 def wirings(case: Case) -> Iterator[Wiring]:
     """Every single slip of a sign and every pair of columns of one unit in each other's place."""
-    model = case.kit.bound.model
+    model = case.library.bound.model
     inputs, outputs = [str(u) for u in model.inputs], list(model.outputs)
     straight = Wiring("", "", range(len(inputs)), range(len(outputs)), [1.0] * len(inputs), [1.0] * len(outputs))
     for place, name in enumerate(inputs):
@@ -121,27 +123,27 @@ def _rewired(case: Case, wiring: Wiring) -> Case:
 
 
 def _read_otherwise(case: Case, flight: Flight, wiring: Wiring) -> Flight:
-    tape, count = flight.tape, len(wiring.outputs)
-    places = [*wiring.outputs, *range(count, tape.y.shape[1])]
+    filter_input, count = flight.filter_input, len(wiring.outputs)
+    places = [*wiring.outputs, *range(count, filter_input.y.shape[1])]
     signs = np.array([*wiring.output_signs, *_rate_signs(case, wiring)])
-    readings: dict[str, Any] = {name: getattr(tape, name)[:, places] for name in ("r", "standing", "usual")}
-    u = tape.u[:, list(wiring.inputs)] * np.array(wiring.input_signs)
-    tape = replace(
-        tape,
+    readings: dict[str, Any] = {name: getattr(filter_input, name)[:, places] for name in ("r", "standing", "usual")}
+    u = filter_input.u[:, list(wiring.inputs)] * np.array(wiring.input_signs)
+    filter_input = replace(
+        filter_input,
         u=u,
-        y=tape.y[:, places] * signs,
-        read=tape.read[:, places] * signs,
-        single=tape.single[places],
+        y=filter_input.y[:, places] * signs,
+        read=filter_input.read[:, places] * signs,
+        single=filter_input.single[places],
         **readings,
     )
-    x0, p0 = start_of(case.kit, tape, flight.locked)
-    return replace(flight, tape=tape, x0=x0, p0=p0)
+    x0, p0 = start_of(case.library, filter_input, flight.locked)
+    return replace(flight, filter_input=filter_input, x0=x0, p0=p0)
 
 
 def _rate_signs(case: Case, wiring: Wiring) -> list[float]:
     """Signs of the states that a log may carry: a rate turns with its angle."""
-    model, kit = case.kit.bound.model, case.kit
+    model, library = case.library.bound.model, case.library
     outputs = {str(expression): place for place, expression in enumerate(model.outputs.values())}
     angles = {str(axis.velocity): outputs.get(str(axis.position)) for axis in model.axes}
-    places = [angles.get(name) for name in kit.outputs[len(model.outputs) :]]
+    places = [angles.get(name) for name in library.outputs[len(model.outputs) :]]
     return [1.0 if place is None else wiring.output_signs[place] for place in places]

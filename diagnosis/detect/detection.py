@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.forms import Form, forms
 from diagnosis.detect.instants import target_of
-from diagnosis.detect.linearisation import Ground, Scores
+from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.replicas import Tail, replicas, tail_of
-from diagnosis.detect.score_tests import Look
-from diagnosis.fit.gauss_newton import Fit, away, size_scale, strain
+from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.fit.gauss_newton import Fit, away, prior_chi_squared, size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
@@ -46,47 +46,53 @@ class Detection:
     by_form: FormScores
 
 
-def detect(case: Case, ground: Ground, looks: Sequence[Look], lossy: Fit | None = None) -> Detection:
+def detect(
+    case: Case, linearisation: Linearisation, score_tests: Sequence[ScoreTest], lossy: Fit | None = None
+) -> Detection:
     """Compare the gains of effects at their best starts, of lost frames, of steps in time and of all forms with replicas."""
-    found = forms(ground)
+    found = forms(linearisation)
     of_effects, of_forms, drawn = _at_once(
-        lambda: _effect_columns(case, ground, looks), lambda: _form_columns(ground, found), lambda: replicas(ground)
+        lambda: _effect_columns(case, linearisation, score_tests),
+        lambda: _form_columns(linearisation, found),
+        lambda: replicas(linearisation),
     )
     (by_form, null_forms), (effects, null_effects), (events, null_events) = _at_once(
-        lambda: _gains_of(ground, of_forms, drawn),
-        lambda: _gains_of(ground, of_effects, drawn),
-        lambda: _events(case, ground, drawn),
+        lambda: _gains_of(linearisation, of_forms, drawn),
+        lambda: _gains_of(linearisation, of_effects, drawn),
+        lambda: _events(case, linearisation, drawn),
     )
     null = np.concatenate([null_forms, null_effects])
     usual = np.maximum(1.0, null.mean(axis=1) / MEAN_GAIN)
     seen = np.concatenate([gains(by_form), gains(effects)]) / usual
-    outside = [entry.gain for entry in looks if not case.kit.carried(entry.effect)]
-    outside += [] if lossy is None else [lossy.log_posterior - ground.fit.log_posterior]
+    outside = [entry.gain for entry in score_tests if not case.library.carried(entry.effect)]
+    outside += [] if lossy is None else [lossy.log_posterior - linearisation.fit.log_posterior]
     largest = max([*events, *outside, float(np.max(seen, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
-    numbers = len(away(ground.fit.supposed, ground.fit.free))
-    strained = chi_squared_tail(numbers, strain(case, ground.fit.supposed, ground.fit.free))
-    p = min(1.0, 3.0 * min(tail.probability(largest - ALLOWED), strained, moved_tail(case, ground.fit)))
+    numbers = len(away(linearisation.fit.hypothesis, linearisation.fit.free))
+    prior_tail = chi_squared_tail(
+        numbers, prior_chi_squared(case, linearisation.fit.hypothesis, linearisation.fit.free)
+    )
+    p = min(1.0, 3.0 * min(tail.probability(largest - ALLOWED), prior_tail, moved_tail(case, linearisation.fit)))
     return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)))
 
 
-def form_scores(ground: Ground) -> FormScores:
+def form_scores(linearisation: Linearisation) -> FormScores:
     """What every form gains beside a fit."""
-    found = forms(ground)
-    columns, drawn = _at_once(lambda: _form_columns(ground, found), lambda: replicas(ground))
-    scores, null = _gains_of(ground, columns, drawn)
+    found = forms(linearisation)
+    columns, drawn = _at_once(lambda: _form_columns(linearisation, found), lambda: replicas(linearisation))
+    scores, null = _gains_of(linearisation, columns, drawn)
     return FormScores(tuple(found), scores, null.mean(axis=1))
 
 
 def _at_once(*pieces: Callable[[], Any]) -> list[Any]:
     """What the pieces return, in their order."""
-    return each(lambda piece: piece(), pieces)
+    return thread_map(lambda piece: piece(), pieces)
 
 
-def _gains_of(ground: Ground, columns: Array, drawn: Array) -> tuple[Scores, Array]:
+def _gains_of(linearisation: Linearisation, columns: Array, drawn: Array) -> tuple[Scores, Array]:
     """Scores of the columns (rows, k), and their gains in replicas (k, replicas)."""
-    scores = ground.scores_of(columns)
-    return scores, _null_gains(ground, columns, scores, drawn)
+    scores = linearisation.scores_of(columns)
+    return scores, _null_gains(linearisation, columns, scores, drawn)
 
 
 def chi_squared_tail(count: int, value: float) -> float:
@@ -100,7 +106,7 @@ def moved_tail(case: Case, found: Fit) -> float:
 
     A number that logs tell exactly moves by one standard deviation of its stated spread, one of which they tell nothing does not move.
     """
-    moved = away(found.supposed, found.free)
+    moved = away(found.hypothesis, found.free)
     stated = [
         *range(len(case.free)),
         *(len(case.free) + k for k, entry in enumerate(found.free) if entry.stated is not None),
@@ -117,33 +123,33 @@ def gains(scores: Scores) -> Array:
     return np.where(counts, 0.5 * scores.score**2 / np.maximum(norm, 1e-12), 0.0)
 
 
-def _null_gains(ground: Ground, columns: Array, scores: Scores, drawn: Array) -> Array:
+def _null_gains(linearisation: Linearisation, columns: Array, scores: Scores, drawn: Array) -> Array:
     """Gains (k, replicas)."""
-    share = ground.solve @ (ground.slopes.T @ columns)
-    score = columns.T @ drawn - share.T @ (ground.slopes.T @ drawn)
+    share = linearisation.solve @ (linearisation.slopes.T @ columns)
+    score = columns.T @ drawn - share.T @ (linearisation.slopes.T @ drawn)
     norm = np.diag(scores.gram)
     counts = (norm > LEAST_LEFT * np.maximum(scores.raw, 1e-12))[:, None]
     return np.where(counts, 0.5 * score**2 / np.maximum(norm, 1e-12)[:, None], 0.0)
 
 
-def _events(case: Case, ground: Ground, drawn: Array) -> tuple[list[float], Array]:
+def _events(case: Case, linearisation: Linearisation, drawn: Array) -> tuple[list[float], Array]:
     """The largest gain of steps and pulses in time by target, in the log and in replicas (targets, replicas).
 
     Each gain counts in units of what that step or pulse usually gains without a gap: rounding at rest looks like steps.
     """
-    kit = case.kit
-    targets = {target_of(case, kit.effects[name]) for name in kit.candidates}
+    library = case.library
+    targets = {target_of(case, library.effects[name]) for name in library.candidates}
     known = sorted(target for target in targets if target is not None)
-    pairs = each(lambda target: _pulses(ground, drawn, target), known)
+    pairs = thread_map(lambda target: _pulses(linearisation, drawn, target), known)
     return [seen for seen, _ in pairs], np.array([np.zeros(drawn.shape[1]), *(null for _, null in pairs)])
 
 
-def _pulses(ground: Ground, drawn: Array, target: int) -> tuple[float, Array]:
+def _pulses(linearisation: Linearisation, drawn: Array, target: int) -> tuple[float, Array]:
     """The largest gain of steps and pulses of one target, in the log and in each replica."""
-    _, scores = ground.steps(target)
-    met = ground.steps_against(target, np.concatenate([drawn, ground.slopes], axis=1))
+    _, scores = linearisation.steps(target)
+    met = linearisation.steps_against(target, np.concatenate([drawn, linearisation.slopes], axis=1))
     replicas = drawn.shape[1]
-    score = met[:, :replicas] - met[:, replicas:] @ ground.solve @ (ground.slopes.T @ drawn)
+    score = met[:, :replicas] - met[:, replicas:] @ linearisation.solve @ (linearisation.slopes.T @ drawn)
     gram = scores.gram
     first, last = _spans(len(gram))
     norm = np.maximum(gram[first, first] + gram[last, last] - 2.0 * gram[first, last], 1e-12)
@@ -162,28 +168,31 @@ def _spans(count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return np.array([one for one, _ in pairs], dtype=int), np.array([other for _, other in pairs], dtype=int)
 
 
-def _effect_columns(case: Case, ground: Ground, looks: Sequence[Look]) -> Array:
+def _effect_columns(case: Case, linearisation: Linearisation, score_tests: Sequence[ScoreTest]) -> Array:
     """Signatures of the effects in the equations, from where they were seen best."""
-    kit, supposed = case.kit, ground.fit.supposed
-    chosen = [entry for entry in looks if entry.effect in kit.names]
+    library, hypothesis = case.library, linearisation.fit.hypothesis
+    chosen = [entry for entry in score_tests if entry.effect in library.names]
     values = {}
     for entry in chosen:
-        size = kit.effects[entry.effect].size
+        size = library.effects[entry.effect].size
         values[entry.effect] = {**entry.values, size.symbol: size.touched}
-    variant = kit.variant((*supposed.effects, *values))
-    places = [variant.place(name, kit.effects[name].size.symbol) for name in values]
-    runs = passes(case, supposed.with_effects({**values, **supposed.effects}), places, slopes=True)
-    rows = len(ground.w)
+    compiled = library.compiled((*hypothesis.effects, *values))
+    places = [compiled.place(name, library.effects[name].size.symbol) for name in values]
+    runs = passes(case, hypothesis.with_effects({**values, **hypothesis.effects}), places, slopes=True)
+    rows = len(linearisation.w)
     if runs is None or not places:
         return np.zeros((rows, 0))
     slopes = np.concatenate([run.dw.reshape(-1, len(places)) for run in runs if run.dw is not None])
-    return np.asarray(slopes * [size_scale(kit.effects[name].size) for name in values])
+    return np.asarray(slopes * [size_scale(library.effects[name].size) for name in values])
 
 
-def _form_columns(ground: Ground, found: Sequence[Form]) -> Array:
-    columns = np.zeros((len(ground.w), len(found)))
+def _form_columns(linearisation: Linearisation, found: Sequence[Form]) -> Array:
+    columns = np.zeros((len(linearisation.w), len(found)))
     for target in sorted({form.target for form in found}):
         chosen = [index for index, form in enumerate(found) if form.target == target]
-        values = [np.stack([found[i].values[flight] for i in chosen], axis=1) for flight in range(len(ground.tapes))]
-        columns[:, chosen] = ground.answer([value.__getitem__ for value in values], target)
+        values = [
+            np.stack([found[i].values[flight] for i in chosen], axis=1)
+            for flight in range(len(linearisation.filter_inputs))
+        ]
+        columns[:, chosen] = linearisation.answer([value.__getitem__ for value in values], target)
     return columns

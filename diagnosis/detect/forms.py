@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.shapes import SQUARE, Shapes, beyond, follower, jitter, plain, shaped, waves_a_turn
 from diagnosis.detect.signals import Signals, angle_names, in_units, rotor_name, rotor_unit, signals
 from diagnosis.detect.waves import likely_waves
@@ -28,16 +28,16 @@ class Form:
     values: tuple[Array, ...]
 
 
-def forms(ground: Ground) -> list[Form]:
+def forms(linearisation: Linearisation) -> list[Form]:
     """All forms for the case's plant, in a fixed order."""
-    case = ground.case
-    states = case.kit.states
+    case = linearisation.case
+    states = case.library.states
     waves = {
-        axis.name: likely_waves(ground, states.index(str(axis.velocity)))
-        for axis in case.kit.bound.model.axes
+        axis.name: likely_waves(linearisation, states.index(str(axis.velocity)))
+        for axis in case.library.bound.model.axes
         if axis.position is not None
     }
-    each = [list(_forms(case, signals(ground, flight, waves))) for flight in range(len(case.flights))]
+    each = [list(_forms(case, signals(linearisation, flight, waves))) for flight in range(len(case.flights))]
     return [
         Form(place, text, plain(shape), target, tuple(flight[index][-1] for flight in each))
         for index, (place, text, shape, target, _) in enumerate(each[0])
@@ -54,11 +54,11 @@ def _forms(case: Case, s: Signals) -> Iterator[Row]:
 
 
 def _axis_forms(case: Case, s: Signals) -> Iterator[Row]:
-    kit, model = case.kit, case.kit.bound.model
+    library, model = case.library, case.library.bound.model
     for axis in model.axes:
         if axis.name not in s.angle:
             continue
-        target = kit.states.index(str(axis.velocity))
+        target = library.states.index(str(axis.velocity))
         scale = s.h / s.inertia[axis.name]
         for depends, shape, value in _torques(case, axis.name, s):
             yield axis.name, f"torque({depends}) on {axis.name}", shape, target, value * scale
@@ -71,7 +71,7 @@ def _torques(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arra
     names = angle_names(case)
     a, v = s.angle[axis], s.speed[axis]
     q, w, sign = names[axis], f"{names[axis]}_dot", np.tanh(v / REST)
-    unit = in_units(w, case.kit.bound.model.places.axes[axis].speed_size)
+    unit = in_units(w, case.library.bound.model.places.axes[axis].speed_size)
     angles: Shapes = {"sin({x})": np.sin, "{x}": lambda x: x, "{x}^2": np.square}
     doubled = waves_a_turn((2,), ("sin({count} {x})",))
     yield from shaped(q, q, a, {**angles, **doubled, "{x}^3": lambda x: x**3, **waves_a_turn(range(3, 17))})
@@ -120,14 +120,14 @@ def _inertias(case: Case, axis: str, s: Signals) -> Iterator[tuple[str, str, Arr
         if other != axis:
             q, own = (
                 names[other],
-                f"d{in_units(f'{names[axis]}_dot', case.kit.bound.model.places.axes[axis].speed_size)}/dt",
+                f"d{in_units(f'{names[axis]}_dot', case.library.bound.model.places.axes[axis].speed_size)}/dt",
             )
             yield q, f"cos({q}) {own}", acceleration * np.cos(s.angle[other])
             yield q, f"sin({q})^2 {own}", acceleration * np.sin(s.angle[other]) ** 2
 
 
 def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
-    places = case.kit.bound.model.places
+    places = case.library.bound.model.places
     for name, rotor in places.rotors.items():
         place = next((key for key, entry in places.inputs.items() if entry.variable == rotor.variable), "")
         u, time = s.u[place], s.t / s.t[-1]
@@ -166,9 +166,9 @@ def _drive_forms(case: Case, s: Signals) -> Iterator[Row]:
 
 
 def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row]:
-    kit = case.kit
-    velocity = next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis)
-    target, thrust = kit.states.index(velocity), s.thrust[rotor, axis] * s.h
+    library = case.library
+    velocity = next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
+    target, thrust = library.states.index(velocity), s.thrust[rotor, axis] * s.h
     names, o, x = angle_names(case), rotor_name(case, rotor), rotor_unit(case, rotor)
     speed, own = s.rotor[rotor], f"thrust of the {rotor}".replace("_", " ")
     shapes: Shapes = {
@@ -184,7 +184,7 @@ def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row
         if name == axis:
             near = np.exp(-(angle - angle.min()) / 0.3)
             yield rotor, f"thrust({q})", f"exp(-{q} / 0.3) {own}", target, near * thrust
-            w = in_units(f"{q}_dot", kit.bound.model.places.axes[name].speed_size)
+            w = in_units(f"{q}_dot", library.bound.model.places.axes[name].speed_size)
             yield rotor, f"thrust({o}, {q}_dot)", f"|{x}| {w}", target, np.abs(speed) * s.speed[name] * s.h
     for other, value in s.rotor.items():
         if other != rotor:
@@ -193,7 +193,7 @@ def _thrust_forms(case: Case, rotor: str, axis: str, s: Signals) -> Iterator[Row
 
 
 def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
-    kit, model = case.kit, case.kit.bound.model
+    library, model = case.library, case.library.bound.model
     names = angle_names(case)
     for place, sensor in model.places.sensors.items():
         axis = next((name for name, entry in model.places.axes.items() if entry.angle == sensor.output), "")
@@ -201,7 +201,7 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
             continue
         a, v, q = s.angle[axis], s.speed[axis], names[axis]
         w = in_units(f"{q}_dot", model.places.axes[axis].speed_size)
-        target = len(kit.states) + kit.outputs.index(sensor.output)
+        target = len(library.states) + library.outputs.index(sensor.output)
         for _, shape, value in shaped(q, q, a, {"{x}": lambda x: x, "{x}^2": np.square, **waves_a_turn(range(3, 33))}):
             yield place, f"output({q}) of {q}", shape, target, value
         yield place, f"output({q}_dot) of {q}", w, target, v
@@ -213,10 +213,10 @@ def _sensor_forms(case: Case, s: Signals) -> Iterator[Row]:
 
 def _through(case: Case, rotor: str, s: Signals) -> Iterator[tuple[int, Array]]:
     """Where an input's change enters: the rotor's speed, or the axes that it pushes where the speed is no state."""
-    kit, place = case.kit, case.kit.bound.model.places.rotors[rotor]
+    library, place = case.library, case.library.bound.model.places.rotors[rotor]
     if place.drive is not None:
-        yield kit.states.index(str(place.speed)), s.h
+        yield library.states.index(str(place.speed)), s.h
         return
     axis = next(iter(place.thrusts))
-    velocity = next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis)
-    yield kit.states.index(velocity), s.h / s.inertia[axis]
+    velocity = next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
+    yield library.states.index(velocity), s.h / s.inertia[axis]

@@ -4,8 +4,8 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
-from diagnosis.filter.filter_input import Tape
+from diagnosis.detect.linearisation import Linearisation
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances
 
 Array = NDArray[np.float64]
@@ -15,17 +15,17 @@ APART = 1.004
 MOST = 3
 
 
-def likely_steps(ground: Ground, place: str) -> list[float]:
+def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
     """The steps q of an input whose errors q round(u/q) - u explain most, to first order; a rough step hits only near the true one."""
-    model = ground.case.kit.bound.model
+    model = linearisation.case.library.bound.model
     entry = model.places.inputs[place]
-    target = _target(ground, entry.variable)
+    target = _target(linearisation, entry.variable)
     if target is None:
         return []
     column = model.inputs.index(entry.variable)
     steps = np.geomspace(SMALLEST, LARGEST, COUNT) * entry.size
     parts = np.split(steps, COUNT // AT_ONCE)
-    gains = np.concatenate([_gains(ground, column, target, part) for part in parts])
+    gains = np.concatenate([_gains(linearisation, column, target, part) for part in parts])
     found: list[float] = []
     for index in np.argsort(-gains).tolist():
         step = float(steps[index])
@@ -36,25 +36,30 @@ def likely_steps(ground: Ground, place: str) -> list[float]:
     return found
 
 
-def _gains(ground: Ground, column: int, target: int, steps: Array) -> Array:
-    return ground.gains_by([_errors(tape, column, steps) for tape in ground.tapes], target)
+def _gains(linearisation: Linearisation, column: int, target: int, steps: Array) -> Array:
+    return linearisation.gains_by(
+        [_errors(filter_input, column, steps) for filter_input in linearisation.filter_inputs], target
+    )
 
 
-def _errors(tape: Tape, column: int, steps: Array) -> Disturbances:
-    """Errors of an input by steps, over each of a tape's own (instants, steps): those that the rig has move the innovations as its answer
+def _errors(filter_input: FilterInput, column: int, steps: Array) -> Disturbances:
+    """Errors of an input by steps, over each of a filter input's own (instants, steps): those that the rig has move
+    the innovations as its answer
     says; what the model would add moves them the other way."""
-    u, h = tape.u[:, column, None], np.append(np.diff(tape.t_s), 0.0)[:, None]
+    u, h = filter_input.u[:, column, None], np.append(np.diff(filter_input.t_s), 0.0)[:, None]
     return lambda part: (u[part] - steps * np.round(u[part] / steps)) * h[part]
 
 
-def _target(ground: Ground, variable: sympy.Symbol) -> int | None:
+def _target(linearisation: Linearisation, variable: sympy.Symbol) -> int | None:
     """The state that an input drives: its rotor's speed, or the speed of the axis that it pushes."""
-    kit = ground.case.kit
-    for rotor in kit.bound.model.places.rotors.values():
+    library = linearisation.case.library
+    for rotor in library.bound.model.places.rotors.values():
         if rotor.variable != variable:
             continue
         if rotor.drive is not None:
-            return kit.states.index(str(rotor.speed))
+            return library.states.index(str(rotor.speed))
         axis = next(iter(rotor.thrusts))
-        return kit.states.index(next(str(entry.velocity) for entry in kit.bound.model.axes if entry.name == axis))
+        return library.states.index(
+            next(str(entry.velocity) for entry in library.bound.model.axes if entry.name == axis)
+        )
     return None

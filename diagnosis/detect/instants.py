@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Values
 
@@ -13,20 +13,20 @@ APART_S = 1.5
 MOST = 3
 
 
-def instants(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect whose shapes are instants: the best of a grid; empty for effects without instants."""
     names = [parameter.symbol for parameter in effect.parameters if not parameter.is_size]
-    target = target_of(ground.case, effect)
+    target = target_of(linearisation.case, effect)
     if target is None or not is_event(effect):
         return []
-    times_s, scores = ground.steps(target)
+    times_s, scores = linearisation.steps(target)
     gram, score = scores.gram, scores.score
     if "duration" in names:
         return _pulses(times_s, gram, score)
     power = score**2 / np.maximum(np.diag(gram), 1e-12)
     power[0] = 0.0
     symbol = next(name for name in names if name in TIMES)
-    found = [*_jumps(ground, target), *(float(times_s[index]) for index in _peaks(power))]
+    found = [*_jumps(linearisation, target), *(float(times_s[index]) for index in _peaks(power))]
     return [{symbol: instant} for instant in found]
 
 
@@ -42,14 +42,14 @@ def happens(effect: Effect, values: Values) -> bool:
     return any(ends or values[instant.symbol] > instant.lower for instant in instants)
 
 
-def _jumps(ground: Ground, target: int) -> list[float]:
+def _jumps(linearisation: Linearisation, target: int) -> list[float]:
     """Just before the reading of an output that is farthest from what was predicted: a jump falls between two rows, not on a grid."""
-    output = target - len(ground.case.kit.states)
-    if output < 0 or ground.case.slots[output] < 0:
+    output = target - len(linearisation.case.library.states)
+    if output < 0 or linearisation.case.slots[output] < 0:
         return []
     found = []
-    for run, flight in zip(ground.runs, ground.case.flights, strict=True):
-        w = np.abs(np.nan_to_num(run.w[:, ground.case.slots[output]]))
+    for run, flight in zip(linearisation.runs, linearisation.case.flights, strict=True):
+        w = np.abs(np.nan_to_num(run.w[:, linearisation.case.slots[output]]))
         row = int(np.argmax(w))
         found.append((float(w[row]), 0.5 * float(flight.log.t_s[row] + flight.log.t_s[max(row - 1, 0)])))
     return [max(found)[1]]
@@ -85,9 +85,9 @@ def _peaks(power: Array, most: int = MOST) -> list[int]:
 
 def target_of(case: Case, effect: Effect) -> int | None:
     """The state, or after the states the output, that an effect disturbs."""
-    kit, model = case.kit, case.kit.bound.model
+    library, model = case.library, case.library.bound.model
     for axis in model.axes:
         if axis.name == effect.place:
-            return kit.states.index(str(axis.velocity))
+            return library.states.index(str(axis.velocity))
     sensor = model.places.sensors.get(effect.place)
-    return None if sensor is None else len(kit.states) + kit.outputs.index(sensor.output)
+    return None if sensor is None else len(library.states) + library.outputs.index(sensor.output)

@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import passes, tape_under
-from jobs.thread_map import each
+from diagnosis.hypothesis.hypothesis import filter_input_under, passes
+from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 GRID_S = 0.3
@@ -30,10 +30,11 @@ class Scores:
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class Linearisation:
     """A fit with its whitened innovations w (rows,) and their slopes (rows, free) by the plant's coefficients, in standard deviations.
 
-    `solve` (free, free) is the inverse information of the coefficients alone; `runs` and `tapes` are the filter's passes, with gains.
+    `solve` (free, free) is the inverse information of the coefficients alone; `runs` and `filter inputs` are the
+    filter's passes, with gains.
     """
 
     case: Case
@@ -42,7 +43,7 @@ class Ground:
     slopes: Array
     solve: Array
     runs: tuple[Pass, ...]
-    tapes: tuple[Tape, ...]
+    filter_inputs: tuple[FilterInput, ...]
     filter: Filter
     kept: dict[int, tuple[Array, Scores]] = field(default_factory=dict)
 
@@ -91,11 +92,11 @@ class Ground:
         """Change of all whitened innovations, shape (rows, k), by disturbances values[flight] (steps, k) of one target."""
         place = self._place(target)
 
-        def over(tape: Tape, run: Pass, value: Disturbances) -> Array:
-            return self.filter.response(tape, run, _of_one(value), [place], self.case.slots)
+        def over(filter_input: FilterInput, run: Pass, value: Disturbances) -> Array:
+            return self.filter.response(filter_input, run, _of_one(value), [place], self.case.slots)
 
         return np.concatenate(
-            [found.reshape(-1, found.shape[2]) for found in each(over, self.tapes, self.runs, values)]
+            [found.reshape(-1, found.shape[2]) for found in thread_map(over, self.filter_inputs, self.runs, values)]
         )
 
     def _met(
@@ -109,20 +110,20 @@ class Ground:
         each a multiple of the answers, so that those not disturbed yet would add nothing."""
         place, sizes = self._place(target), [run.w.size for run in self.runs]
 
-        def over(tape: Tape, run: Pass, value: Disturbances, part: Array) -> tuple[Array, ...]:
+        def over(filter_input: FilterInput, run: Pass, value: Disturbances, part: Array) -> tuple[Array, ...]:
             sums = terms(np.zeros((0, columns_of(value))), part[:0])
-            for places, E in self.filter.respond(tape, run, _of_one(value), [place], self.case.slots):
+            for places, E in self.filter.respond(filter_input, run, _of_one(value), [place], self.case.slots):
                 for total, term in zip(sums, terms(E, part[places]), strict=True):
                     total[tuple(slice(size) for size in term.shape)] += term
             return sums
 
-        parts = each(over, self.tapes, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
+        parts = thread_map(over, self.filter_inputs, self.runs, values, np.split(columns, np.cumsum(sizes)[:-1]))
         return tuple(sum(flights) for flights in zip(*parts, strict=True))
 
     @cached_property
     def _pull(self) -> Array:
         """What the innovations and what is known of the coefficients say together of each (free,)."""
-        return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.supposed.theta))
+        return np.asarray(self.slopes.T @ self.w + self.case.pull_of(self.fit.hypothesis.theta))
 
     @cached_property
     def _own(self) -> Array:
@@ -131,22 +132,22 @@ class Ground:
 
     def _unit_steps(self, target: int) -> list[Disturbances]:
         """Unit steps at the grid's instants by flight (steps, k)."""
-        begins, moves = self.instants() - 1e-9, target < len(self.case.kit.states)
+        begins, moves = self.instants() - 1e-9, target < len(self.case.library.states)
 
-        def steps(tape: Tape) -> Disturbances:
-            height = np.append(np.diff(tape.t_s), 0.0) if moves else np.ones(len(tape.t_s))
-            return lambda part: np.where(tape.t_s[part, None] >= begins, height[part, None], 0.0)
+        def steps(filter_input: FilterInput) -> Disturbances:
+            height = np.append(np.diff(filter_input.t_s), 0.0) if moves else np.ones(len(filter_input.t_s))
+            return lambda part: np.where(filter_input.t_s[part, None] >= begins, height[part, None], 0.0)
 
-        return [steps(tape) for tape in self.tapes]
+        return [steps(filter_input) for filter_input in self.filter_inputs]
 
     def _place(self, target: int) -> int:
-        """A target of the kit's own states and outputs, counted as the filter's."""
-        own = len(self.case.kit.states)
+        """A target of the library's own states and outputs, counted as the filter's."""
+        own = len(self.case.library.states)
         return target if target < own else target + self.filter.states - own
 
     def instants(self) -> Array:
         """The grid of instants of steps (k,), in s."""
-        end = max(tape.t_s[-1] for tape in self.tapes)
+        end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
         return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
 
 
@@ -155,20 +156,20 @@ def _of_one(values: Disturbances) -> Disturbances:
     return lambda part: values(part)[:, None, :]
 
 
-def ground_of(case: Case, fit: Fit) -> Ground:
+def linearised(case: Case, fit: Fit) -> Linearisation:
     """The ground at a fit."""
-    supposed = fit.supposed
-    variant = case.kit.variant(supposed.effects)
-    runs = passes(case, supposed, case.free.tolist(), slopes=True, gains=True)
+    hypothesis = fit.hypothesis
+    compiled = case.library.compiled(hypothesis.effects)
+    runs = passes(case, hypothesis, case.free.tolist(), slopes=True, gains=True)
     assert runs is not None
     slopes = np.concatenate([flat_slopes(run) for run in runs]) * case.sd
-    return Ground(
+    return Linearisation(
         case=case,
         fit=fit,
         w=stacked(runs),
         slopes=slopes,
         solve=np.asarray(np.linalg.inv(slopes.T @ slopes + case.known), float),
         runs=tuple(runs),
-        tapes=tuple(tape_under(case, variant, flight, supposed.effects) for flight in case.flights),
-        filter=variant.filter,
+        filter_inputs=tuple(filter_input_under(case, compiled, flight, hypothesis.effects) for flight in case.flights),
+        filter=compiled.filter,
     )

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.hypothesis import noise_of
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 COUNT = 48
@@ -36,54 +36,64 @@ def tail_of(largest: Array) -> Tail:
     return Tail(float(np.mean(largest)) - 0.5772 * scale, scale)
 
 
-def replicas(ground: Ground, count: int = COUNT) -> Array:
+def replicas(linearisation: Linearisation, count: int = COUNT) -> Array:
     """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
     rng = np.random.default_rng(SEED)
-    flights = range(len(ground.tapes))
-    parts = each(lambda index: _flight(ground, index, count, np.random.default_rng((SEED, index))), flights)
-    drawn = rng.standard_normal((ground.slopes.shape[1], count))
-    spread = ground.case.spread
-    return np.asarray(np.concatenate(parts) + ground.slopes @ (drawn if spread is None else spread @ drawn))
+    flights = range(len(linearisation.filter_inputs))
+    parts = thread_map(
+        lambda index: _flight(linearisation, index, count, np.random.default_rng((SEED, index))), flights
+    )
+    drawn = rng.standard_normal((linearisation.slopes.shape[1], count))
+    spread = linearisation.case.spread
+    return np.asarray(np.concatenate(parts) + linearisation.slopes @ (drawn if spread is None else spread @ drawn))
 
 
-def _flight(ground: Ground, index: int, count: int, rng: np.random.Generator) -> Array:
-    case, tape, run = ground.case, ground.tapes[index], ground.runs[index]
-    kit, flight = case.kit, case.flights[index]
-    variant = kit.variant(ground.fit.supposed.effects)
-    noise = noise_of(case, variant, flight, ground.fit.supposed)
-    states = ground.filter.states
-    moving = [kit.states.index(str(axis.velocity)) for axis in kit.bound.model.axes if axis.name not in flight.locked]
+def _flight(linearisation: Linearisation, index: int, count: int, rng: np.random.Generator) -> Array:
+    case, filter_input, run = linearisation.case, linearisation.filter_inputs[index], linearisation.runs[index]
+    library, flight = case.library, case.flights[index]
+    compiled = library.compiled(linearisation.fit.hypothesis.effects)
+    noise = noise_of(case, compiled, flight, linearisation.fit.hypothesis)
+    states = linearisation.filter.states
+    moving = [
+        library.states.index(str(axis.velocity)) for axis in library.bound.model.axes if axis.name not in flight.locked
+    ]
     measured = [place for place, slot in enumerate(case.slots) if slot >= 0]
     targets = [*moving, *(states + place for place in measured)]
-    values = np.empty((len(tape.t_s), len(targets), count))
-    h = np.append(np.diff(tape.t_s), 0.0)[:, None]
+    values = np.empty((len(filter_input.t_s), len(targets), count))
+    h = np.append(np.diff(filter_input.t_s), 0.0)[:, None]
     for row, state in enumerate(moving):
         values[:, row] = rng.standard_normal((len(h), count)) * np.sqrt(noise.q[state] * h)
     for row, place in enumerate(measured, len(moving)):
-        values[:, row] = _read(ground, index, place, count, rng)
-    dw = ground.filter.response(tape, run, values.__getitem__, targets, case.slots)
+        values[:, row] = _read(linearisation, index, place, count, rng)
+    dw = linearisation.filter.response(filter_input, run, values.__getitem__, targets, case.slots)
     return dw.reshape(-1, count)
 
 
-def _read(ground: Ground, index: int, place: int, count: int, rng: np.random.Generator) -> Array:
+def _read(linearisation: Linearisation, index: int, place: int, count: int, rng: np.random.Generator) -> Array:
     """Errors of readings (steps, count): rounding along the log's own way, moved at random, noise beyond it; and of edges their own."""
-    kit, tape = ground.case.kit, ground.tapes[index]
-    name = kit.outputs[place]
-    step = kit.bound.plant.sensors.get(name, 0.0)
-    beyond = tape.single[place] - step**2 / 12.0
-    error = rng.standard_normal((len(tape.t_s), count)) * np.sqrt(beyond if beyond > 1e-3 * step**2 else 0.0)
-    if step <= 0.0 or name not in kit.bound.model.outputs:
-        return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
-    symbol = str(kit.bound.model.outputs[name])
-    column = kit.states.index(symbol) if symbol in kit.states else -1
-    way = tape.y[:, place] if column < 0 else ground.runs[index].filtered[np.maximum(tape.row, 0), column]
+    library, filter_input = linearisation.case.library, linearisation.filter_inputs[index]
+    name = library.outputs[place]
+    step = library.bound.plant.sensors.get(name, 0.0)
+    beyond = filter_input.single[place] - step**2 / 12.0
+    error = rng.standard_normal((len(filter_input.t_s), count)) * np.sqrt(beyond if beyond > 1e-3 * step**2 else 0.0)
+    if step <= 0.0 or name not in library.bound.model.outputs:
+        return np.where(np.isfinite(filter_input.y[:, place])[:, None], error, 0.0)
+    symbol = str(library.bound.model.outputs[name])
+    column = library.states.index(symbol) if symbol in library.states else -1
+    way = (
+        filter_input.y[:, place]
+        if column < 0
+        else linearisation.runs[index].filtered[np.maximum(filter_input.row, 0), column]
+    )
     # How far the way itself is off nobody knows: least where a steady speed makes rounding beat with the samples.
     off = rng.uniform(0.0, 0.3 * step, count) * _wander(len(way), count, rng)
     exact = np.nan_to_num(way)[:, None] + rng.uniform(0.0, step, count) + off
     error += np.round(exact / step) * step - exact
-    sharp = tape.r[:, place] < tape.single[place]
-    error[sharp] = rng.uniform(-0.5, 0.5, (int(sharp.sum()), count)) * np.sqrt(12.0 * tape.r[sharp, place, None])
-    return np.where(np.isfinite(tape.y[:, place])[:, None], error, 0.0)
+    sharp = filter_input.r[:, place] < filter_input.single[place]
+    error[sharp] = rng.uniform(-0.5, 0.5, (int(sharp.sum()), count)) * np.sqrt(
+        12.0 * filter_input.r[sharp, place, None]
+    )
+    return np.where(np.isfinite(filter_input.y[:, place])[:, None], error, 0.0)
 
 
 def _wander(steps: int, count: int, rng: np.random.Generator) -> Array:

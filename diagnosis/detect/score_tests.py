@@ -1,4 +1,4 @@
-"""A first look at every effect: how much of what is left its signature explains once the plant's own coefficients have had their share."""
+"""Score tests of all effects: how much of what is left a signature explains once the plant's own coefficients have had their share."""
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.input_steps import likely_steps
 from diagnosis.detect.instants import instants, is_event
-from diagnosis.detect.linearisation import Ground, Scores
+from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.waves import swings, wave_starts
 from diagnosis.filter.kalman import Pass
 from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from diagnosis.library.effect_library import Kit, is_lag
+from diagnosis.library.effect_library import EffectLibrary, is_lag
 from diagnosis.library.lattice import coarse_step
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
@@ -26,11 +26,11 @@ SMALL = 0.05
 # Of the largest input, at which a limit may lie; beyond it the corner alone is reached.
 PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05, 1.2)
 FRICTIONS = ("coulomb", "load_friction", "friction_asymmetry")
-FARTHEST = 30.0  # of a size's reference that a first look may propose
+FARTHEST = 30.0  # of a size's reference that a score test may propose
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class ScoreTest:
     """An effect with values to start a fit from: `z` its efficient score in standard deviations, `gain` of the log likelihood to first
     order, `absorbed` the share of its signature that the plant's coefficients imitate, `power` the score that its reference size
     would have."""
@@ -43,25 +43,27 @@ class Look:
     power: float
 
 
-def look(case: Case, ground: Ground, names: Sequence[str], worth: Set[str] | None = None) -> list[Look]:
+def score_effects(
+    case: Case, linearisation: Linearisation, names: Sequence[str], worth: Set[str] | None = None
+) -> list[ScoreTest]:
     """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
 
     Effects on the way of the signals cost a pass for each start, events a grid of instants, sines one of waves; `worth` restricts
     these, but for limits, which often show only beside another effect.
     """
-    supposed = ground.fit.supposed
-    wanted = [name for name in names if name not in supposed.effects]
-    kit = case.kit
-    costly = [name for name in wanted if worth is None or name in worth or kit.effects[name].kind == "saturation"]
-    stateless = [n for n in wanted if n in kit.names and (n in costly or not _sought(kit.effects[n]))]
-    others = [name for name in wanted if name in kit.wide_names]
-    finite = [name for name in costly if not kit.effects[name].on_equations or _limited(kit.effects[name])]
+    hypothesis = linearisation.fit.hypothesis
+    wanted = [name for name in names if name not in hypothesis.effects]
+    library = case.library
+    costly = [name for name in wanted if worth is None or name in worth or library.effects[name].kind == "saturation"]
+    stateless = [n for n in wanted if n in library.names and (n in costly or not _sought(library.effects[n]))]
+    others = [name for name in wanted if name in library.wide_names]
+    finite = [name for name in costly if not library.effects[name].on_equations or _limited(library.effects[name])]
     kinds, chosen = (
         (_finite, _smooth, _smooth, _first_order),
-        (finite + holding(kit, wanted), others, stateless, costly),
+        (finite + holding(library, wanted), others, stateless, costly),
     )
-    found = each(lambda kind, names: kind(case, ground, names), kinds, chosen)
-    best: dict[str, Look] = {}
+    found = thread_map(lambda kind, names: kind(case, linearisation, names), kinds, chosen)
+    best: dict[str, ScoreTest] = {}
     for entry in chain.from_iterable(found):
         if entry.effect not in best or entry.gain > best[entry.effect].gain:
             best[entry.effect] = entry
@@ -75,30 +77,30 @@ def shape_starts(effect: Effect) -> list[dict[str, float]]:
     return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
 
 
-def _starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Values of an effect's shapes to start from; those of a sine are sought, and where none is likely there are none."""
     if swings(effect):
-        return wave_starts(ground, effect)
-    return instants(ground, effect) or shape_starts(effect)
+        return wave_starts(linearisation, effect)
+    return instants(linearisation, effect) or shape_starts(effect)
 
 
-def _smooth(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
-    """Effects in the kit's equations whose first order counts: all in one pass for each of their starts."""
-    kit, supposed = case.kit, ground.fit.supposed
+def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
+    """Effects in the library's equations whose first order counts: all in one pass for each of their starts."""
+    library, hypothesis = case.library, linearisation.fit.hypothesis
     starts: dict[str, list[dict[str, float]]] = {}
     for name in names:
-        effect = kit.effects[name]
+        effect = library.effects[name]
         if not _limited(effect):
-            starts[name] = _starts(ground, effect)
+            starts[name] = _starts(linearisation, effect)
     found = []
     for turn in range(max((len(values) for values in starts.values()), default=0)):
         now = {name: values[turn] for name, values in starts.items() if turn < len(values)}
-        touched = {name: {**_touched(kit.effects[name]), **shapes} for name, shapes in now.items()}
-        variant = kit.variant((*supposed.effects, *now))
-        places = [variant.place(name, kit.effects[name].size.symbol) for name in now]
-        runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), places, slopes=True)
+        touched = {name: {**_touched(library.effects[name]), **shapes} for name, shapes in now.items()}
+        compiled = library.compiled((*hypothesis.effects, *now))
+        places = [compiled.place(name, library.effects[name].size.symbol) for name in now]
+        runs = passes(case, hypothesis.with_effects({**touched, **hypothesis.effects}), places, slopes=True)
         if runs is not None:
-            found += _judged(case, ground, touched, runs)
+            found += _judged(case, linearisation, touched, runs)
     return found
 
 
@@ -116,99 +118,105 @@ def _limited(effect: Effect) -> bool:
     return effect.kind in ("saturation", "slew_limit")
 
 
-def holding(kit: Kit, names: Sequence[str]) -> list[str]:
+def holding(library: EffectLibrary, names: Sequence[str]) -> list[str]:
     """Dry friction of an axis that has none as stated: of how it holds the axis where it rests first order knows nothing."""
     return [
-        name for name in names if kit.effects[name].kind in FRICTIONS and kit.effects[name].place in kit.frictionless
+        name
+        for name in names
+        if library.effects[name].kind in FRICTIONS and library.effects[name].place in library.frictionless
     ]
 
 
-def _judged(case: Case, ground: Ground, values: Mapping[str, Values], runs: Sequence[Pass]) -> list[Look]:
+def _judged(
+    case: Case, linearisation: Linearisation, values: Mapping[str, Values], runs: Sequence[Pass]
+) -> list[ScoreTest]:
     """Looks from a pass whose columns are one effect's size each."""
-    scale = np.array([size_scale(case.kit.effects[name].size) for name in values])
+    scale = np.array([size_scale(case.library.effects[name].size) for name in values])
     columns = np.concatenate([flat_slopes(run) for run in runs]) * scale
-    return _looks(case, values, ground.scores_of(columns), scale)
+    return _score_tests(case, values, linearisation.scores_of(columns), scale)
 
 
-def _looks(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[Look]:
+def _score_tests(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[ScoreTest]:
     """Looks from the scores of one column for each effect, per unit of its size."""
     norm = np.sqrt(np.maximum(np.diag(scores.gram), 0.0))
     found = []
     for index, (name, given) in enumerate(values.items()):
         if norm[index] < 1e-3 or not np.isfinite(norm[index]):
             continue
-        parameter, unit = case.kit.effects[name].size, units[index]
+        parameter, unit = case.library.effects[name].size, units[index]
         score = float(scores.score[index] / norm[index])
         size = float(np.clip(score / norm[index], -FARTHEST, FARTHEST))
         value = float(np.clip((parameter.zero or 0.0) + size * unit, parameter.lower, parameter.upper))
         size = (value - (parameter.zero or 0.0)) / unit
         gain = float(size * norm[index] * (score - 0.5 * size * norm[index]))
         absorbed = 1.0 - float(norm[index] ** 2 / max(scores.raw[index], 1e-12))
-        found.append(Look(name, {**given, parameter.symbol: value}, score, gain, absorbed, float(norm[index])))
+        found.append(ScoreTest(name, {**given, parameter.symbol: value}, score, gain, absorbed, float(norm[index])))
     return found
 
 
-def _first_order(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
+def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
     """Smooth effects on the way of the signals, by a small size."""
     found = []
-    supposed = ground.fit.supposed
+    hypothesis = linearisation.fit.hypothesis
     for name in names:
-        effect = case.kit.effects[name]
+        effect = case.library.effects[name]
         plain = sum(not parameter.refining for parameter in effect.parameters) == 1
         if effect.on_equations or not effect.smooth or not plain or is_lag(name):
             continue
         unit = size_scale(effect.size)
         absent = {parameter.symbol: parameter.first for parameter in effect.parameters}
         small = {**absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}
-        runs = passes(case, supposed.with_effects({**supposed.effects, name: small}))
+        runs = passes(case, hypothesis.with_effects({**hypothesis.effects, name: small}))
         if runs is not None:
-            scores = ground.scores_of(((stacked(runs) - ground.w) / SMALL)[:, None])
-            found += _looks(case, {name: small}, scores, np.array([unit]))
+            scores = linearisation.scores_of(((stacked(runs) - linearisation.w) / SMALL)[:, None])
+            found += _score_tests(case, {name: small}, scores, np.array([unit]))
     return found
 
 
-def _finite(case: Case, ground: Ground, names: Sequence[str]) -> list[Look]:
+def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> list[ScoreTest]:
     """Effects on the way of the signals, and limits: tried at each of their starts at full size."""
-    effects = [case.kit.effects[name] for name in names]
-    sizes = each(lambda effect: _sizes(case, ground, effect), effects)
+    effects = [case.library.effects[name] for name in names]
+    sizes = thread_map(lambda effect: _sizes(case, linearisation, effect), effects)
     starts = [
         (effect, {**shapes, effect.size.symbol: value})
         for effect, values in zip(effects, sizes, strict=True)
         for value in values
         for shapes in shape_starts(effect)
     ]
-    return [entry for entry in each(lambda start: _tried(case, ground, *start), starts) if entry is not None]
+    return [
+        entry for entry in thread_map(lambda start: _tried(case, linearisation, *start), starts) if entry is not None
+    ]
 
 
-def _sizes(case: Case, ground: Ground, effect: Effect) -> list[float]:
+def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:
     """Sizes to try of an effect without first order; those of a limit and of a sensor's steps are seen in the log."""
-    kit = case.kit
+    library = case.library
     if effect.kind == "saturation":
-        column = kit.bound.model.inputs.index(kit.bound.model.places.inputs[effect.place].variable)
-        peak = max(float(np.max(np.abs(flight.tape.u[:, column]))) for flight in case.flights)
+        column = library.bound.model.inputs.index(library.bound.model.places.inputs[effect.place].variable)
+        peak = max(float(np.max(np.abs(flight.filter_input.u[:, column]))) for flight in case.flights)
         return [share * peak for share in PEAK_SHARES if peak > 0.0]
     if effect.kind != "quantization":
         return list(effect.size.starts) or [effect.size.reference]
-    sensor = kit.bound.model.places.sensors.get(effect.place)
+    sensor = library.bound.model.places.sensors.get(effect.place)
     if sensor is None:
-        return likely_steps(ground, effect.place)
-    place = kit.outputs.index(sensor.output)
-    read = np.concatenate([flight.tape.read[:, place] for flight in case.flights])
-    step = coarse_step(read, kit.bound.plant.sensors[sensor.output])
+        return likely_steps(linearisation, effect.place)
+    place = library.outputs.index(sensor.output)
+    read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
+    step = coarse_step(read, library.bound.plant.sensors[sensor.output])
     return [] if step is None else [step]
 
 
-def _tried(case: Case, ground: Ground, effect: Effect, values: Values) -> Look | None:
+def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Values) -> ScoreTest | None:
     """An effect at full size: its gain of the log likelihood, with what the fitted numbers would then add to first order."""
-    supposed = ground.fit.supposed
-    runs = passes(case, supposed.with_effects({**supposed.effects, effect.name: values}))
+    hypothesis = linearisation.fit.hypothesis
+    runs = passes(case, hypothesis.with_effects({**hypothesis.effects, effect.name: values}))
     if runs is None:
         return None
-    change = stacked(runs) - ground.w
+    change = stacked(runs) - linearisation.w
     size = float(change @ change)
     if size < 1e-6:
         return None
-    further, absorbed = ground.further(change)
-    gain = likelihood(runs) - ground.fit.log_likelihood + further
+    further, absorbed = linearisation.further(change)
+    gain = likelihood(runs) - linearisation.fit.log_likelihood + further
     power = float(np.sqrt(max(size * (1.0 - absorbed), 0.0)))
-    return Look(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power)
+    return ScoreTest(effect.name, values, float(np.sqrt(2.0 * max(gain, 0.0))), gain, absorbed, power)

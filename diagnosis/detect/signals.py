@@ -8,7 +8,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
 from sim.model import TIME, Model
 
@@ -30,19 +30,19 @@ class Signals:
     waves: Mapping[str, tuple[float, ...]]
 
 
-def signals(ground: Ground, flight: int, waves: Mapping[str, tuple[float, ...]]) -> Signals:
+def signals(linearisation: Linearisation, flight: int, waves: Mapping[str, tuple[float, ...]]) -> Signals:
     """The signals that the filter predicts for a flight."""
-    kit = ground.case.kit
-    model, tape, run = kit.bound.model, ground.tapes[flight], ground.runs[flight]
-    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], tape.row))
+    library = linearisation.case.library
+    model, filter_input, run = library.bound.model, linearisation.filter_inputs[flight], linearisation.runs[flight]
+    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], filter_input.row))
 
     def value(expression: sympy.Expr) -> Array:
-        return value_of(model, expression, tape.t_s, x, tape.u, kit.bound.p)
+        return value_of(model, expression, filter_input.t_s, x, filter_input.u, library.bound.p)
 
     axes = {axis.name: axis for axis in model.axes if axis.position is not None}
     return Signals(
-        t=tape.t_s,
-        h=np.append(np.diff(tape.t_s), 0.0),
+        t=filter_input.t_s,
+        h=np.append(np.diff(filter_input.t_s), 0.0),
         angle={name: value(axis.position) for name, axis in axes.items()},
         speed={name: value(axis.velocity) / model.places.axes[name].speed_size for name, axis in axes.items()},
         rotor={name: value(rotor.speed) / rotor.speed_size for name, rotor in model.places.rotors.items()},
@@ -75,7 +75,7 @@ def _relative(inertia: Array) -> Array:
 
 
 def by_step(x: Array, row: NDArray[np.int64]) -> Array:
-    """Rows of a log held over a tape's instants."""
+    """Rows of a log held over a filter input's instants."""
     known = np.maximum.accumulate(np.where(row >= 0, row, 0))
     return np.asarray(x[known])
 
@@ -87,17 +87,17 @@ def in_units(name: str, size: float) -> str:
 
 def rotor_unit(case: Case, rotor: str) -> str:
     """A rotor's speed in units of its size, as text."""
-    return in_units(rotor_name(case, rotor), case.kit.bound.model.places.rotors[rotor].speed_size)
+    return in_units(rotor_name(case, rotor), case.library.bound.model.places.rotors[rotor].speed_size)
 
 
 def angle_names(case: Case) -> dict[str, str]:
     """Axis -> its angle's short name (psi)."""
-    return {name: entry.angle.rsplit("_", 1)[0] for name, entry in case.kit.bound.model.places.axes.items()}
+    return {name: entry.angle.rsplit("_", 1)[0] for name, entry in case.library.bound.model.places.axes.items()}
 
 
 def rotor_name(case: Case, rotor: str) -> str:
     """The short name of a rotor's speed (omega_M), or of its input where it has no speed of its own."""
-    place = case.kit.bound.model.places.rotors[rotor]
+    place = case.library.bound.model.places.rotors[rotor]
     if place.drive is None:
         return str(place.variable).rsplit("_", 1)[0]
     return f"omega_{place.letter}" if place.letter else "omega"

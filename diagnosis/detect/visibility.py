@@ -4,31 +4,33 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.detect.score_tests import Look
+from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.hypothesis.case import Case
 
 SEEN = 4.0  # score that an effect needs to be seen
 BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
 
 
-def cannot_tell(case: Case, looks: Sequence[Look]) -> bool:
+def cannot_tell(case: Case, score_tests: Sequence[ScoreTest]) -> bool:
     """Whether most of the library would go unseen in these data even at its reference sizes."""
-    return _share_hidden(case, looks) > BLIND
+    return _share_hidden(case, score_tests) > BLIND
 
 
-def judged(case: Case, looks: Sequence[Look]) -> list[str]:
+def judged(case: Case, score_tests: Sequence[ScoreTest]) -> list[str]:
     """Effects of which these looks could say something: all but steps of a signal, which are read off the readings themselves."""
     return [
-        name for name in case.kit.candidates if not name.endswith(".quantization") or name in {e.effect for e in looks}
+        name
+        for name in case.library.candidates
+        if not name.endswith(".quantization") or name in {e.effect for e in score_tests}
     ]
 
 
-def hidden(case: Case, looks: Sequence[Look]) -> dict[str, float]:
+def hidden(case: Case, score_tests: Sequence[ScoreTest]) -> dict[str, float]:
     """By effect that would go unseen at its reference size: how many times that it could be; inf where it left no trace at all."""
-    power = {entry.effect: entry.power for entry in looks}
-    found = {name: SEEN / max(power[name], 1e-9) if name in power else np.inf for name in judged(case, looks)}
+    power = {entry.effect: entry.power for entry in score_tests}
+    found = {name: SEEN / max(power[name], 1e-9) if name in power else np.inf for name in judged(case, score_tests)}
     return {name: ratio for name, ratio in found.items() if ratio > 1.0}
 
 
-def _share_hidden(case: Case, looks: Sequence[Look]) -> float:
-    return len(hidden(case, looks)) / max(len(judged(case, looks)), 1)
+def _share_hidden(case: Case, score_tests: Sequence[ScoreTest]) -> float:
+    return len(hidden(case, score_tests)) / max(len(judged(case, score_tests)), 1)

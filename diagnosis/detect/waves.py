@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.detect.instants import target_of
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step
-from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Pass
 from sim.effect import Effect, EffectParameter
 
@@ -22,15 +22,15 @@ NEAR_PERIODS = 3.0  # by which frequencies differ over a whole log for one not t
 ITS_OWN, MOST_PARTS = 0.3, 5  # share of the motion that repeats with a frequency, or with a second to fifth of it
 
 
-def wave_starts(ground: Ground, effect: Effect) -> list[dict[str, float]]:
+def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect that swings as a sine: its likeliest waves, each as sine and as cosine; empty for other effects."""
-    target = target_of(ground.case, effect) if swings(effect) else None
+    target = target_of(linearisation.case, effect) if swings(effect) else None
     if target is None:
         return []
     if "rate" in effect.parameter:
-        symbol, found = "rate", _foreign(ground, target, likely_waves(ground, target))
+        symbol, found = "rate", _foreign(linearisation, target, likely_waves(linearisation, target))
     else:
-        symbol, found = "waves", _likely_counts(ground, target, effect.parameter["waves"])
+        symbol, found = "waves", _likely_counts(linearisation, target, effect.parameter["waves"])
     return [{symbol: value, "phase": phase} for value in found for phase in effect.parameter["phase"].starts]
 
 
@@ -39,25 +39,25 @@ def swings(effect: Effect) -> bool:
     return "phase" in effect.parameter
 
 
-def _foreign(ground: Ground, speed: int, rates: Sequence[float]) -> tuple[float, ...]:
+def _foreign(linearisation: Linearisation, speed: int, rates: Sequence[float]) -> tuple[float, ...]:
     """Frequencies that are not the motion's own, nor so near to one that a fit would end there."""
-    end = max(float(tape.t_s[-1] - tape.t_s[0]) for tape in ground.tapes)
-    own = [rate for rate in rates if _repeats(ground, speed, rate)]
+    end = max(float(filter_input.t_s[-1] - filter_input.t_s[0]) for filter_input in linearisation.filter_inputs)
+    own = [rate for rate in rates if _repeats(linearisation, speed, rate)]
     return tuple(rate for rate in rates if all(abs(rate - other) > NEAR_PERIODS * 2.0 * np.pi / end for other in own))
 
 
-def _repeats(ground: Ground, speed: int, rate: float) -> bool:
+def _repeats(linearisation: Linearisation, speed: int, rate: float) -> bool:
     """Whether the motion itself repeats with a frequency or with a whole part of it: what repeats alike is then rather the motion's own."""
-    return max(_share(ground, speed, rate / part) for part in range(1, MOST_PARTS + 1)) > ITS_OWN
+    return max(_share(linearisation, speed, rate / part) for part in range(1, MOST_PARTS + 1)) > ITS_OWN
 
 
-def _share(ground: Ground, state: int, rate: float) -> float:
+def _share(linearisation: Linearisation, state: int, rate: float) -> float:
     """The largest share of a state's variance in one flight that swings at a frequency."""
     shares = []
-    for tape, run in zip(ground.tapes, ground.runs, strict=True):
-        own = tape.row >= 0
-        x = run.filtered[tape.row[own], state]
-        x, phase = x[np.isfinite(x)], rate * tape.t_s[own][np.isfinite(x)]
+    for filter_input, run in zip(linearisation.filter_inputs, linearisation.runs, strict=True):
+        own = filter_input.row >= 0
+        x = run.filtered[filter_input.row[own], state]
+        x, phase = x[np.isfinite(x)], rate * filter_input.t_s[own][np.isfinite(x)]
         if not len(x):
             continue
         wave = np.stack([np.sin(phase), np.cos(phase), np.ones(len(phase))], axis=1)
@@ -66,25 +66,25 @@ def _share(ground: Ground, state: int, rate: float) -> float:
     return max(shares, default=0.0)
 
 
-def _likely_counts(ground: Ground, target: int, waves: EffectParameter) -> tuple[float, ...]:
+def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParameter) -> tuple[float, ...]:
     """Numbers of waves, in rad a unit, whose sine and cosine of the way that a target belongs to gain most, apart from one another."""
-    way = _way(ground, target)
+    way = _way(linearisation, target)
     if way is None:
         return ()
-    tried = np.geomspace(waves.lower, waves.upper, COUNTS)
-    scores = ground.scores_by(_sines(ground, target, way, tried), target)
+    fitted = np.geomspace(waves.lower, waves.upper, COUNTS)
+    scores = linearisation.scores_by(_sines(linearisation, target, way, fitted), target)
     pairs = np.arange(2 * COUNTS).reshape(2, COUNTS).T
     own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
-    return tuple(float(np.exp(value)) for value in _best(np.log(tried), _pair_gains(own, along), APART))
+    return tuple(float(np.exp(value)) for value in _best(np.log(fitted), _pair_gains(own, along), APART))
 
 
-def _sines(ground: Ground, target: int, way: int, waves: Array) -> list[Disturbances]:
+def _sines(linearisation: Linearisation, target: int, way: int, waves: Array) -> list[Disturbances]:
     """Sines, then cosines, of a state by flight (steps, 2 k): as an acceleration, or as an error of the output."""
-    moves = target < len(ground.case.kit.states)
+    moves = target < len(linearisation.case.library.states)
 
-    def sines(tape: Tape, run: Pass) -> Disturbances:
-        height = np.append(np.diff(tape.t_s), 0.0) if moves else np.ones(len(tape.t_s))
-        x = np.nan_to_num(by_step(run.filtered[:, way], tape.row))
+    def sines(filter_input: FilterInput, run: Pass) -> Disturbances:
+        height = np.append(np.diff(filter_input.t_s), 0.0) if moves else np.ones(len(filter_input.t_s))
+        x = np.nan_to_num(by_step(run.filtered[:, way], filter_input.row))
 
         def values(part: slice) -> Array:
             angle = x[part, None] * waves
@@ -92,22 +92,25 @@ def _sines(ground: Ground, target: int, way: int, waves: Array) -> list[Disturba
 
         return values
 
-    return [sines(tape, run) for tape, run in zip(ground.tapes, ground.runs, strict=True)]
+    return [
+        sines(filter_input, run)
+        for filter_input, run in zip(linearisation.filter_inputs, linearisation.runs, strict=True)
+    ]
 
 
-def _way(ground: Ground, target: int) -> int | None:
+def _way(linearisation: Linearisation, target: int) -> int | None:
     """The state that says where a target is: an axis' position, or what an output reads; None where no state does."""
-    kit, model = ground.case.kit, ground.case.kit.bound.model
-    if target < len(kit.states):
-        found = next((axis.position for axis in model.axes if str(axis.velocity) == kit.states[target]), None)
+    library, model = linearisation.case.library, linearisation.case.library.bound.model
+    if target < len(library.states):
+        found = next((axis.position for axis in model.axes if str(axis.velocity) == library.states[target]), None)
     else:
-        found = model.outputs.get(kit.outputs[target - len(kit.states)])
-    return kit.states.index(str(found)) if str(found) in kit.states else None
+        found = model.outputs.get(library.outputs[target - len(library.states)])
+    return library.states.index(str(found)) if str(found) in library.states else None
 
 
-def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
+def likely_waves(linearisation: Linearisation, target: int) -> tuple[float, ...]:
     """The frequencies in rad/s whose sine and cosine in time gain most at a target, apart from one another."""
-    times, scores = ground.steps(target)
+    times, scores = linearisation.steps(target)
     if len(times) < 8:
         return ()
     # A pulse from one instant to the next is a step up and a step down; a wave is a row of pulses.
@@ -118,12 +121,12 @@ def likely_waves(ground: Ground, target: int) -> tuple[float, ...]:
     return _best(RATES_RAD_S, gains, APART_RAD_S)
 
 
-def _best(tried: Array, gains: Array, apart: float) -> tuple[float, ...]:
+def _best(fitted: Array, gains: Array, apart: float) -> tuple[float, ...]:
     """Those that gain most, at least `apart` from one another."""
     chosen: list[float] = []
     for index in np.argsort(-gains).tolist():
-        if all(abs(tried[index] - other) > apart for other in chosen):
-            chosen.append(float(tried[index]))
+        if all(abs(fitted[index] - other) > apart for other in chosen):
+            chosen.append(float(fitted[index]))
         if len(chosen) == MOST:
             break
     return tuple(chosen)

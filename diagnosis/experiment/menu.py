@@ -52,7 +52,7 @@ class Room:
 
 def rooms(case: Case) -> tuple[Room, ...]:
     """The room of every axis with a position, from what the logs show and where its stops are."""
-    model = case.kit.bound.model
+    model = case.library.bound.model
     found = []
     for axis in model.axes:
         if axis.position is None or axis.name not in model.places.axes:
@@ -62,7 +62,7 @@ def rooms(case: Case) -> tuple[Room, ...]:
         y = np.concatenate([flight.log.y[:, column] for flight in case.flights])
         seen = np.percentile(y[np.isfinite(y)], [5.0, 95.0]) if np.isfinite(y).any() else np.zeros(2)
         low, high = (
-            edge * WIDEST_RAD if stop is None else STOPS * case.kit.bound.number(stop)
+            edge * WIDEST_RAD if stop is None else STOPS * case.library.bound.number(stop)
             for edge, stop in ((-1.0, axis.lower), (1.0, axis.upper))
         )
         middle = float(np.clip(seen.mean(), low, high))
@@ -75,12 +75,12 @@ def rooms(case: Case) -> tuple[Room, ...]:
 
 def plans(case: Case, period_s: float) -> Iterator[Plan]:
     """Everything on the menu that this plant allows."""
-    room, model = rooms(case), case.kit.bound.model
+    room, model = rooms(case), case.library.bound.model
     if not room:
         return
     make = _Maker(case, room, period_s)
     yield make.lively("lively run", "fly every axis in steps, at times that do not coincide", 0.05)
-    unseen = [case.kit.outputs[place] for place, slot in enumerate(case.slots) if slot < 0]
+    unseen = [case.library.outputs[place] for place, slot in enumerate(case.slots) if slot < 0]
     if unseen and model.places.rotors:
         told = " and ".join(name.rsplit("_rad_s", 1)[0] for name in unseen if name.startswith("omega"))
         if told:
@@ -128,8 +128,8 @@ class _Maker:
         self._case, self._room, self._period_s = case, room, period_s
         self._middle = np.array([entry.middle for entry in room])
         self._reach = np.array([entry.reach for entry in room])
-        model = case.kit.bound.model
-        self._span = np.array([np.ptp(case.kit.bound.limits(variable)) for variable in model.inputs])
+        model = case.library.bound.model
+        self._span = np.array([np.ptp(case.library.bound.limits(variable)) for variable in model.inputs])
 
     def lively(self, name: str, text: str, effort: float, locked: tuple[str, ...] = (), speeds: bool = False) -> Plan:
         """Steps of every axis that is free, at times that do not coincide."""
@@ -153,7 +153,7 @@ class _Maker:
     def weightless(self) -> Plan:
         """Pulses on the first axis with gravity out of play, all others locked."""
         heavy = next(
-            n for n, place in self._case.kit.bound.model.places.axes.items() if place.gravity_moment is not None
+            n for n, place in self._case.library.bound.model.places.axes.items() if place.gravity_moment is not None
         )
         t_s = self._times(6.0)
         pulses = np.where((t_s % 3.0) < 0.6, 2.0 * DITHER, 0.0)[:, None] * self._span

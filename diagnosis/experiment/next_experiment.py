@@ -10,9 +10,16 @@ from numpy.typing import NDArray
 
 from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import Plan, plans, rooms
-from diagnosis.experiment.simulated_experiment import Rehearsal, missed, outcomes, recorded, rehearse, setting
+from diagnosis.experiment.simulated_experiment import (
+    SimulatedExperiment,
+    missed,
+    outcomes,
+    recorded,
+    setting,
+    simulate_experiment,
+)
 from diagnosis.experiment.stand_in import StandIn, stand_in
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
@@ -33,7 +40,7 @@ class Trial:
     """A plan flown under each leading hypothesis, and the separation of each pair (places in `leading`)."""
 
     plan: Plan
-    flown: tuple[Rehearsal, ...]
+    flown: tuple[SimulatedExperiment, ...]
     z: Mapping[tuple[int, int], float]
 
     @property
@@ -44,8 +51,8 @@ class Trial:
 
 def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
-    ranked = zip(weighed.tried, weighed.probabilities, strict=True)
-    leading = [(tried, probability) for tried, probability in ranked if probability > LEAST][:LEADING]
+    ranked = zip(weighed.fitted, weighed.probabilities, strict=True)
+    leading = [(fitted, probability) for fitted, probability in ranked if probability > LEAST][:LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)
@@ -53,38 +60,40 @@ def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     }
     if sum(pairs.values()) < LEAST:
         return None
-    tried = [tried for tried, _ in leading]
+    fitted = [fitted for fitted, _ in leading]
     period_s = period_of(case)
-    found = [trial for plan in plans(case, period_s) if (trial := _trial(case, plan, tried, pairs)) is not None]
+    found = [trial for plan in plans(case, period_s) if (trial := _trial(case, plan, fitted, pairs)) is not None]
     if not found:
         return None
     best = max(found, key=lambda trial: _worth(trial, pairs))
-    return _told(case, best, tried, pairs)
+    return _told(case, best, fitted, pairs)
 
 
-def _trial(case: Case, plan: Plan, tried: Sequence[Tried], pairs: Mapping[tuple[int, int], float]) -> Trial | None:
+def _trial(
+    case: Case, plan: Plan, fitted: Sequence[FittedHypothesis], pairs: Mapping[tuple[int, int], float]
+) -> Trial | None:
     """Fly a plan under every hypothesis and compare each pair on what the likelier of the two would record."""
     law = law_of(case, plan)
     there = setting(case, plan)
-    flown = [None if law is None else rehearse(there, plan, law, entry.fit.supposed) for entry in tried]
+    flown = [None if law is None else simulate_experiment(there, plan, law, entry.fit.hypothesis) for entry in fitted]
     if any(entry is None for entry in flown):
         return None
     good = tuple(entry for entry in flown if entry is not None)
     z = {}
     for a in sorted({a for a, _ in pairs}):
         data = recorded(there, good[a])
-        unrest = tried[a].fit.supposed.unrest
-        own = missed(data, tried[a].fit, plan, unrest)
+        process_noise = fitted[a].fit.hypothesis.process_noise
+        own = missed(data, fitted[a].fit, plan, process_noise)
         if own is None:
             return None
         for b in (b for one, b in pairs if one == a):
-            other = missed(data, tried[b].fit, plan, unrest)
+            other = missed(data, fitted[b].fit, plan, process_noise)
             z[a, b] = 2.0 * SURE if other is None else float(np.sqrt(max(other - own, 0.0)))
     return Trial(plan, good, z)
 
 
 def period_of(case: Case) -> float:
-    """The sample period of a rehearsal: coarser than the logs' own, as nobody has to wait for it."""
+    """The sample period of a simulated experiment: coarser than the logs' own, as nobody has to wait for it."""
     return min(LONGEST_PERIOD_S, 2.0 * min(flight.log.sample_period_s for flight in case.flights))
 
 
@@ -93,7 +102,7 @@ def law_of(case: Case, plan: Plan) -> StandIn | None:
     room = rooms(case)
     at = {entry.axis: entry.middle for entry in room}
     size = np.array([0.3 * entry.reach for entry in room])
-    return stand_in(case.kit.bound, at, size, float(plan.t_s[1]), plan.locked)
+    return stand_in(case.library.bound, at, size, float(plan.t_s[1]), plan.locked)
 
 
 def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float, float]:
@@ -108,9 +117,11 @@ def _decided(z: float) -> float:
     return min(z / SURE, 1.0) ** 2 + BEYOND * float(np.log10(max(z / SURE, 1.0)))
 
 
-def _told(case: Case, best: Trial, tried: Sequence[Tried], pairs: Mapping[tuple[int, int], float]) -> Mapping[str, Any]:
+def _told(
+    case: Case, best: Trial, fitted: Sequence[FittedHypothesis], pairs: Mapping[tuple[int, int], float]
+) -> Mapping[str, Any]:
     first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], SURE) ** 2)
-    names = [_name(entry) for entry in tried]
+    names = [_name(entry) for entry in fitted]
     apart = best.z[first]
     split = {True: list[str](), False: list[str]()}
     for a, b in pairs:
@@ -127,8 +138,8 @@ def _told(case: Case, best: Trial, tried: Sequence[Tried], pairs: Mapping[tuple[
     }
 
 
-def _name(tried: Tried) -> str:
-    return " + ".join(tried.effects)
+def _name(fitted: FittedHypothesis) -> str:
+    return " + ".join(fitted.effects)
 
 
 def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[str]) -> str:
@@ -155,7 +166,7 @@ def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[st
 
 def _part(case: Case, column: str) -> str:
     """The axis or input that a column tells of, in words."""
-    places = case.kit.bound.model.places
+    places = case.library.bound.model.places
     parts = {axis.angle: name for name, axis in places.axes.items()}
     parts |= {str(entry.variable): name for name, entry in places.inputs.items()}
     return parts.get(column, column).replace("_", " ")
@@ -163,7 +174,7 @@ def _part(case: Case, column: str) -> str:
 
 def _floors(case: Case) -> dict[str, float]:
     """What a reader can see of each column: some encoder steps, a share of an input's range."""
-    model, bound = case.kit.bound.model, case.kit.bound
+    model, bound = case.library.bound.model, case.library.bound
     found = {name: OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
     for variable in model.inputs:
         low, high = bound.limits(variable)

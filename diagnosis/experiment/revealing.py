@@ -9,30 +9,30 @@ from numpy.typing import NDArray
 from diagnosis.detect.visibility import SEEN
 from diagnosis.experiment.menu import plans
 from diagnosis.experiment.next_experiment import EFFORT, law_of, period_of
-from diagnosis.experiment.simulated_experiment import recorded, rehearse, setting
+from diagnosis.experiment.simulated_experiment import recorded, setting, simulate_experiment
 from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 
 Array = NDArray[np.float64]
 
 
-def revealing_experiment(case: Case, supposed: Supposed) -> Mapping[str, Any] | None:
+def revealing_experiment(case: Case, hypothesis: Hypothesis) -> Mapping[str, Any] | None:
     """The run that shows most effects on the equations at their reference sizes, less its effort; None where none can be flown."""
-    names = [name for name in case.kit.candidates if name in case.kit.names and name not in supposed.effects]
+    names = [name for name in case.library.candidates if name in case.library.names and name not in hypothesis.effects]
     best, worth, shown = None, -np.inf, 0
     for plan in plans(case, period_of(case)):
         there, law = setting(case, plan), law_of(case, plan)
-        flown = None if law is None else rehearse(there, plan, law, supposed)
+        flown = None if law is None else simulate_experiment(there, plan, law, hypothesis)
         if flown is None:
             continue
-        seen = _seen(recorded(there, flown), supposed, names)
+        seen = _seen(recorded(there, flown), hypothesis, names)
         if seen * (1.0 - EFFORT * plan.effort) > worth:
             best, worth, shown = (plan, flown), seen * (1.0 - EFFORT * plan.effort), seen
     if best is None:
         return None
     plan, flown = best
-    now = _seen(case, supposed, names)
+    now = _seen(case, hypothesis, names)
     return {
         "experiment": plan.name,
         "instruction": plan.instruction,
@@ -44,13 +44,13 @@ def revealing_experiment(case: Case, supposed: Supposed) -> Mapping[str, Any] | 
     }
 
 
-def _seen(case: Case, supposed: Supposed, names: list[str]) -> int:
+def _seen(case: Case, hypothesis: Hypothesis, names: list[str]) -> int:
     """How many effects would stand SEEN deviations out at their reference size, the plant's own coefficients re-tuned."""
-    effects = case.kit.effects
+    effects = case.library.effects
     touched = {name: {p.symbol: p.touched for p in effects[name].parameters} for name in names}
-    variant = case.kit.variant((*supposed.effects, *names))
-    places = [variant.place(name, effects[name].size.symbol) for name in names]
-    runs = passes(case, supposed.with_effects({**touched, **supposed.effects}), [*case.free.tolist(), *places])
+    compiled = case.library.compiled((*hypothesis.effects, *names))
+    places = [compiled.place(name, effects[name].size.symbol) for name in names]
+    runs = passes(case, hypothesis.with_effects({**touched, **hypothesis.effects}), [*case.free.tolist(), *places])
     if runs is None:
         return 0
     scale = np.concatenate([case.sd, [size_scale(effects[name].size) for name in names]])

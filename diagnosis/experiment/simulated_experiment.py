@@ -1,7 +1,7 @@
 """A plan flown in the simulation under one hypothesis, and how far another would miss what is then recorded.
 
 Data are made by hypothesis B without noise but in the sensors' steps; the filter of hypothesis A runs over them. In units of what noise and
-unrest leave, its innovations are w_A, and what a re-tune to first order cannot take away is
+process noise leave, its innovations are w_A, and what a re-tune to first order cannot take away is
 
     z^2 = m(A) - m(B),   m(A) = min over v of |w_A + J_A v|^2 + v' I_A v
 
@@ -19,7 +19,7 @@ from diagnosis.experiment.menu import Plan, gravity_parameters
 from diagnosis.experiment.stand_in import StandIn
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.validate.simulated import Flown
 from records.log import RunLog
 from sim.start import start_state
@@ -31,7 +31,7 @@ MOST_CLIPPED = 0.05  # share of the samples that may ask for more than an input 
 
 
 @dataclass(frozen=True, eq=False)
-class Rehearsal:
+class SimulatedExperiment:
     """A plan flown under one hypothesis: the log that it would leave, and whether stops and inputs stayed within their limits."""
 
     log: RunLog
@@ -42,21 +42,21 @@ def setting(case: Case, plan: Plan) -> Case:
     """The case as the plan mounts the rig: without gravity's moment where it is turned."""
     if not plan.weightless:
         return case
-    model, bound = case.kit.bound.model, case.kit.bound
+    model, bound = case.library.bound.model, case.library.bound
     p, sd = bound.p.copy(), bound.sd.copy()
     for name in gravity_parameters(model):
         place = [str(symbol) for symbol in model.parameter_symbols].index(name)
         p[place], sd[place] = GONE * p[place], GONE * sd[place]
-    return replace(case, kit=replace(case.kit, bound=replace(bound, p=p, sd=sd)))
+    return replace(case, library=replace(case.library, bound=replace(bound, p=p, sd=sd)))
 
 
-def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehearsal | None:
+def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypothesis) -> SimulatedExperiment | None:
     """Fly the plan under a hypothesis; None where the plant leaves all bounds or the law's arm hits a stop and stays there."""
-    kit = case.kit
-    model, own = kit.bound.model, len(kit.states)
+    library = case.library
+    model, own = library.bound.model, len(library.states)
     start_s = max(float(flight.log.t_s[-1]) for flight in case.flights)
-    x0 = np.asarray(start_state(kit.bound, law.rest.x0), dtype=float)
-    plant = Flown(case, _without_weights(plan, supposed), x0, start_s, locked=plan.locked)
+    x0 = np.asarray(start_state(library.bound, law.rest.x0), dtype=float)
+    plant = Flown(case, _without_weights(plan, hypothesis), x0, start_s, locked=plan.locked)
     arms = [axis for axis in model.axes if axis.position is not None]
     columns = [k for k, axis in enumerate(arms) if axis.name not in plan.locked]
     u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
@@ -75,7 +75,7 @@ def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehear
             return None
     extra = {}
     if plan.speeds:
-        extra = {name: x[:, k] for k, name in enumerate(kit.states) if name.startswith("omega")}
+        extra = {name: x[:, k] for k, name in enumerate(library.states) if name.startswith("omega")}
     log = RunLog(
         case.flights[0].log.columns,
         law.period_s,
@@ -88,53 +88,53 @@ def rehearse(case: Case, plan: Plan, law: StandIn, supposed: Supposed) -> Rehear
     )
     clipped = np.any((u <= law.low) | (u >= law.high), axis=1)
     kept = plan.off.any() or np.mean(clipped) <= MOST_CLIPPED
-    return Rehearsal(log, bool(kept and _off_the_stops(case, plan, x)))
+    return SimulatedExperiment(log, bool(kept and _off_the_stops(case, plan, x)))
 
 
-def _without_weights(plan: Plan, supposed: Supposed) -> Supposed:
+def _without_weights(plan: Plan, hypothesis: Hypothesis) -> Hypothesis:
     """A moved weight turns no axis that gravity does not."""
     if not plan.weightless:
-        return supposed
-    return supposed.with_effects({n: v for n, v in supposed.effects.items() if not n.endswith(SHIFTED_WEIGHT)})
+        return hypothesis
+    return hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not n.endswith(SHIFTED_WEIGHT)})
 
 
 def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
     """Whether no free axis touched a stop while its law was on."""
-    bound = case.kit.bound
+    bound = case.library.bound
     flying = ~plan.off
     for axis in bound.model.axes:
         if axis.position is None or axis.name in plan.locked or not flying.any() or plan.off.any():
             continue
-        way = x[flying, case.kit.states.index(str(axis.position))]
+        way = x[flying, case.library.states.index(str(axis.position))]
         low, high = (None if s is None else bound.number(s) for s in (axis.lower, axis.upper))
         if (low is not None and way.min() <= low + 1e-6) or (high is not None and way.max() >= high - 1e-6):
             return False
     return True
 
 
-def recorded(case: Case, rehearsal: Rehearsal) -> Case:
+def recorded(case: Case, simulated_experiment: SimulatedExperiment) -> Case:
     """A case of the rehearsed log alone, with what the given one states."""
-    made = make_case(case.kit, [rehearsal.log])
+    made = make_case(case.library, [simulated_experiment.log])
     return replace(made, stated=case.stated, stated_sd=case.stated_sd)
 
 
-def missed(data: Case, one: Fit, plan: Plan, unrest: Array) -> float | None:
+def missed(data: Case, one: Fit, plan: Plan, process_noise: Array) -> float | None:
     """m(A): the squares of what a fitted hypothesis misses of the data, re-tuned; None where its filter cannot follow at all.
 
-    Both hypotheses of a pair are given the same `unrest`: one that takes more of it would seem to miss less.
+    Both hypotheses of a pair are given the same `process noise`: one that takes more of it would seem to miss less.
     """
-    supposed = replace(_without_weights(plan, one.supposed), unrest=unrest)
-    variant = data.kit.variant(supposed.effects)
-    count = len(supposed.theta)
+    hypothesis = replace(_without_weights(plan, one.hypothesis), process_noise=process_noise)
+    compiled = data.library.compiled(hypothesis.effects)
+    count = len(hypothesis.theta)
     numbers = [
         (row, entry)
         for row, entry in enumerate(one.free, count)
-        if entry.effect in variant.names and entry.effect in supposed.effects
+        if entry.effect in compiled.names and entry.effect in hypothesis.effects
     ]
-    places = [*data.free.tolist(), *(variant.place(e.effect, e.parameter.symbol) for _, e in numbers)]
+    places = [*data.free.tolist(), *(compiled.place(e.effect, e.parameter.symbol) for _, e in numbers)]
     units = np.concatenate([data.sd, [entry.scale for _, entry in numbers]])
     rows = [*range(count), *(row for row, _ in numbers)]
-    runs = passes(data, supposed, places, slopes=True)
+    runs = passes(data, hypothesis, places, slopes=True)
     if runs is None:
         return None
     w = stacked(runs)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from diagnosis.decide.unknown import Suspect
 from diagnosis.detect.detection import FormScores, gains
 from diagnosis.detect.forms import Form
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import Signals, angle_names, rotor_name, signals
 from records.units import unit_suffix
 from sim.places import InputPlace
@@ -44,7 +44,7 @@ class Shape:
     times: Axis | None
 
 
-def shape_of(ground: Ground, by_form: FormScores, suspect: Suspect) -> Shape | None:
+def shape_of(linearisation: Linearisation, by_form: FormScores, suspect: Suspect) -> Shape | None:
     """The curve f of a suspected class, as hat functions on knots of its first signal, times its second one:
 
     (1)  (G + l D'D) c = -s,  cov c = (G + l D'D)^-1
@@ -54,9 +54,9 @@ def shape_of(ground: Ground, by_form: FormScores, suspect: Suspect) -> Shape | N
     """
     target = form_of(by_form, suspect).target
     names = _signals_of(suspect.class_text)[:2]
-    flown = [signals(ground, flight, {}) for flight in range(len(ground.tapes))]
-    known = [_known(ground, s) for s in flown]
-    axes = _axes(ground)
+    flown = [signals(linearisation, flight, {}) for flight in range(len(linearisation.filter_inputs))]
+    known = [_known(linearisation, s) for s in flown]
+    axes = _axes(linearisation)
     if not names or any(name not in known[0] for name in names):
         return None
     x, times = [entry[names[0]] for entry in known], names[1] if len(names) > 1 else ""
@@ -64,16 +64,18 @@ def shape_of(ground: Ground, by_form: FormScores, suspect: Suspect) -> Shape | N
     if high <= low:
         return None
     knots = np.linspace(low, high, INSTANTS if names == ["t"] else KNOTS)
-    moves = target < len(ground.case.kit.states)
+    moves = target < len(linearisation.case.library.states)
     values = []
     for s, entry, own in zip(flown, known, x, strict=True):
         factor = (entry[times] if times else np.ones(len(s.t))) * (s.h if moves else 1.0)
         values.append(_hats(own, knots) * factor[:, None])
-    scores = ground.scores_by([value.__getitem__ for value in values], target)
+    scores = linearisation.scores_by([value.__getitem__ for value in values], target)
     curve, cov = _fitted(scores.gram, -scores.score)
     about = np.eye(len(knots)) - 1.0 / len(knots)
     sd = np.sqrt(np.maximum(np.diag(about @ cov @ about.T), 0.0))
-    return Shape(axes[names[0]], knots, about @ curve, sd, target_of(ground, target), axes[times] if times else None)
+    return Shape(
+        axes[names[0]], knots, about @ curve, sd, target_of(linearisation, target), axes[times] if times else None
+    )
 
 
 def form_of(by_form: FormScores, suspect: Suspect) -> Form:
@@ -83,11 +85,11 @@ def form_of(by_form: FormScores, suspect: Suspect) -> Form:
     return by_form.forms[max(own, key=lambda index: float(found[index]))]
 
 
-def target_of(ground: Ground, target: int) -> Axis:
+def target_of(linearisation: Linearisation, target: int) -> Axis:
     """What a form adds to: the rate of a state ("d phi_dot/dt" in rad/s^2), or an output ("phi" in rad)."""
-    kit = ground.case.kit
-    states = len(kit.states)
-    name = kit.states[target] if target < states else kit.outputs[target - states]
+    library = linearisation.case.library
+    states = len(library.states)
+    name = library.states[target] if target < states else library.outputs[target - states]
     unit = unit_suffix(name)
     stem, shown = name.removesuffix(f"_{unit}"), unit.replace("_s", "/s")
     if target >= states:
@@ -101,10 +103,10 @@ def _signals_of(class_text: str) -> list[str]:
     return [name.strip().removeprefix("sgn ") for name in inside.split(",")]
 
 
-def _known(ground: Ground, s: Signals) -> dict[str, Array]:
+def _known(linearisation: Linearisation, s: Signals) -> dict[str, Array]:
     """A flight's signals by short name, in their own units."""
-    case = ground.case
-    places, known = case.kit.bound.model.places, {"t": s.t}
+    case = linearisation.case
+    places, known = case.library.bound.model.places, {"t": s.t}
     for axis, q in angle_names(case).items():
         if axis in s.angle:
             known |= {q: s.angle[axis], f"{q}_dot": s.speed[axis] * places.axes[axis].speed_size}
@@ -116,10 +118,10 @@ def _known(ground: Ground, s: Signals) -> dict[str, Array]:
     return known
 
 
-def _axes(ground: Ground) -> dict[str, Axis]:
+def _axes(linearisation: Linearisation) -> dict[str, Axis]:
     """The same signals as axes of a picture."""
-    case = ground.case
-    places = case.kit.bound.model.places
+    case = linearisation.case
+    places = case.library.bound.model.places
     units = {"t": "s"}
     for axis, q in angle_names(case).items():
         units |= {q: places.axes[axis].length_unit, f"{q}_dot": f"{places.axes[axis].length_unit}/s"}

@@ -15,7 +15,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step, value_of
 from diagnosis.explain.spectra import BANDS_HZ, TINY, coherence, cross_power, power
 from diagnosis.filter.kalman import Disturbances
@@ -30,27 +30,29 @@ SURE = 3.0  # standard deviations that an error must be from none
 HARDLY = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
 
 
-def error_responses(ground: Ground) -> tuple[ErrorResponse, ...]:
+def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
     """The error responses that the logs support, by output, input and band."""
-    kit = ground.case.kit
-    answers = {str(u): _answers(ground, column) for column, u in enumerate(kit.bound.model.inputs)}
+    library = linearisation.case.library
+    answers = {str(u): _answers(linearisation, column) for column, u in enumerate(library.bound.model.inputs)}
     found: list[ErrorResponse] = []
-    for output, slot in zip(kit.outputs, ground.case.slots, strict=True):
+    for output, slot in zip(library.outputs, linearisation.case.slots, strict=True):
         if slot < 0:
             continue
         own = {u: [part[:, slot] for part in parts] for u, parts in answers.items()}
         strength = {u: sum(float(np.sum(part[:, 0] ** 2)) for part in parts) for u, parts in own.items()}
         moving = {u: own[u] for u in own if strength[u] > HARDLY * max(strength.values())}
         if moving:
-            found += _of_output(ground, output, moving, [part[:, slot] for part in _by_flight(ground, ground.w)])
+            found += _of_output(
+                linearisation, output, moving, [part[:, slot] for part in _by_flight(linearisation, linearisation.w)]
+            )
     return tuple(found)
 
 
 def _of_output(
-    ground: Ground, output: str, answers: Mapping[str, ByFlight], errors: ByFlight
+    linearisation: Linearisation, output: str, answers: Mapping[str, ByFlight], errors: ByFlight
 ) -> Iterator[ErrorResponse]:
     """(1) for one output, its answers (rows, taps) by input: all filters at once by least squares, read off by input and band."""
-    steps_s = [flight.step_s for flight in ground.case.flights]
+    steps_s = [flight.step_s for flight in linearisation.case.flights]
     X = np.hstack([np.concatenate(parts) for parts in answers.values()])
     covariance = np.linalg.pinv(X.T @ X)
     taps = covariance @ (X.T @ np.concatenate(errors))
@@ -68,16 +70,19 @@ def _of_output(
                 yield ErrorResponse(output, u, low, high, abs(error), sd, float(np.angle(error)), float(believed[band]))
 
 
-def _answers(ground: Ground, column: int) -> list[Array]:
+def _answers(linearisation: Linearisation, column: int) -> list[Array]:
     """The model's whitened answers to an input's departures from its mean, at once and later, by flight (rows, slots, taps)."""
-    model = ground.case.kit.bound.model
-    lags_s = _lags_s(min(flight.step_s for flight in ground.case.flights))
-    total = np.zeros((len(ground.w), len(lags_s)))
+    model = linearisation.case.library.bound.model
+    lags_s = _lags_s(min(flight.step_s for flight in linearisation.case.flights))
+    total = np.zeros((len(linearisation.w), len(lags_s)))
     for state, rate in enumerate(model.state_rates().subs(dict.fromkeys(model.friction_signs, 0))):
         if model.inputs[column] in rate.free_symbols:
-            pushes = [_pushes(ground, flight, rate, column, lags_s) for flight in range(len(ground.tapes))]
-            total += ground.answer(pushes, state)
-    return _by_flight(ground, total)
+            pushes = [
+                _pushes(linearisation, flight, rate, column, lags_s)
+                for flight in range(len(linearisation.filter_inputs))
+            ]
+            total += linearisation.answer(pushes, state)
+    return _by_flight(linearisation, total)
 
 
 def _lags_s(step_s: float) -> Array:
@@ -86,21 +91,24 @@ def _lags_s(step_s: float) -> Array:
     return step_s * np.append(0.0, 2.0 ** np.arange(doublings + 1))
 
 
-def _pushes(ground: Ground, flight: int, rate: sympy.Expr, column: int, lags_s: Array) -> Disturbances:
+def _pushes(linearisation: Linearisation, flight: int, rate: sympy.Expr, column: int, lags_s: Array) -> Disturbances:
     """What an input's departure from its mean, by each lag later, does to a state over each step (steps, taps)."""
-    case, tape, run = ground.case, ground.tapes[flight], ground.runs[flight]
-    model, p = case.kit.bound.model, coefficients(case, case.kit.plain, ground.fit.supposed)[: case.kit.own]
-    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], tape.row))
-    h = np.append(np.diff(tape.t_s), 0.0)
-    mean = np.mean(tape.u[:, column])
+    case, filter_input, run = linearisation.case, linearisation.filter_inputs[flight], linearisation.runs[flight]
+    model, p = (
+        case.library.bound.model,
+        coefficients(case, case.library.plain, linearisation.fit.hypothesis)[: case.library.own],
+    )
+    x = np.nan_to_num(by_step(run.x[:, : len(model.states)], filter_input.row))
+    h = np.append(np.diff(filter_input.t_s), 0.0)
+    mean = np.mean(filter_input.u[:, column])
 
     def rates(departure: Array) -> Array:
-        u = tape.u.copy()
+        u = filter_input.u.copy()
         u[:, column] = mean + departure
-        return value_of(model, rate, tape.t_s, x, u, p)
+        return value_of(model, rate, filter_input.t_s, x, u, p)
 
     still = rates(np.zeros(len(h)))
-    later = _later(tape.u[:, column] - mean, float(np.median(h[:-1])), lags_s)
+    later = _later(filter_input.u[:, column] - mean, float(np.median(h[:-1])), lags_s)
     pushes = np.stack([h * (rates(departure) - still) for departure in later], axis=1)
     return lambda part: pushes[part]
 
@@ -113,7 +121,7 @@ def _later(departure: Array, step_s: float, lags_s: Array) -> Iterator[Array]:
         yield np.convolve(departure, triangle / max(triangle.sum(), 1.0))[: len(departure)]
 
 
-def _by_flight(ground: Ground, rows: Array) -> list[Array]:
+def _by_flight(linearisation: Linearisation, rows: Array) -> list[Array]:
     """Stacked innovations (rows, ...) by flight (rows, slots, ...)."""
-    parts = np.split(rows, np.cumsum([run.w.size for run in ground.runs])[:-1])
-    return [part.reshape(*run.w.shape, *rows.shape[1:]) for part, run in zip(parts, ground.runs, strict=True)]
+    parts = np.split(rows, np.cumsum([run.w.size for run in linearisation.runs])[:-1])
+    return [part.reshape(*run.w.shape, *rows.shape[1:]) for part, run in zip(parts, linearisation.runs, strict=True)]

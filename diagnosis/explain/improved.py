@@ -24,9 +24,9 @@ SOURCE = "re-estimated from logs by twinlaw diagnose"
 
 def improved_plant(case: Case, fit: Fit) -> Plant:
     """The plant of a fit: values and standard deviations of its uncertain parameters, and its effects."""
-    nominal = case.kit.bound
+    nominal = case.library.bound
     spread = deviations(fit)
-    p, sd = coefficients(case, case.kit.variant(()), fit.supposed.with_effects({})), nominal.sd.copy()
+    p, sd = coefficients(case, case.library.compiled(()), fit.hypothesis.with_effects({})), nominal.sd.copy()
     sd[case.free] = spread[: len(case.free)] * case.sd
     parameters: dict[str, Parameter] = {}
     place = 0
@@ -43,7 +43,7 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    effects = {**case.draws, **fit.supposed.effects}  # a draw of these very flights comes before the stated one
+    effects = {**case.draws, **fit.hypothesis.effects}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant
     sizes = {name: dict(case.stated_sd[name]) for name in case.draws}
@@ -60,41 +60,43 @@ def _correlation(case: Case, fit: Fit) -> Correlation | None:
     deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
     matrix = np.clip(np.round((covariance + covariance.T) / 2.0 / np.outer(deviation, deviation), DIGITS), -1.0, 1.0)
     np.fill_diagonal(matrix, 1.0)
-    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
+    names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     return Correlation(tuple(names[place] for place in case.free), tuple(tuple(row) for row in matrix.tolist()))
 
 
 def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
     """Each effect's parameters with one standard deviation."""
-    spread = deviations(fit)[len(fit.supposed.theta) :]
+    spread = deviations(fit)[len(fit.hypothesis.theta) :]
     sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
     sd |= {
         (name, s): GRID_SD * v
-        for name, of in fit.supposed.effects.items()
+        for name, of in fit.hypothesis.effects.items()
         if seen_in_readings(name)
         for s, v in of.items()
     }
     sd |= {
-        (name, SCATTERS): case.stated_sd[name][SCATTERS] if name in case.stated else jitter_sd(case, fit.supposed, name)
-        for name in fit.supposed.effects
+        (name, SCATTERS): case.stated_sd[name][SCATTERS]
+        if name in case.stated
+        else jitter_sd(case, fit.hypothesis, name)
+        for name in fit.hypothesis.effects
         if scatters(case, name)
     }
     sd |= {
         (name, symbol): deviation
-        for name in filter(is_gust, fit.supposed.effects)
-        for symbol, deviation in gust_sd(case, fit.supposed, name).items()
+        for name in filter(is_gust, fit.hypothesis.effects)
+        for symbol, deviation in gust_sd(case, fit.hypothesis, name).items()
     }
     return {
         name: {
             symbol: Estimate(float(values[symbol]), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
-            for symbol in case.kit.effects[name].parameter
+            for symbol in case.library.effects[name].parameter
         }
-        for name, values in fit.supposed.effects.items()
+        for name, values in fit.hypothesis.effects.items()
     }
 
 
 def _unit(case: Case, effect: str, symbol: str) -> str:
-    return case.kit.effects[effect].parameter[symbol].unit
+    return case.library.effects[effect].parameter[symbol].unit
 
 
 def deviations(fit: Fit) -> Array:

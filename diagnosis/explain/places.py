@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from diagnosis.decide.weighing import Weighed
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.search.beam import Search, certainties
 from records.diagnosis import PlaceShare
 
@@ -16,8 +16,8 @@ def place_shares(
 ) -> tuple[PlaceShare, ...]:
     """Shares by place, largest first, with a sum of 1."""
     found: defaultdict[str, float] = defaultdict(float)
-    for tried, probability in zip(weighed.tried, weighed.probabilities, strict=True):
-        for place, share in _parts(search, tried).items():
+    for fitted, probability in zip(weighed.fitted, weighed.probabilities, strict=True):
+        for place, share in _parts(search, fitted).items():
             found[place] += probability * share
     if unknown_place is not None:
         found[unknown_place] += weighed.unknown
@@ -30,9 +30,9 @@ def place_shares(
     return tuple(sorted(rows, key=lambda row: (-row.share, row.place)))
 
 
-def _parts(search: Search, tried: Tried) -> Mapping[str, float]:
+def _parts(search: Search, fitted: FittedHypothesis) -> Mapping[str, float]:
     """Shares of a hypothesis' places: what the evidence loses without each of its effects."""
-    losses = {name: max(_loss(search, tried, name), 1.0) for name in tried.effects}
+    losses = {name: max(_loss(search, fitted, name), 1.0) for name in fitted.effects}
     total = sum(losses.values())
     parts: defaultdict[str, float] = defaultdict(float)
     for name, loss in losses.items():
@@ -40,11 +40,11 @@ def _parts(search: Search, tried: Tried) -> Mapping[str, float]:
     return parts
 
 
-def _loss(search: Search, tried: Tried, name: str) -> float:
+def _loss(search: Search, fitted: FittedHypothesis, name: str) -> float:
     """What the evidence loses without an effect: half the square of how surely its size is not zero where that was not tried, at most what
     all of them gain together."""
-    rest = set(tried.effects) - {name}
+    rest = set(fitted.effects) - {name}
     without = search.of(rest) if rest else search.nominal
     if without is not None:
-        return tried.evidence - without.evidence
-    return min(0.5 * certainties(tried.fit).get(name, 0.0) ** 2, tried.evidence - search.nominal.evidence)
+        return fitted.evidence - without.evidence
+    return min(0.5 * certainties(fitted.fit).get(name, 0.0) ** 2, fitted.evidence - search.nominal.evidence)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.detection import LEAST_LEFT, MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
-from diagnosis.detect.linearisation import Ground
+from diagnosis.detect.linearisation import Linearisation
 from diagnosis.explain.curve import target_of
 
 Array = NDArray[np.float64]
@@ -61,12 +61,12 @@ def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     )
 
 
-def suggestion(ground: Ground, by_form: FormScores, place: str) -> str | None:
+def suggestion(linearisation: Linearisation, by_form: FormScores, place: str) -> str | None:
     """What sparse regression suggests for a place, as a sentence ("d phi_dot/dt gains -0.2 sin(6 phi) rad/s^2"); None for no form."""
     terms = sparse_form(by_form, place)
     if not terms:
         return None
-    target = target_of(ground, terms[0].target)
+    target = target_of(linearisation, terms[0].target)
     return f"{target.name} gains {form_text(terms)} {target.unit}"
 
 

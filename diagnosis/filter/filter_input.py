@@ -1,4 +1,4 @@
-"""Logs as tapes for the filter: instants with the inputs held from them and the measurements at them."""
+"""Logs as filter inputs for the filter: instants with the inputs held from them and the measurements at them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ AT_INSTANTS = {"row": -1, "lost": 0.0, "loss_power": 0.0, "untold_s": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
-class Tape:
+class FilterInput:
     """Instants t_s (m,) with inputs u (m, inputs) held from each to the next, measurements y (m, outputs), NaN where there is none,
     and their variances r (m, outputs).
 
@@ -54,8 +54,11 @@ class Tape:
     known: float = 0.0
 
 
-def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None) -> Tape:
-    """The tape of a log: `outputs` are the plant's own and then the states that the log may carry; rows not `used` have no measurement."""
+def filter_input_of(
+    log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.bool_] | None = None
+) -> FilterInput:
+    """The filter input of a log: `outputs` are the plant's own and then the states that the log may carry; rows not
+    `used` have no measurement."""
     rows = len(log.t_s)
     read = np.full((rows, len(outputs)), np.nan)
     standing, single = np.ones_like(read), np.full(len(outputs), np.inf)
@@ -71,7 +74,7 @@ def tape_of(log: RunLog, plant: Plant, outputs: Sequence[str], used: NDArray[np.
         step = plant.sensors.get(name, 0.0)
         if single[place] < MERELY_ROUNDED * step**2 / 12.0:
             y[:, place], r[:, place] = sharpened(log.t_s, read[:, place], r[:, place], step)
-    return Tape(
+    return FilterInput(
         log.t_s,
         log.u,
         y,
@@ -131,44 +134,44 @@ def _finest(y: Array) -> float:
     return float(gaps.min()) if gaps.size else 0.0
 
 
-def beginning(tape: Tape, seconds: float) -> Tape:
-    """The first `seconds` of a tape."""
-    kept = tape.t_s - tape.t_s[0] <= seconds
-    arrays = {name: getattr(tape, name)[kept] for name in ("t_s", "u", *AT_INSTANTS, *READINGS)}
-    return replace(tape, rows=int(kept.sum()), **arrays)
+def beginning(filter_input: FilterInput, seconds: float) -> FilterInput:
+    """The first `seconds` of a filter input."""
+    kept = filter_input.t_s - filter_input.t_s[0] <= seconds
+    arrays = {name: getattr(filter_input, name)[kept] for name in ("t_s", "u", *AT_INSTANTS, *READINGS)}
+    return replace(filter_input, rows=int(kept.sum()), **arrays)
 
 
-def with_inputs(tape: Tape, stages: Sequence[InputStage]) -> Tape:
-    """The tape with its inputs sent through stages: delays and ramps bring instants of their own."""
+def with_inputs(filter_input: FilterInput, stages: Sequence[InputStage]) -> FilterInput:
+    """The filter input with its inputs sent through stages: delays and ramps bring instants of their own."""
     if not stages:
-        return tape
-    edges = np.append(tape.t_s, 2.0 * tape.t_s[-1] - tape.t_s[-2])
-    held, _ = pass_inputs(stages, Held(edges, tape.u))
-    return spread(tape, held.edges_s[:-1], held.values)
+        return filter_input
+    edges = np.append(filter_input.t_s, 2.0 * filter_input.t_s[-1] - filter_input.t_s[-2])
+    held, _ = pass_inputs(stages, Held(edges, filter_input.u))
+    return spread(filter_input, held.edges_s[:-1], held.values)
 
 
-def spread(tape: Tape, starts_s: Array, values: Array) -> Tape:
-    """The tape with inputs that change at other instants, which join its own."""
-    t_s = _merged(tape.t_s, starts_s)
+def spread(filter_input: FilterInput, starts_s: Array, values: Array) -> FilterInput:
+    """The filter input with inputs that change at other instants, which join its own."""
+    t_s = _merged(filter_input.t_s, starts_s)
     place = np.maximum(np.searchsorted(starts_s, t_s + 1e-9, side="right") - 1, 0)
-    return _placed(tape, t_s, values[place])
+    return _placed(filter_input, t_s, values[place])
 
 
 def _merged(own: Array, others: Array) -> Array:
-    """Instants in order: all of a tape's `own`, and of others those that are clearly behind the one before them."""
+    """Instants in order: all of a filter input's `own`, and of others those that are clearly behind the one before them."""
     t_s = np.sort(np.concatenate((own, others)), kind="stable")  # which merges what is in order already
     kept = np.append(True, np.diff(t_s) > AT_ONCE_S)
     kept[np.searchsorted(t_s, own)] = True
     return np.asarray(t_s[kept])
 
 
-def _placed(tape: Tape, t_s: Array, u: Array) -> Tape:
-    """What is known at the tape's instants put at the same among `t_s`."""
-    own = _own(len(t_s), np.searchsorted(t_s, tape.t_s))
+def _placed(filter_input: FilterInput, t_s: Array, u: Array) -> FilterInput:
+    """What is known at the filter input's instants put at the same among `t_s`."""
+    own = _own(len(t_s), np.searchsorted(t_s, filter_input.t_s))
     arrays: dict[str, Any] = {
-        name: _spread_out(getattr(tape, name), own, none) for name, none in (AT_INSTANTS | READINGS).items()
+        name: _spread_out(getattr(filter_input, name), own, none) for name, none in (AT_INSTANTS | READINGS).items()
     }
-    return replace(tape, t_s=t_s, u=u, **arrays)
+    return replace(filter_input, t_s=t_s, u=u, **arrays)
 
 
 def _own(count: int, where: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -183,22 +186,22 @@ def _spread_out(values: NDArray[Any], own: NDArray[np.int64], none: float) -> ND
     return with_none.take(own, axis=0, mode="clip")  # a third faster than filling what is given room
 
 
-def late(tape: Tape, output: int, tau_s: float) -> Tape:
-    """The tape with one output's readings put `tau_s` earlier, to when they were true; inputs as they were.
+def late(filter_input: FilterInput, output: int, tau_s: float) -> FilterInput:
+    """The filter input with one output's readings put `tau_s` earlier, to when they were true; inputs as they were.
 
-    Readings from before the tape say nothing: they count as likely as they usually are.
+    Readings from before the filter input say nothing: they count as likely as they usually are.
     """
     if tau_s <= 0.0:
-        return tape
-    then = tape.t_s - tau_s
-    t_s = _merged(tape.t_s, then[then >= tape.t_s[0]])
-    held = np.maximum(np.searchsorted(tape.t_s, t_s + 1e-9, side="right") - 1, 0)
-    moved = _placed(tape, t_s, tape.u[held])
+        return filter_input
+    then = filter_input.t_s - tau_s
+    t_s = _merged(filter_input.t_s, then[then >= filter_input.t_s[0]])
+    held = np.maximum(np.searchsorted(filter_input.t_s, t_s + 1e-9, side="right") - 1, 0)
+    moved = _placed(filter_input, t_s, filter_input.u[held])
     seen = then >= t_s[0] - AT_ONCE_S
     own = _own(len(t_s), np.clip(np.searchsorted(t_s, then - AT_ONCE_S), 0, len(t_s) - 1)[seen])
     readings: dict[str, Any] = {}
     for name, none in READINGS.items():
         readings[name] = getattr(moved, name)
-        readings[name][:, output] = _spread_out(getattr(tape, name)[seen, output], own, none)
-    early = ~seen & np.isfinite(tape.y[:, output])
-    return replace(moved, **readings, known=tape.known + float(np.sum(tape.usual[early, output])))
+        readings[name][:, output] = _spread_out(getattr(filter_input, name)[seen, output], own, none)
+    early = ~seen & np.isfinite(filter_input.y[:, output])
+    return replace(moved, **readings, known=filter_input.known + float(np.sum(filter_input.usual[early, output])))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.filter_input import FilterInput
 from sim.kernel.generate import model_header
 from sim.kernel.kernel import C_DIR as SIM_C
 from sim.kernel.sincos import sincos_header
@@ -35,7 +35,7 @@ FLAGS = (
     "-memdep-block-number-limit=20",
 )
 Array = NDArray[np.float64]
-# What is added at a slice of a tape's instants (steps, ..., columns): made when it is asked for, so that none is ever whole.
+# What is added at a slice of a filter input's instants (steps, ..., columns): made when it is asked for, so that none is ever whole.
 Disturbances = Callable[[slice], Array]
 
 
@@ -84,7 +84,7 @@ class Filter:
 
     def run(
         self,
-        tape: Tape,
+        filter_input: FilterInput,
         p: Array,
         x0: Array,
         noise: Noise,
@@ -95,19 +95,19 @@ class Filter:
         locked: Sequence[str] = (),
         keep_gains: bool = False,
     ) -> Pass | None:
-        """Filter one tape; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p.
+        """Filter one log's input; `slots` (outputs,) where each output's innovations go, -1 for none; `columns` indices into p.
 
         None where the state left all bounds or rattles without end: the parameters do not fit at all.
         """
         assert len(columns) <= self.lib.MAX_COLUMNS
-        width, steps = max(slots) + 1, len(tape.t_s)
+        width, steps = max(slots) + 1, len(filter_input.t_s)
         rubs = noise.rub if self.axes else np.zeros(1)
-        given = _given(tape, p, x0, replace(noise, rub=rubs)) | {
+        given = _given(filter_input, p, x0, replace(noise, rub=rubs)) | {
             "locked": np.array([axis in locked for axis in self.axes] or [False], dtype=np.uint8),
             "column": np.array(columns, dtype=np.int32),
             "slot": np.array(slots, dtype=np.int32),
         }
-        found = self._found(tape, width, len(columns), keep_slopes, keep_gains)
+        found = self._found(filter_input, width, len(columns), keep_slopes, keep_gains)
         request = self._request("filter_request *", given | found)
         request.steps, request.columns, request.slots = steps, len(columns), width
         request.rest_s = noise.rest_s
@@ -118,9 +118,11 @@ class Filter:
         gains = None if F is None or K is None or H is None else (F, K, H)
         return Pass(**found, gram=gram, log_likelihood=float(request.log_likelihood), gains=gains)  # type: ignore[arg-type]
 
-    def _found(self, tape: Tape, width: int, columns: int, slopes: bool, gains: bool) -> dict[str, Array | None]:
+    def _found(
+        self, filter_input: FilterInput, width: int, columns: int, slopes: bool, gains: bool
+    ) -> dict[str, Array | None]:
         """Room for what a run leaves, as in filter.h; None for what is not kept."""
-        rows, steps, n, outputs = tape.rows, len(tape.t_s), self.states, self.outputs
+        rows, steps, n, outputs = filter_input.rows, len(filter_input.t_s), self.states, self.outputs
         return {
             "w": np.full((rows, width), np.nan),
             "s": np.full((rows, width), np.nan),
@@ -143,9 +145,9 @@ class Filter:
         return request
 
     def respond(
-        self, tape: Tape, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
+        self, filter_input: FilterInput, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
     ) -> Iterator[tuple[NDArray[np.int64], Array]]:
-        """Change of the whitened innovations by small disturbances `values` (steps, targets, columns), some of the tape at a time.
+        """Change of the whitened innovations by small disturbances `values` (steps, targets, columns), some of the filter input at a time.
 
         Yields places (m,) among the run's w, taken row by row, and the changes (m, k) there by the first k columns, in room that the next
         part takes; the columns behind them are not disturbed yet, and k never falls. Places that no part names do not change. A target
@@ -153,10 +155,10 @@ class Filter:
         """
         assert run.gains is not None
         F, K, H = run.gains
-        width, count, steps = max(slots) + 1, columns_of(values), len(tape.t_s)
+        width, count, steps = max(slots) + 1, columns_of(values), len(filter_input.t_s)
         assert count <= self.lib.MAX_COLUMNS
-        counts = (tape.place >= 0) & (np.array(slots) >= 0)
-        places = (tape.place * width + np.array(slots))[counts]
+        counts = (filter_input.place >= 0) & (np.array(slots) >= 0)
+        places = (filter_input.place * width + np.array(slots))[counts]
         begins = np.append(0, np.cumsum(counts.sum(axis=1)))[[*range(0, steps, PART), steps]]
         room = np.zeros((int(np.diff(begins).max()), count))
         arrays: dict[str, NDArray[Any] | None] = {
@@ -176,32 +178,32 @@ class Filter:
             value = _double(values(slice(request.first, request.end)))
             request.value = self.ffi.cast("void *", value.ctypes.data)
             self.lib.filter_respond(request)
-            yield places[begin:end], room[: end - begin, : request.awake]
+            yield places[begin:end], room[: end - begin, : request.with_own_process_noise]
 
     def response(
-        self, tape: Tape, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
+        self, filter_input: FilterInput, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
     ) -> Array:
         """The whole of `respond`, shape (rows, slots, columns)."""
         found = np.zeros((run.w.size, columns_of(values)))
-        for places, changes in self.respond(tape, run, values, targets, slots):
+        for places, changes in self.respond(filter_input, run, values, targets, slots):
             found[places, : changes.shape[1]] = changes
         return found.reshape(*run.w.shape, -1)
 
 
-def _given(tape: Tape, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[Any] | None]:
+def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict[str, NDArray[Any] | None]:
     """What a run reads of a log, the parameters and the noise, as in filter.h."""
     return {
-        "t_s": _double(tape.t_s),
-        "u": _double(tape.u),
-        "y": _double(tape.y),
-        "r": _double(tape.r),
-        "row": np.ascontiguousarray(tape.row, dtype=np.int64),
-        "place": np.ascontiguousarray(tape.place, dtype=np.int64),
+        "t_s": _double(filter_input.t_s),
+        "u": _double(filter_input.u),
+        "y": _double(filter_input.y),
+        "r": _double(filter_input.r),
+        "row": np.ascontiguousarray(filter_input.row, dtype=np.int64),
+        "place": np.ascontiguousarray(filter_input.place, dtype=np.int64),
         "p": _double(p),
         "x0": _double(x0),
         "p0": _double(noise.p0),
         "q": _double(noise.q),
-        "stir": _double(np.outer(tape.untold_s**2, noise.drive)) if tape.untold_s.any() else None,
+        "stir": _double(np.outer(filter_input.untold_s**2, noise.drive)) if filter_input.untold_s.any() else None,
         "rub": _double(noise.rub),
     }
 

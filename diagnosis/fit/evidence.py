@@ -15,7 +15,7 @@ SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of i
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class FittedHypothesis:
     """A hypothesis with its fit: `effects` its names in order, `evidence` the log evidence by Laplace, unscaled."""
 
     effects: tuple[str, ...]
@@ -25,18 +25,18 @@ class Tried:
 
 def evidence(found: Fit) -> float:
     """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
-    size = len(found.supposed.theta)
+    size = len(found.hypothesis.theta)
     sign, volume = np.linalg.slogdet(found.information)
     new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
     prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
     shapes = [row for row, is_size in new if not is_size]
     prior -= WAVE_COST * sum(entry.parameter.symbol in ("waves", "rate") for entry in found.free)
-    prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.supposed.effects)
-    prior -= GUST_COST * sum(map(is_gust, found.supposed.effects))
+    prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.hypothesis.effects)
+    prior -= GUST_COST * sum(map(is_gust, found.hypothesis.effects))
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 
 
-def tried_as(case: Case, found: Fit) -> Tried:
+def as_fitted(case: Case, found: Fit) -> FittedHypothesis:
     """A fit with the effects that the plant file does not state, and its evidence."""
-    return Tried(case.added(found.supposed.effects), found, evidence(found))
+    return FittedHypothesis(case.added(found.hypothesis.effects), found, evidence(found))

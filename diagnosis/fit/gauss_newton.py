@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.filter.kalman import Pass
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Supposed, nothing_supposed, passes
+from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
 from diagnosis.library.effect_library import is_gust, is_lag
 from diagnosis.library.input_effects import LOST_FRAMES, share_slopes
 from sim.effect import EffectParameter
@@ -43,7 +43,7 @@ class Fit:
     theta first, then `free`, both with the prior.
     """
 
-    supposed: Supposed
+    hypothesis: Hypothesis
     log_likelihood: float
     log_posterior: float
     free: tuple[Free, ...]
@@ -51,11 +51,11 @@ class Fit:
     pull: Array
 
 
-def free_numbers(case: Case, supposed: Supposed, shapes: bool = True) -> tuple[Free, ...]:
+def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tuple[Free, ...]:
     """The numbers of the supposed effects that a fit may move."""
     found = []
-    for name, values in supposed.effects.items():
-        for parameter in case.kit.effects[name].parameters:
+    for name, values in hypothesis.effects.items():
+        for parameter in case.library.effects[name].parameters:
             if seen_in_readings(name) or is_gust(name) or parameter.symbol == SCATTERS:
                 continue
             if name in case.stated:
@@ -100,41 +100,41 @@ def likelihood(runs: Sequence[Pass]) -> float:
     return sum(run.log_likelihood for run in runs)
 
 
-def likelihood_of(case: Case, supposed: Supposed) -> float:
+def likelihood_of(case: Case, hypothesis: Hypothesis) -> float:
     """The log likelihood of what is supposed, -inf where the filter left all bounds."""
-    runs = passes(case, supposed)
+    runs = passes(case, hypothesis)
     return -np.inf if runs is None else likelihood(runs)
 
 
-def log_prior(case: Case, supposed: Supposed, free: Sequence[Free]) -> float:
+def log_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float:
     """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [
-        (supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
+        (hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
         for entry in free
         if from_zero(entry.parameter) and entry.stated is None
     ]
-    return -0.5 * strain(case, supposed, free) - 0.5 * float(np.sum(np.square(sizes)))
+    return -0.5 * prior_chi_squared(case, hypothesis, free) - 0.5 * float(np.sum(np.square(sizes)))
 
 
-def away(supposed: Supposed, free: Sequence[Free]) -> Array:
+def away(hypothesis: Hypothesis, free: Sequence[Free]) -> Array:
     """How far all numbers that the plant file states are from there, in standard deviations: theta, then those of its effects."""
     stated = [
-        (supposed.effects[entry.effect][entry.parameter.symbol] - entry.stated) / entry.scale
+        (hypothesis.effects[entry.effect][entry.parameter.symbol] - entry.stated) / entry.scale
         for entry in free
         if entry.stated is not None
     ]
-    return np.append(supposed.theta, stated)
+    return np.append(hypothesis.theta, stated)
 
 
-def strain(case: Case, supposed: Supposed, free: Sequence[Free]) -> float:
+def prior_chi_squared(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float:
     """The squared distance of all that the plant file states from there, in its own spread: chi-squared under a plant as stated."""
-    moved, theta = away(supposed, free), supposed.theta
+    moved, theta = away(hypothesis, free), hypothesis.theta
     beside = 0.0 if case.spread is None else float(theta @ (case.pull_of(theta) - theta))
     return float(moved @ moved) + beside
 
 
-def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) -> Fit | None:
-    """The best theta and effects from `start`, unrest held; None where the start cannot be filtered."""
+def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) -> Fit | None:
+    """The best theta and effects from `start`, process noise held; None where the start cannot be filtered."""
     free = free_numbers(case, start, shapes)
     at = _linear(case, start, free)
     damping = 0.0
@@ -144,43 +144,43 @@ def fit(case: Case, start: Supposed, *, rounds: int = 8, shapes: bool = True) ->
         if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < ENOUGH:
             return at
         for _ in range(DAMPINGS):
-            tried = _linear(case, _moved(case, at, damping), free, at.log_posterior)
-            if tried is not None:
+            fitted = _linear(case, _moved(case, at, damping), free, at.log_posterior)
+            if fitted is not None:
                 break
             damping = max(4.0 * damping, 0.03)
         else:
             return at
-        gain, at = tried.log_posterior - at.log_posterior, tried
+        gain, at = fitted.log_posterior - at.log_posterior, fitted
         damping *= 0.2
         if gain < ENOUGH:
             break
     return at
 
 
-def _moved(case: Case, at: Fit, damping: float) -> Supposed:
+def _moved(case: Case, at: Fit, damping: float) -> Hypothesis:
     """One damped step, kept within the effects' bounds."""
     count = len(case.free)
-    theta = at.supposed.theta
+    theta = at.hypothesis.theta
     curvature = at.information + damping * np.diag(np.diag(at.information))
     step = -np.linalg.solve(curvature, at.pull)
-    effects = {name: dict(values) for name, values in at.supposed.effects.items()}
+    effects = {name: dict(values) for name, values in at.hypothesis.effects.items()}
     for entry, change in zip(at.free, step[count:], strict=True):
         symbol, parameter = entry.parameter.symbol, entry.parameter
         value = effects[entry.effect][symbol] + float(np.clip(change, -30.0, 30.0)) * entry.scale
         effects[entry.effect][symbol] = float(np.clip(value, parameter.lower, parameter.upper))
-    return replace(at.supposed, theta=theta + step[:count], effects=effects)
+    return replace(at.hypothesis, theta=theta + step[:count], effects=effects)
 
 
-def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...], least: float = -np.inf) -> Fit | None:
+def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: float = -np.inf) -> Fit | None:
     """Likelihood and linear problem at a point; None where the filter or its slopes fail, or it is no likelier than `least`."""
-    variant = case.kit.variant(supposed.effects)
-    inside = np.array([entry.effect in variant.names for entry in free], dtype=bool)
-    places = [variant.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in variant.names]
-    runs = passes(case, supposed, [*case.free.tolist(), *places], slopes=not inside.all())
+    compiled = case.library.compiled(hypothesis.effects)
+    inside = np.array([entry.effect in compiled.names for entry in free], dtype=bool)
+    places = [compiled.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in compiled.names]
+    runs = passes(case, hypothesis, [*case.free.tolist(), *places], slopes=not inside.all())
     if runs is None:
         return None
     found = likelihood(runs)
-    log_posterior = found + log_prior(case, supposed, free)
+    log_posterior = found + log_prior(case, hypothesis, free)
     if not log_posterior > least:
         return None
     count = len(case.free)
@@ -190,35 +190,35 @@ def _linear(case: Case, supposed: Supposed, free: tuple[Free, ...], least: float
     information[np.ix_(own, own)] = np.sum([run.gram for run in runs], axis=0)
     pull[own] = np.sum([run.pull for run in runs], axis=0)
     if not inside.all():
-        _add_differences(case, supposed, free, runs, own, information, pull)
+        _add_differences(case, hypothesis, free, runs, own, information, pull)
     for row, entry in enumerate(free, count):
-        if is_lag(entry.effect) and supposed.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
-            pull[row], further = _smoothed(case, supposed, entry, float(information[row, row]))
+        if is_lag(entry.effect) and hypothesis.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
+            pull[row], further = _smoothed(case, hypothesis, entry, float(information[row, row]))
             information[row, row] += further
     information *= np.outer(scale, scale)
     pull *= scale
     if not (np.isfinite(information).all() and np.isfinite(pull).all()):
         return None  # slopes that overflow: as good as a filter that fails
-    _add_prior(case, supposed, free, information, pull)
-    return Fit(supposed, found, log_posterior, free, information, pull)
+    _add_prior(case, hypothesis, free, information, pull)
+    return Fit(hypothesis, found, log_posterior, free, information, pull)
 
 
-def unfitted(case: Case, unrest: Array) -> Fit | None:
+def unfitted(case: Case, process_noise: Array) -> Fit | None:
     """The plant as stated, no more known of it than its file says; None where it cannot follow the logs."""
-    start = fit(case, replace(nothing_supposed(case, 0.0), unrest=unrest), rounds=0)
+    start = fit(case, replace(nominal_hypothesis(case, 0.0), process_noise=process_noise), rounds=0)
     if start is None:
         return None
     information, pull = np.zeros_like(start.information), np.zeros_like(start.pull)
-    _add_prior(case, start.supposed, start.free, information, pull)
+    _add_prior(case, start.hypothesis, start.free, information, pull)
     return replace(start, information=information, pull=pull)
 
 
-def _add_prior(case: Case, supposed: Supposed, free: Sequence[Free], information: Array, pull: Array) -> None:
-    count = len(supposed.theta)
+def _add_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free], information: Array, pull: Array) -> None:
+    count = len(hypothesis.theta)
     information[:count, :count] += case.known
-    pull[:count] += case.pull_of(supposed.theta)
+    pull[:count] += case.pull_of(hypothesis.theta)
     for row, entry in enumerate(free, count):
-        value = supposed.effects[entry.effect][entry.parameter.symbol]
+        value = hypothesis.effects[entry.effect][entry.parameter.symbol]
         if entry.stated is not None:
             information[row, row] += 1.0
             pull[row] += (value - entry.stated) / entry.scale
@@ -230,7 +230,7 @@ def _add_prior(case: Case, supposed: Supposed, free: Sequence[Free], information
 
 def _add_differences(
     case: Case,
-    supposed: Supposed,
+    hypothesis: Hypothesis,
     free: Sequence[Free],
     runs: Sequence[Pass],
     own: NDArray[np.int64],
@@ -240,33 +240,33 @@ def _add_differences(
     """Rows and columns of numbers that act on the way of a signal, by finite differences."""
     w = stacked(runs)
     slopes = np.concatenate([flat_slopes(run) for run in runs])
-    count = len(supposed.theta)
+    count = len(hypothesis.theta)
     outside = np.setdiff1d(np.arange(count, len(pull)), own)
     for row in [row for row in outside.tolist() if free[row - count].effect == LOST_FRAMES and _knows_losses(case)]:
-        share = supposed.effects[LOST_FRAMES]["p"]
-        slopes_by_share = [share_slopes(flight.tape, share) for flight in case.flights]
+        share = hypothesis.effects[LOST_FRAMES]["p"]
+        slopes_by_share = [share_slopes(flight.filter_input, share) for flight in case.flights]
         pull[row] = -sum(slope for slope, _ in slopes_by_share)
         information[row, row] = -sum(bend for _, bend in slopes_by_share)
         outside = outside[outside != row]
     if not len(outside):
         return
-    columns = np.stack([_difference(case, supposed, free[row - count], w) for row in outside.tolist()], axis=1)
+    columns = np.stack([_difference(case, hypothesis, free[row - count], w) for row in outside.tolist()], axis=1)
     information[np.ix_(own, outside)] = slopes.T @ columns
     information[np.ix_(outside, own)] = information[np.ix_(own, outside)].T
     information[np.ix_(outside, outside)] = columns.T @ columns
     pull[outside] = columns.T @ w
 
 
-def _smoothed(case: Case, supposed: Supposed, entry: Free, known: float) -> tuple[float, float]:
+def _smoothed(case: Case, hypothesis: Hypothesis, entry: Free, known: float) -> tuple[float, float]:
     """The slope of the negative log likelihood by a sensor's lag, and what the innovations' variances s alone tell of it:
-    sum (d ln s)^2 / 2. A lag smooths the unrest too, which slopes of the innovations under fixed gains know nothing of.
+    sum (d ln s)^2 / 2. A lag smooths the process noise too, which slopes of the innovations under fixed gains know nothing of.
 
     Taken over a standard deviation to both sides, by the information `known` from those slopes: closer by, an axis that comes to rest
     a row earlier decides. Rows whose variance jumps for that have no slope. NaN where the filter fails on a side.
     """
-    lag_s = supposed.effects[entry.effect][entry.parameter.symbol]
+    lag_s = hypothesis.effects[entry.effect][entry.parameter.symbol]
     reach = min(1.0 / np.sqrt(known), WIDEST * lag_s) if known > 0.0 else WIDEST * lag_s
-    below, above = (passes(case, _with_number(supposed, entry, lag_s + side * reach)) for side in (-1.0, 1.0))
+    below, above = (passes(case, _with_number(hypothesis, entry, lag_s + side * reach)) for side in (-1.0, 1.0))
     if below is None or above is None:
         return np.nan, np.nan
     change = np.concatenate([np.log(one.s / other.s).ravel() for one, other in zip(above, below, strict=True)])
@@ -276,7 +276,7 @@ def _smoothed(case: Case, supposed: Supposed, entry: Free, known: float) -> tupl
 
 def _knows_losses(case: Case) -> bool:
     """Whether the readings said which frames were lost."""
-    return any(bool(flight.tape.lost.any()) for flight in case.flights)
+    return any(bool(flight.filter_input.lost.any()) for flight in case.flights)
 
 
 def flat_slopes(run: Pass) -> Array:
@@ -285,16 +285,16 @@ def flat_slopes(run: Pass) -> Array:
     return run.dw.reshape(-1, run.dw.shape[2])
 
 
-def _difference(case: Case, supposed: Supposed, entry: Free, w: Array) -> Array:
+def _difference(case: Case, hypothesis: Hypothesis, entry: Free, w: Array) -> Array:
     """The slope by a number that acts on the way of a signal, from a small step away from its bound."""
-    value = supposed.effects[entry.effect][entry.parameter.symbol]
+    value = hypothesis.effects[entry.effect][entry.parameter.symbol]
     step = NUDGE * entry.scale
     step = step if value + step <= entry.parameter.upper else -step
-    runs = passes(case, _with_number(supposed, entry, value + step))
+    runs = passes(case, _with_number(hypothesis, entry, value + step))
     return np.zeros_like(w) if runs is None else (stacked(runs) - w) / step
 
 
-def _with_number(supposed: Supposed, entry: Free, value: float) -> Supposed:
+def _with_number(hypothesis: Hypothesis, entry: Free, value: float) -> Hypothesis:
     """The same with another value of one number."""
-    values = {**supposed.effects[entry.effect], entry.parameter.symbol: value}
-    return supposed.with_effects({**supposed.effects, entry.effect: values})
+    values = {**hypothesis.effects[entry.effect], entry.parameter.symbol: value}
+    return hypothesis.with_effects({**hypothesis.effects, entry.effect: values})

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.gauss_newton import SCATTERS, likelihood
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.library.sensor_effects import rates
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 
 SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay
 FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
@@ -30,12 +30,12 @@ SHARED = 5.0  # times the variance that fourth differences show, where each read
 Array = NDArray[np.float64]
 
 
-def with_jitter(case: Case, supposed: Supposed, effects: Iterable[str]) -> Supposed:
+def with_jitter(case: Case, hypothesis: Hypothesis, effects: Iterable[str]) -> Hypothesis:
     """The same with the scatter of those of `effects` that are a sensor's delay, likeliest by the logs; 0 where it explains little."""
     for name in effects:
         if scatters(case, name):
-            supposed = _likeliest(case, supposed, name)
-    return supposed
+            hypothesis = _likeliest(case, hypothesis, name)
+    return hypothesis
 
 
 def most_shown_s(case: Case, output: str) -> float:
@@ -43,9 +43,9 @@ def most_shown_s(case: Case, output: str) -> float:
 
     0 where the faster half of those that turn by more than a step a row is no less smooth, or none is faster than another.
     """
-    step = case.kit.bound.plant.sensors.get(output, 0.0)
-    place = case.kit.outputs.index(output)
-    found = [_roughness(flight.tape.t_s, flight.tape.read[:, place], step) for flight in case.flights]
+    step = case.library.bound.plant.sensors.get(output, 0.0)
+    place = case.library.outputs.index(output)
+    found = [_roughness(flight.filter_input.t_s, flight.filter_input.read[:, place], step) for flight in case.flights]
     square, rate = np.concatenate(found, axis=1)
     if len(rate) < LEAST_READINGS:
         return 0.0
@@ -62,18 +62,18 @@ def most_shown_s(case: Case, output: str) -> float:
 
 def scatters(case: Case, name: str) -> bool:
     """Whether an effect has a scatter."""
-    return SCATTERS in case.kit.effects[name].parameter
+    return SCATTERS in case.library.effects[name].parameter
 
 
-def jitter_sd(case: Case, supposed: Supposed, name: str) -> float:
+def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
     """What is known of a delay's scatter (s, one standard deviation), by the likelihood over a fifth of it to both sides.
 
     Of none, what costs half a nat: the likelihood falls with the square of a scatter that is not there. As large as what was tried where
     the likelihood falls by less than that.
     """
-    tau_s, jitter_s = (supposed.effects[name][symbol] for symbol in ("tau", SCATTERS))
+    tau_s, jitter_s = (hypothesis.effects[name][symbol] for symbol in ("tau", SCATTERS))
     reach = 0.2 * jitter_s if jitter_s > 0.0 else SHARES[0] * tau_s
-    found = _tried(case, supposed, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
+    found = _tried(case, hypothesis, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
     lost = found[jitter_s] - 0.5 * (found[max(jitter_s - reach, 0.0)] + found[jitter_s + reach])
     lost = lost if jitter_s > 0.0 else 2.0 * lost
     return float(reach * np.sqrt(0.5 / lost)) if 0.5 < lost < np.inf else reach
@@ -88,28 +88,30 @@ def _roughness(t_s: Array, read: Array, step: float) -> Array:
     return np.stack([square[faster], rate[faster]])
 
 
-def _likeliest(case: Case, supposed: Supposed, name: str) -> Supposed:
-    tau_s = supposed.effects[name]["tau"]
-    most_s = most_shown_s(case, case.kit.bound.model.places.sensors[name.split(".")[0]].output)
+def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
+    tau_s = hypothesis.effects[name]["tau"]
+    most_s = most_shown_s(case, case.library.bound.model.places.sensors[name.split(".")[0]].output)
     if most_s == 0.0:
-        return _with(supposed, name, 0.0)
-    coarse = _tried(case, supposed, name, (0.0, *(share * tau_s for share in SHARES if share * tau_s < most_s), most_s))
+        return _with(hypothesis, name, 0.0)
+    coarse = _tried(
+        case, hypothesis, name, (0.0, *(share * tau_s for share in SHARES if share * tau_s < most_s), most_s)
+    )
     best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
-    found = coarse | _tried(case, supposed, name, [share * best for share in FINELY])
+    found = coarse | _tried(case, hypothesis, name, [share * best for share in FINELY])
     best = max(found, key=lambda jitter_s: found[jitter_s])
-    return _with(supposed, name, best if found[best] > found[0.0] + LEAST else 0.0)
+    return _with(hypothesis, name, best if found[best] > found[0.0] + LEAST else 0.0)
 
 
-def _tried(case: Case, supposed: Supposed, name: str, values_s: Iterable[float]) -> dict[float, float]:
+def _tried(case: Case, hypothesis: Hypothesis, name: str, values_s: Iterable[float]) -> dict[float, float]:
     """The log likelihood by jitter."""
 
     def value(jitter_s: float) -> float:
-        runs = passes(case, _with(supposed, name, jitter_s))
+        runs = passes(case, _with(hypothesis, name, jitter_s))
         return -np.inf if runs is None else likelihood(runs)
 
     asked = sorted(set(values_s))
-    return dict(zip(asked, each(value, asked), strict=True))
+    return dict(zip(asked, thread_map(value, asked), strict=True))
 
 
-def _with(supposed: Supposed, name: str, jitter_s: float) -> Supposed:
-    return supposed.with_effects({**supposed.effects, name: {**supposed.effects[name], SCATTERS: jitter_s}})
+def _with(hypothesis: Hypothesis, name: str, jitter_s: float) -> Hypothesis:
+    return hypothesis.with_effects({**hypothesis.effects, name: {**hypothesis.effects[name], SCATTERS: jitter_s}})

@@ -14,5 +14,5 @@ def moved_parameters(case: Case, theta: np.ndarray, far: float) -> list[int]:
 def moved_effects(fit: Fit, far: float) -> list[Free]:
     """Numbers of effects that the plant file states, further than `far` from there."""
     numbers = [entry for entry in fit.free if entry.stated is not None]
-    distances = away(fit.supposed, fit.free)[len(fit.supposed.theta) :]
+    distances = away(fit.hypothesis, fit.free)[len(fit.hypothesis.theta) :]
     return [entry for entry, distance in zip(numbers, distances.tolist(), strict=True) if abs(distance) > far]

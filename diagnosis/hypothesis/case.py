@@ -1,4 +1,4 @@
-"""A diagnosis' material: the plant's kit and its logs as tapes, with where each starts."""
+"""A diagnosis' material: the plant's library and its logs as filter inputs, with where each starts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -8,9 +8,9 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import Tape, tape_of
+from diagnosis.filter.filter_input import FilterInput, filter_input_of
 from diagnosis.hypothesis.initial_state import start_of
-from diagnosis.library.effect_library import Kit
+from diagnosis.library.effect_library import EffectLibrary
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.effect import Values
@@ -22,10 +22,11 @@ LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of t
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One log as the filter takes it: tape, start x0 and its variances p0 (states,), axes held; `drive` (states,) as in filter.Noise."""
+    """One log as the filter takes it: filter input, start x0 and its variances p0 (states,), axes held; `drive`
+    (states,) as in filter.Noise."""
 
     log: RunLog
-    tape: Tape
+    filter_input: FilterInput
     x0: Array
     p0: Array
     locked: tuple[str, ...]
@@ -51,7 +52,7 @@ class Case:
     (free, free) is a root S of the correlation C = S S' that it states of its coefficients, None where they are independent.
     """
 
-    kit: Kit
+    library: EffectLibrary
     flights: tuple[Flight, ...]
     slots: tuple[int, ...]
     free: NDArray[np.int64]
@@ -79,12 +80,12 @@ class Case:
     @property
     def sd(self) -> Array:
         """Standard deviations of the plant's coefficients that are not known exactly, in the order of `free`."""
-        return np.asarray(self.kit.bound.sd[self.free])
+        return np.asarray(self.library.bound.sd[self.free])
 
     @property
     def nonnegative(self) -> list[int]:
         """Places in p of uncertain coefficients that have a sign to keep."""
-        signs = [spec.sign for spec in self.kit.bound.model.parameters for _ in range(spec.count)]
+        signs = [spec.sign for spec in self.library.bound.model.parameters for _ in range(spec.count)]
         return [int(place) for place in self.free if signs[place] != "any"]
 
     def with_flights(self, flights: Sequence[Flight]) -> "Case":
@@ -93,22 +94,22 @@ class Case:
 
 
 def make_case(
-    kit: Kit,
+    library: EffectLibrary,
     logs: Sequence[RunLog],
     used: Sequence[NDArray[np.bool_] | None] | None = None,
     stated: BoundPlant | None = None,
 ) -> Case:
     """The logs ready for the filter; rows not `used` count as not measured. `stated` is the plant whose effects are stated."""
     masks = used or [None] * len(logs)
-    flights = tuple(_flight(kit, log, mask) for log, mask in zip(logs, masks, strict=True))
-    seen = np.any([np.isfinite(flight.tape.y).any(axis=0) for flight in flights], axis=0)
+    flights = tuple(_flight(library, log, mask) for log, mask in zip(logs, masks, strict=True))
+    seen = np.any([np.isfinite(flight.filter_input.y).any(axis=0) for flight in flights], axis=0)
     slots = tuple(int(np.sum(seen[:place])) if seen[place] else -1 for place in range(len(seen)))
     entries = {} if stated is None else stated.effects
     values = {name: {symbol: entry.values[0] for symbol, entry in own.items()} for name, own in entries.items()}
     sd = {name: {symbol: entry.sds[0] for symbol, entry in own.items()} for name, own in entries.items()}
-    draws = {name: values.pop(name) for name in list(values) if not kit.effects[name].repeats}
-    free = np.flatnonzero(kit.bound.sd > 0.0)
-    return Case(kit, flights, slots, free, values, sd, draws, _spread(kit.bound, free))
+    draws = {name: values.pop(name) for name in list(values) if not library.effects[name].repeats}
+    free = np.flatnonzero(library.bound.sd > 0.0)
+    return Case(library, flights, slots, free, values, sd, draws, _spread(library.bound, free))
 
 
 def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
@@ -120,29 +121,29 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
     return np.asarray(vectors * np.sqrt(np.maximum(values, LEAST_VARIANCE)))
 
 
-def _flight(kit: Kit, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:
-    tape = tape_of(log, kit.bound.plant, kit.outputs, used)
-    x0, p0 = start_of(kit, tape, log.locked)
-    return Flight(log, _found_its_state(tape), x0, p0, log.locked, _drive(kit, tape))
+def _flight(library: EffectLibrary, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:
+    filter_input = filter_input_of(log, library.bound.plant, library.outputs, used)
+    x0, p0 = start_of(library, filter_input, log.locked)
+    return Flight(log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
 
 
-def _drive(kit: Kit, tape: Tape) -> Array:
+def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
     """What an unknown command, as far from the last as commands are from row to row, does to the state that it drives."""
-    model = kit.bound.model
-    found = np.zeros(len(kit.states))
+    model = library.bound.model
+    found = np.zeros(len(library.states))
     for rotor in model.places.rotors.values():
-        if rotor.drive is None or str(rotor.speed) not in kit.states:
+        if rotor.drive is None or str(rotor.speed) not in library.states:
             continue
-        gain = kit.bound.number(sympy.diff(rotor.drive, rotor.variable))
-        moves = np.diff(tape.u[:, model.inputs.index(rotor.variable)])
-        found[kit.states.index(str(rotor.speed))] = gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
+        gain = library.bound.number(sympy.diff(rotor.drive, rotor.variable))
+        moves = np.diff(filter_input.u[:, model.inputs.index(rotor.variable)])
+        found[library.states.index(str(rotor.speed))] = gain**2 * float(np.mean(moves**2)) if moves.size else 0.0
     return found
 
 
-def _found_its_state(tape: Tape) -> Tape:
-    """The tape whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
-    since = tape.t_s - tape.t_s[0]
+def _found_its_state(filter_input: FilterInput) -> FilterInput:
+    """The filter input whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
+    since = filter_input.t_s - filter_input.t_s[0]
     untold = since < min(UNTOLD_S, UNTOLD_SHARE * since[-1])
-    place, usual = tape.place.copy(), tape.usual.copy()
+    place, usual = filter_input.place.copy(), filter_input.usual.copy()
     place[untold], usual[untold] = -1, 0.0
-    return replace(tape, place=place, usual=usual)
+    return replace(filter_input, place=place, usual=usual)

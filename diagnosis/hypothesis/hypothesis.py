@@ -7,15 +7,15 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise, Pass
 from diagnosis.hypothesis.case import Case, Flight
 from diagnosis.hypothesis.initial_state import RUB_S
-from diagnosis.library.effect_library import Kit, Variant, is_gust, is_lag
+from diagnosis.library.effect_library import CompiledFilter, EffectLibrary, is_gust, is_lag
 from diagnosis.library.gust_state import gust_state
 from diagnosis.library.input_effects import commanded
 from diagnosis.library.sensor_effects import sensed
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 from sim.effect import Values
 
 Array = NDArray[np.float64]
@@ -25,92 +25,96 @@ LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an ax
 
 
 @dataclass(frozen=True, eq=False)
-class Supposed:
+class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
-    `unrest` (axes,): log10 of the noise on each axis' speed per square root of a second."""
+    `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second."""
 
     theta: Array
     effects: Mapping[str, Values]
-    unrest: Array
+    process_noise: Array
 
-    def with_effects(self, effects: Mapping[str, Values]) -> "Supposed":
+    def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
         """The same with other effects."""
         return replace(self, effects=effects)
 
 
-def nothing_supposed(case: Case, unrest: float) -> Supposed:
+def nominal_hypothesis(case: Case, process_noise: float) -> Hypothesis:
     """The plant as stated, with the effects that its file states."""
-    return Supposed(np.zeros(len(case.free)), case.stated, np.full(len(case.kit.bound.model.axes), unrest))
+    return Hypothesis(np.zeros(len(case.free)), case.stated, np.full(len(case.library.bound.model.axes), process_noise))
 
 
-def coefficients(case: Case, variant: Variant, supposed: Supposed) -> Array:
+def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -> Array:
     """The vector p of a variant, whose other effects are off; coefficients that cannot be negative stay where they can be."""
-    kit = case.kit
-    p = variant.p.copy()
-    p[case.free] = kit.bound.p[case.free] + supposed.theta * case.sd
+    library = case.library
+    p = compiled.p.copy()
+    p[case.free] = library.bound.p[case.free] + hypothesis.theta * case.sd
     for place in case.nonnegative:
-        p[place] = max(p[place], 1e-3 * kit.bound.p[place])
-    p[list(variant.switches.values())] = 0.0
-    p[[place for name, place in variant.switches.items() if name in supposed.effects]] = 1.0
-    for name, values in supposed.effects.items():
-        if name in variant.names:
+        p[place] = max(p[place], 1e-3 * library.bound.p[place])
+    p[list(compiled.switches.values())] = 0.0
+    p[[place for name, place in compiled.switches.items() if name in hypothesis.effects]] = 1.0
+    for name, values in hypothesis.effects.items():
+        if name in compiled.names:
             for symbol, value in values.items():
-                p[variant.place(name, symbol)] = max(value, SHORTEST_LAG_S) if is_lag(name) else value
+                p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if is_lag(name) else value
     return p
 
 
-def tape_under(case: Case, variant: Variant, flight: Flight, effects: Mapping[str, Values]) -> Tape:
-    """The flight's tape with what the effects do on the way of the signals."""
-    further = {name: values for name, values in effects.items() if name not in variant.names}
+def filter_input_under(
+    case: Case, compiled: CompiledFilter, flight: Flight, effects: Mapping[str, Values]
+) -> FilterInput:
+    """The flight's filter input with what the effects do on the way of the signals."""
+    further = {name: values for name, values in effects.items() if name not in compiled.names}
     if not further:
-        return flight.tape
-    return _sent(case.kit, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
+        return flight.filter_input
+    return _sent(case.library, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
 
 
 @lru_cache(maxsize=32)
-def _sent(kit: Kit, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]) -> Tape:
+def _sent(
+    library: EffectLibrary, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]
+) -> FilterInput:
     given = {name: dict(values) for name, values in effects}
-    return sensed(kit, commanded(kit, flight.tape, given), given)
+    return sensed(library, commanded(library, flight.filter_input, given), given)
 
 
-def noise_of(case: Case, variant: Variant, flight: Flight, supposed: Supposed) -> Noise:
-    """The filter's noise: on each axis' speed its unrest, on gusts their own, next to none elsewhere."""
-    x0, p0 = start_under(variant, flight)
+def noise_of(case: Case, compiled: CompiledFilter, flight: Flight, hypothesis: Hypothesis) -> Noise:
+    """The filter's noise: on each axis' speed its process noise, on gusts their own, next to none elsewhere."""
+    x0, p0 = start_under(compiled, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
-    q[list(case.kit.velocities)] = 10.0 ** (2.0 * supposed.unrest)
-    for name in filter(is_gust, supposed.effects):
-        place, values = variant.states.index(gust_state(name)), supposed.effects[name]
+    q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
+    for name in filter(is_gust, hypothesis.effects):
+        place, values = compiled.states.index(gust_state(name)), hypothesis.effects[name]
         q[place], p0[place] = 2.0 * values["sigma"] ** 2 / values["T"], values["sigma"] ** 2
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    return Noise(q, np.full(max(1, len(variant.filter.axes)), RUB_S), p0, drive, flight.step_s)
+    return Noise(q, np.full(max(1, len(compiled.filter.axes)), RUB_S), p0, drive, flight.step_s)
 
 
-def start_under(variant: Variant, flight: Flight) -> tuple[Array, Array]:
+def start_under(compiled: CompiledFilter, flight: Flight) -> tuple[Array, Array]:
     """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
-    further = variant.states[len(flight.x0) :]
+    further = compiled.states[len(flight.x0) :]
     own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
     read = [flight.first_read[own[s]] if s in own else 0.0 for s in further]
-    sure = [flight.tape.r[0, own[s]] if s in own else START_SD**2 for s in further]
+    sure = [flight.filter_input.r[0, own[s]] if s in own else START_SD**2 for s in further]
     return np.append(flight.x0, read), np.append(flight.p0, sure)
 
 
 def passes(
     case: Case,
-    supposed: Supposed,
+    hypothesis: Hypothesis,
     columns: Sequence[int] = (),
     *,
     slopes: bool = False,
     gains: bool = False,
 ) -> list[Pass] | None:
     """The filter over all flights; None where it left all bounds on one."""
-    variant = case.kit.variant(supposed.effects)
-    p = coefficients(case, variant, supposed)
+    compiled = case.library.compiled(hypothesis.effects)
+    p = coefficients(case, compiled, hypothesis)
 
     def over(flight: Flight) -> Pass | None:
-        tape = tape_under(case, variant, flight, supposed.effects)
-        x0, noise = start_under(variant, flight)[0], noise_of(case, variant, flight, supposed)
-        run = variant.filter.run(
-            tape,
+        filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
+        x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, hypothesis)
+        run = compiled.filter.run(
+            filter_input,
             p,
             x0,
             noise,
@@ -120,8 +124,8 @@ def passes(
             locked=flight.locked,
             keep_gains=gains,
         )
-        return None if run is None else replace(run, log_likelihood=run.log_likelihood + tape.known)
+        return None if run is None else replace(run, log_likelihood=run.log_likelihood + filter_input.known)
 
-    runs = each(over, case.flights)
+    runs = thread_map(over, case.flights)
     found = [run for run in runs if run is not None and np.isfinite(run.log_likelihood)]
     return found if len(found) == len(runs) else None

@@ -21,13 +21,14 @@ import sim
 from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
 from diagnosis.library.gust_state import gusty
 from diagnosis.library.sensor_lag_state import lagged
-from diagnosis.library.subprocess import NotDone, apart
-from jobs.thread_map import ahead
+from diagnosis.library.subprocess import NotDone, in_subprocess
+from jobs.thread_map import begin
 from records.errors import BadInput
 from records.files import write_atomic
 from records.plant import Plant
 from records.reading import read_text
-from sim.added_effects import combined, library, redundant
+from sim.added_effects import combined, redundant
+from sim.added_effects import library as all_effects
 from sim.bind import BoundPlant, bind, named_values
 from sim.composition.build import switched_model
 from sim.composition.switch import switch_name
@@ -37,11 +38,11 @@ from toolchain.cache import CACHE_DIR, is_whole
 
 Array = NDArray[np.float64]
 EQUATIONS = Lock()  # algebra is Python's, which does one thing at a time; compilers work side by side
-VARIANTS: dict[str, Lock] = {}  # by plant and effects: one builds a variant, others wait for it
+BUILDING: dict[str, Lock] = {}  # by plant and effects: one builds a variant, others wait for it
 
 
 @dataclass(frozen=True, eq=False)
-class Variant:
+class CompiledFilter:
     """One compiled filter: the effects `names` are in its equations, at next to no size in `p`; `index` finds coefficients in p.
 
     `states` are the plant's own, then those that effects brought; `switches` the places in p of the effects' switches.
@@ -60,7 +61,7 @@ class Variant:
 
 
 @dataclass(frozen=True, eq=False)
-class Kit:
+class EffectLibrary:
     """A nominal plant with its library: `names` are effects on its equations without a state or an axis of their own, `wide_names`
     those with, less `bristles`, whose states say what friction does near rest and are no gap, and less those that no filter can
     follow. `outputs` are the plant's outputs, then the states that a log may carry; `states` the plant's own."""
@@ -106,14 +107,14 @@ class Kit:
         return len(self.bound.p)
 
     @property
-    def plain(self) -> Variant:
+    def plain(self) -> CompiledFilter:
         """The nominal equations alone, which are the fastest."""
-        return _variant(self, ())
+        return _compiled(self, ())
 
     def prepare(self) -> None:
         """Begin to open the variants without gusts, the one that takes longest first; who needs one sooner waits for it."""
         for effects in (self.whole, (), self.narrow):
-            ahead(_variant, self, effects)
+            begin(_compiled, self, effects)
 
     @property
     def narrow(self) -> tuple[str, ...]:
@@ -134,7 +135,7 @@ class Kit:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
         return name in self.whole or name in self.gusts
 
-    def variant(self, effects: Iterable[str]) -> Variant:
+    def compiled(self, effects: Iterable[str]) -> CompiledFilter:
         """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all; each with gusts or without.
 
         States of effects that are off sleep, and take next to no time.
@@ -142,7 +143,7 @@ class Kit:
         wanted = set(effects)
         others = wanted.intersection(self.whole)
         carried = () if not others else self.narrow if others.issubset(self.narrow) else self.whole
-        return _variant(self, (*carried, *self.gusts) if wanted.intersection(self.gusts) else carried)
+        return _compiled(self, (*carried, *self.gusts) if wanted.intersection(self.gusts) else carried)
 
 
 def is_lag(name: str) -> bool:
@@ -155,14 +156,14 @@ def is_gust(name: str) -> bool:
     return name.endswith(".gust")
 
 
-def make_kit(bound: BoundPlant) -> Kit:
-    """The kit of a nominal plant."""
-    effects = library(bound)
+def effect_library(bound: BoundPlant) -> EffectLibrary:
+    """The library of a nominal plant."""
+    effects = all_effects(bound)
     names = _noted(bound, "names", lambda: _sorted_names(bound, effects))
     outputs = [*bound.model.outputs, *(str(s) for s in bound.model.states if str(s) not in bound.model.outputs)]
     gaps = tuple(name for name in names["others"] if effects[name].names_a_gap)
     bristles = tuple(name for name in names["others"] if not effects[name].names_a_gap)
-    return Kit(bound, effects, tuple(names["stateless"]), gaps, bristles, tuple(outputs))
+    return EffectLibrary(bound, effects, tuple(names["stateless"]), gaps, bristles, tuple(outputs))
 
 
 def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str, Any]:
@@ -177,16 +178,16 @@ def _sorted_names(bound: BoundPlant, effects: Mapping[str, Effect]) -> dict[str,
 
 
 @cache
-def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
+def _compiled(library: EffectLibrary, names: tuple[str, ...]) -> CompiledFilter:
     """Open a variant, building it where it is not on disk yet."""
-    bound = kit.bound
+    bound = library.bound
     what = hashlib.sha256(repr(names).encode()).hexdigest()[:16]
-    with VARIANTS.setdefault(f"{bound.plant.model} {what}", Lock()):
+    with BUILDING.setdefault(f"{bound.plant.model} {what}", Lock()):
         # The whole library takes longest; for a smaller one another process costs as much as it saves.
-        known = _noted(bound, what, lambda: (_built_apart if names == kit.whole else _build)(bound, names))
+        known = _noted(bound, what, lambda: (_built_in_subprocess if names == library.whole else _build)(bound, names))
     p = np.array(known["p"])
     p[: len(bound.p)] = bound.p
-    return Variant(
+    return CompiledFilter(
         filter=open_filter(Path(known["library"]), known["sizes"], tuple(known["axes"])),
         names=frozenset(names),
         switches=known["switches"],
@@ -196,10 +197,10 @@ def _variant(kit: Kit, names: tuple[str, ...]) -> Variant:
     )
 
 
-def _built_apart(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
+def _built_in_subprocess(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
     """What is noted of a variant, by another process, which leaves this one to the search that has begun."""
     try:
-        noted: dict[str, Any] = apart(_build_of, bound.plant, names, MADE_FROM)
+        noted: dict[str, Any] = in_subprocess(_build_of, bound.plant, names, MADE_FROM)
     except NotDone:  # a plant of this process alone, say
         return _build(bound, names)
     return noted
@@ -219,7 +220,7 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
     """
     behind, gusts = [name for name in names if is_lag(name)], [name for name in names if is_gust(name)]
     switched = [name for name in names if name not in (*behind, *gusts)]
-    effects = library(bound)
+    effects = all_effects(bound)
     values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
     values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
     values |= {coefficient(name, p.symbol): p.reference for name in (*behind, *gusts) for p in effects[name].parameters}

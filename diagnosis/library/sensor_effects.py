@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import Tape, late, variance_stated
-from diagnosis.library.effect_library import Kit
+from diagnosis.filter.filter_input import FilterInput, late, variance_stated
+from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.library.lattice import grid_evidence
 from sim.effect import Values
 
@@ -17,43 +17,43 @@ BELL = 0.32
 RATE_S = 0.05  # to both sides, over which a reading's rate is taken: long enough for an encoder's steps, short for a helicopter
 
 
-def sensed(kit: Kit, tape: Tape, effects: Mapping[str, Values]) -> Tape:
-    """The tape under the sensor effects among `effects`.
+def sensed(library: EffectLibrary, filter_input: FilterInput, effects: Mapping[str, Values]) -> FilterInput:
+    """The filter input under the sensor effects among `effects`.
 
     A delay puts the reading back to when it was true, a lag likewise by its time constant; steps make it less certain; behind play the
     axis is half the play further the way it last moved, and anywhere within it while the reading stands.
     """
     for name, values in effects.items():
         place, kind = name.split(".")
-        sensor = kit.bound.model.places.sensors.get(place)
+        sensor = library.bound.model.places.sensors.get(place)
         if sensor is None:
             continue
-        output = kit.outputs.index(sensor.output)
+        output = library.outputs.index(sensor.output)
         if kind == "delay":
-            stated = variance_stated(kit.bound.plant, sensor.output)
-            tape = late(unsure_when(tape, output, values["jitter"], stated), output, values["tau"])
+            stated = variance_stated(library.bound.plant, sensor.output)
+            filter_input = late(unsure_when(filter_input, output, values["jitter"], stated), output, values["tau"])
         elif kind == "lag":
-            tape = late(tape, output, values["tau"])
+            filter_input = late(filter_input, output, values["tau"])
         elif kind == "quantization":
-            tape = _coarser(tape, output, values["q"], kit.bound.plant.sensors[sensor.output])
+            filter_input = _coarser(filter_input, output, values["q"], library.bound.plant.sensors[sensor.output])
         elif kind == "backlash":
-            tape = behind_play(tape, output, values["width"])
-    return tape
+            filter_input = behind_play(filter_input, output, values["width"])
+    return filter_input
 
 
-def unsure_when(tape: Tape, output: int, jitter_s: float, stated: float) -> Tape:
-    """The tape whose readings of an output are true at an instant that is known to `jitter_s` only: r + (dy/dt jitter)^2.
+def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated: float) -> FilterInput:
+    """The filter input whose readings of an output are true at an instant that is known to `jitter_s` only: r + (dy/dt jitter)^2.
 
     What the readings showed of noise beyond the variance that is `stated` is no more than that then, as far as its mean goes.
     """
-    seen = np.flatnonzero(np.isfinite(tape.read[:, output]))
+    seen = np.flatnonzero(np.isfinite(filter_input.read[:, output]))
     if jitter_s <= 0.0 or not len(seen):
-        return tape
-    r = tape.r.copy()
-    further = (rates(tape.t_s[seen], tape.read[seen, output]) * jitter_s) ** 2
-    known = min(max(tape.single[output] - stated, 0.0), float(np.mean(further)))
-    r[seen, output] += further - tape.standing[seen, output] * known
-    return replace(tape, r=r)
+        return filter_input
+    r = filter_input.r.copy()
+    further = (rates(filter_input.t_s[seen], filter_input.read[seen, output]) * jitter_s) ** 2
+    known = min(max(filter_input.single[output] - stated, 0.0), float(np.mean(further)))
+    r[seen, output] += further - filter_input.standing[seen, output] * known
+    return replace(filter_input, r=r)
 
 
 def rates(t_s: Array, read: Array) -> Array:
@@ -64,59 +64,64 @@ def rates(t_s: Array, read: Array) -> Array:
     return np.divide(read[behind] - read[before], passed_s, out=np.zeros(len(t_s)), where=passed_s > 0.0)
 
 
-def _coarser(tape: Tape, output: int, grid: float, step: float) -> Tape:
-    """The tape where an output lies on a coarser grid: what readings say is read anew, and its evidence is that of the grid."""
-    seen = np.flatnonzero(np.isfinite(tape.read[:, output]))
-    y, r = tape.y.copy(), tape.r.copy()
-    y[:, output] = tape.read[:, output]
-    r[seen, output] = tape.standing[seen, output] * tape.single[output]
-    evidence = grid_evidence(tape.read[:, output], grid, step)
-    plain = replace(tape, y=y, r=r)
-    return _less_sure(plain, output, seen, grid, evidence - _once(tape, output, seen) * _charge(tape, output, grid))
+def _coarser(filter_input: FilterInput, output: int, grid: float, step: float) -> FilterInput:
+    """The filter input where an output lies on a coarser grid: what readings say is read anew, and its evidence is that of the grid."""
+    seen = np.flatnonzero(np.isfinite(filter_input.read[:, output]))
+    y, r = filter_input.y.copy(), filter_input.r.copy()
+    y[:, output] = filter_input.read[:, output]
+    r[seen, output] = filter_input.standing[seen, output] * filter_input.single[output]
+    evidence = grid_evidence(filter_input.read[:, output], grid, step)
+    plain = replace(filter_input, y=y, r=r)
+    return _less_sure(
+        plain, output, seen, grid, evidence - _once(filter_input, output, seen) * _charge(filter_input, output, grid)
+    )
 
 
-def behind_play(tape: Tape, output: int, width: float) -> Tape:
-    """The tape where an output's readings follow it behind play of that width."""
-    y = tape.y.copy()
+def behind_play(filter_input: FilterInput, output: int, width: float) -> FilterInput:
+    """The filter input where an output's readings follow it behind play of that width."""
+    y = filter_input.y.copy()
     seen = np.flatnonzero(np.isfinite(y[:, output]))
-    moved = np.append(0.0, np.diff(tape.read[seen, output]))
+    moved = np.append(0.0, np.diff(filter_input.read[seen, output]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(moved)), 0))
-    unsure = standing_rows(tape, output)
+    unsure = standing_rows(filter_input, output)
     y[seen, output] += np.where(np.isin(seen, unsure), 0.0, 0.5 * width * np.sign(moved[last]))
-    charge = min(BELL, _charge(tape, output, width))
-    return _less_sure(replace(tape, y=y), output, unsure, width, -_once(tape, output, unsure) * charge)
+    charge = min(BELL, _charge(filter_input, output, width))
+    return _less_sure(replace(filter_input, y=y), output, unsure, width, -_once(filter_input, output, unsure) * charge)
 
 
-def _less_sure(tape: Tape, output: int, rows: NDArray[np.int64], span: float, known: float) -> Tape:
-    """The tape where the readings of `rows` may be off by anything within `span`, which is charged with `known` instead of by each row."""
-    r = tape.r.copy()
-    r[rows, output] += tape.standing[rows, output] * span**2 / 12.0
-    counted = _counted(tape, output, rows)
-    each = 0.5 * float(np.sum(np.log(r[counted, output] / tape.r[counted, output])))
-    return replace(tape, r=r, known=tape.known + each + known)
+def _less_sure(
+    filter_input: FilterInput, output: int, rows: NDArray[np.int64], span: float, known: float
+) -> FilterInput:
+    """The filter input where the readings of `rows` may be off by anything within `span`, which is charged with
+    `known` instead of by each row."""
+    r = filter_input.r.copy()
+    r[rows, output] += filter_input.standing[rows, output] * span**2 / 12.0
+    counted = _counted(filter_input, output, rows)
+    each = 0.5 * float(np.sum(np.log(r[counted, output] / filter_input.r[counted, output])))
+    return replace(filter_input, r=r, known=filter_input.known + each + known)
 
 
-def _counted(tape: Tape, output: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+def _counted(filter_input: FilterInput, output: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
     """Those rows whose readings count in the likelihood."""
-    return np.asarray(rows[tape.place[rows, output] >= 0])
+    return np.asarray(rows[filter_input.place[rows, output] >= 0])
 
 
-def _charge(tape: Tape, output: int, span: float) -> float:
+def _charge(filter_input: FilterInput, output: int, span: float) -> float:
     """What a reading that may be off by anything within `span` costs in likelihood."""
-    return 0.5 * float(np.log1p(span**2 / 12.0 / tape.single[output]))
+    return 0.5 * float(np.log1p(span**2 / 12.0 / filter_input.single[output]))
 
 
-def _once(tape: Tape, output: int, rows: NDArray[np.int64]) -> float:
+def _once(filter_input: FilterInput, output: int, rows: NDArray[np.int64]) -> float:
     """How many readings `rows` hold where the same count, read again and again, is one."""
-    return float(np.sum(1.0 / tape.standing[_counted(tape, output, rows), output]))
+    return float(np.sum(1.0 / filter_input.standing[_counted(filter_input, output, rows), output]))
 
 
-def standing_rows(tape: Tape, output: int) -> NDArray[np.int64]:
+def standing_rows(filter_input: FilterInput, output: int) -> NDArray[np.int64]:
     """Instants at which an axis behind play may be anywhere within it: the reading has not changed for longer than it usually takes, or
     changes back next.
     """
-    seen = np.flatnonzero(np.isfinite(tape.y[:, output]))
-    moved = np.append(0.0, np.diff(tape.read[seen, output]))
+    seen = np.flatnonzero(np.isfinite(filter_input.y[:, output]))
+    moved = np.append(0.0, np.diff(filter_input.read[seen, output]))
     changes = np.flatnonzero(moved != 0.0)
     if len(changes) < 3:
         return seen

@@ -23,7 +23,7 @@ class NotDone(Exception):
     """The process did not give an answer; whoever asked does the work itself, and meets the cause if there is one."""
 
 
-def apart(work: Callable[..., Any], *items: Any) -> Any:
+def in_subprocess(work: Callable[..., Any], *items: Any) -> Any:
     """work(*items) by another Python, which imports `work` by its name; items and answer are such as can be pickled.
 
     Not a worker of jobs/crew.py: a spawned one runs the script again that asks, a notebook's cells say. Raises NotDone where the other

@@ -6,23 +6,23 @@ from itertools import chain
 
 import numpy as np
 
-from diagnosis.detect.linearisation import Ground, ground_of
-from diagnosis.detect.score_tests import Look, look
-from diagnosis.fit.evidence import Tried, tried_as
+from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.detect.score_tests import ScoreTest, score_effects
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.low_process_noise import calmed
+from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.input_effects import LOST_FRAMES
-from diagnosis.search.exchange import FURTHER_GAIN, exchange, twins_tried
+from diagnosis.search.exchange import FURTHER_GAIN, exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 
 SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
-CALM_SINGLES = 4  # from looks under calm air, and as many from those under the air as it seems
-WORTH_A_PLACE = 0.1  # of the best look under calm air
+LOW_NOISE_SINGLES = 4  # from looks under low process noise, and as many from those under the air as it seems
+WORTH_A_PLACE = 0.1  # of the best look under low process noise
 CLOSE, CLOSE_SHARE = 60.0, 0.05  # nats, and share of the gap, within which another pair is worth a third effect
-LEAST_GAIN = 4.0  # of the log likelihood at a first look
-LEAST_SHARE = 0.01  # of the best first look
+LEAST_GAIN = 4.0  # of the log likelihood at a score test
+LEAST_SHARE = 0.01  # of the best score test
 WORTH = 14
 SETTLED = 5
 ONCE_MORE = 3  # of the best fits, those that went far
@@ -33,54 +33,61 @@ WORTH_REFINING = 0.2  # of the best first fit's gain
 
 @dataclass(frozen=True, eq=False)
 class Alone:
-    """Single effects as fitted, the nominal plant, and the effects that are worth a costly look beside others; `ground` and `looks` are
+    """Single effects as fitted, the nominal plant, and the effects that are worth a costly look beside others;
+    `linearisation` and `score_tests` are
     those of the nominal plant."""
 
-    found: Mapping[frozenset[str], Tried]
-    nominal: Tried
+    found: Mapping[frozenset[str], FittedHypothesis]
+    nominal: FittedHypothesis
     worth: frozenset[str]
-    ground: Ground
-    looks: tuple[Look, ...]
+    linearisation: Linearisation
+    score_tests: tuple[ScoreTest, ...]
 
-    def best(self, count: int) -> list[Tried]:
+    def best(self, count: int) -> list[FittedHypothesis]:
         """So many of them, the nominal plant among them, best evidence first."""
         return sorted((*self.found.values(), self.nominal), key=lambda entry: -entry.evidence)[:count]
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """All that was tried, best evidence first, the nominal plant among it; `ground` and `looks` are those of the nominal plant, `sure` says
+    """All that was tried, best evidence first, the nominal plant among it; `linearisation` and `score_tests` are
+    those of the nominal plant, `sure` says
     whether the sizes of what was tried are surely not zero: where none is, all is there."""
 
-    tried: tuple[Tried, ...]
-    nominal: Tried
+    fitted: tuple[FittedHypothesis, ...]
+    nominal: FittedHypothesis
     sure: bool
-    ground: Ground
-    looks: tuple[Look, ...]
+    linearisation: Linearisation
+    score_tests: tuple[ScoreTest, ...]
 
-    def of(self, effects: Iterable[str]) -> Tried | None:
+    def of(self, effects: Iterable[str]) -> FittedHypothesis | None:
         """The hypothesis of exactly these effects."""
         wanted = frozenset(effects)
-        return next((entry for entry in self.tried if frozenset(entry.effects) == wanted), None)
+        return next((entry for entry in self.fitted if frozenset(entry.effects) == wanted), None)
 
 
 def alone(
-    case: Case, first: Tried, names: Sequence[str], ground: Ground, looks: Sequence[Look], lossy: Fit | None = None
+    case: Case,
+    first: FittedHypothesis,
+    names: Sequence[str],
+    linearisation: Linearisation,
+    score_tests: Sequence[ScoreTest],
+    lossy: Fit | None = None,
 ) -> Alone:
-    """Fit the nominal plant with single effects of `names`; `first` is that plant without any, `looks` those from there, `lossy` its
+    """Fit the nominal plant with single effects of `names`; `first` is that plant without any, `score_tests` those from there, `lossy` its
     fit with lost frames."""
     nominal = first.fit
-    worth = _worth(looks)
-    found = {} if lossy is None else {frozenset((LOST_FRAMES,)): tried_as(case, lossy)}
-    calm = calmed(case, nominal)
-    jobs = _promising(nominal, looks, False)[:SINGLES]
-    if calm is not None:
-        calm_looks = look(case, ground_of(case, calm), names)
-        worth |= _worth(calm_looks)
-        jobs = [*_first_of_each(_promising(calm, calm_looks, True)), *jobs[:CALM_SINGLES]]
+    worth = _worth(score_tests)
+    found = {} if lossy is None else {frozenset((LOST_FRAMES,)): as_fitted(case, lossy)}
+    low_noise = with_low_process_noise(case, nominal)
+    jobs = _promising(nominal, score_tests, False)[:SINGLES]
+    if low_noise is not None:
+        low_noise_score_tests = score_effects(case, linearised(case, low_noise), names)
+        worth |= _worth(low_noise_score_tests)
+        jobs = [*_first_of_each(_promising(low_noise, low_noise_score_tests, True)), *jobs[:LOW_NOISE_SINGLES]]
     _fit_all(case, jobs, found, first)
-    twins_tried(case, found)
-    return Alone(found, first, frozenset(worth), ground, tuple(looks))
+    fit_twins(case, found)
+    return Alone(found, first, frozenset(worth), linearisation, tuple(score_tests))
 
 
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
@@ -95,21 +102,22 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         exchange(case, found, worth)
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
-    tried = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
-    return Search(tuple(tried), first, bool(certain), begun.ground, begun.looks)
+    fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
+    return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests)
 
 
-def _worth(looks: Sequence[Look]) -> set[str]:
+def _worth(score_tests: Sequence[ScoreTest]) -> set[str]:
     """Effects that are worth a costly look beside others."""
-    return {entry.effect for entry in looks[:WORTH] if entry.gain > LEAST_GAIN}
+    return {entry.effect for entry in score_tests[:WORTH] if entry.gain > LEAST_GAIN}
 
 
-def beam_of(tried: Sequence[Tried], nominal: Tried, count: int) -> list[Tried]:
-    """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's, whatever its strain.
+def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count: int) -> list[FittedHypothesis]:
+    """The hypotheses that are worth a further effect, best evidence first; the last place is the likeliest's,
+    whatever its prior chi-squared.
 
     Where a second effect is missing, parameters bend to take its part: then a right first effect shows in its likelihood alone.
     """
-    ranked = sorted(tried, key=lambda entry: -entry.evidence)
+    ranked = sorted(fitted, key=lambda entry: -entry.evidence)
     likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
     if likeliest is None:
         return []
@@ -118,42 +126,42 @@ def beam_of(tried: Sequence[Tried], nominal: Tried, count: int) -> list[Tried]:
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
-def _promising(start: Fit, looks: Sequence[Look], calm: bool) -> list[Job]:
+def _promising(start: Fit, score_tests: Sequence[ScoreTest], low_noise: bool) -> list[Job]:
     """Effects worth a fit from `start`, best first."""
-    least = max(LEAST_GAIN, LEAST_SHARE * looks[0].gain) if looks else 0.0
-    return [Job(start, entry, calm) for entry in looks if entry.gain > least]
+    least = max(LEAST_GAIN, LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
+    return [Job(start, entry, low_noise) for entry in score_tests if entry.gain > least]
 
 
 def _first_of_each(jobs: Sequence[Job]) -> list[Job]:
     """The first CALM_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
     better than the one effect of an axis that is there."""
-    kept = list(jobs[:CALM_SINGLES])
+    kept = list(jobs[:LOW_NOISE_SINGLES])
     places = {_place(job) for job in kept}
-    for job in jobs[CALM_SINGLES:]:
-        if _place(job) not in places and job.look.gain > WORTH_A_PLACE * jobs[0].look.gain:
+    for job in jobs[LOW_NOISE_SINGLES:]:
+        if _place(job) not in places and job.score_test.gain > WORTH_A_PLACE * jobs[0].score_test.gain:
             places.add(_place(job))
             kept.append(job)
     return kept
 
 
 def _place(job: Job) -> str:
-    return job.look.effect.split(".")[0]
+    return job.score_test.effect.split(".")[0]
 
 
-def _settle(case: Case, found: dict[frozenset[str], Tried]) -> None:
-    """Once more the best of all, until effect and unrest agree: a fit not yet at its end would lose to one with an idle effect."""
+def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
+    """Once more the best of all, until effect and process noise agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    for entry in each(lambda tried: refined(case, tried), best[:SETTLED]):
+    for entry in thread_map(lambda fitted: refined(case, fitted), best[:SETTLED]):
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
 
 
-def _certain(tried: Tried, found: Mapping[frozenset[str], Tried]) -> bool:
+def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:
     """Whether every effect has a size that is not zero within its spread, or one that may hardly be zero and without which all is far
     less likely: where an axis sticks, the readings beside it alone make that spread."""
-    for name, certainty in certainties(tried.fit).items():
-        without = found.get(frozenset(tried.effects) - {name})
-        missed = 0.0 if without is None else tried.evidence - without.evidence
+    for name, certainty in certainties(fitted.fit).items():
+        without = found.get(frozenset(fitted.effects) - {name})
+        missed = 0.0 if without is None else fitted.evidence - without.evidence
         if certainty < CERTAIN and (certainty < LIKELY or missed < MISSED):
             return False
     return True
@@ -165,7 +173,7 @@ def certainties(fit: Fit) -> dict[str, float]:
     Of no size, an effect has no shape: a spring whose rest lies beyond all that was flown may be a little softer and rest further away,
     and is no less there for that. Beside others its shapes may take their part.
     """
-    count = len(fit.supposed.theta)
+    count = len(fit.hypothesis.theta)
     alone = len({entry.effect for entry in fit.free if entry.stated is None}) == 1
     held = [
         row
@@ -178,31 +186,31 @@ def certainties(fit: Fit) -> dict[str, float]:
     sizes: dict[str, float] = {}
     for entry, sd in zip(fit.free, spread[count:], strict=True):
         if entry.parameter.is_size and entry.stated is None:
-            away = fit.supposed.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
+            away = fit.hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)
             certainty = abs(away) / max(float(sd) * entry.scale, 1e-300)
             sizes[entry.effect] = max(sizes.get(entry.effect, 0.0), certainty)
     return sizes
 
 
-def _grown(case: Case, best: Sequence[Tried], names: Sequence[str], worth: Set[str]) -> list[Job]:
+def _grown(case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: Set[str]) -> list[Job]:
     """The best hypotheses, each with the further effects that promise most beside it; none where the first has none.
 
-    The first also with the one that promises most under the air as it seems: under calm air what is left of a rough rig hides a
+    The first also with the one that promises most under the air as it seems: under low process noise what is left of a rough rig hides a
     lesser effect.
     """
     if not best:
         return []
-    calm = each(lambda tried: calmed(case, tried.fit), best)
-    starts = [air or tried.fit for air, tried in zip(calm, best, strict=True)]
+    low_noise = thread_map(lambda fitted: with_low_process_noise(case, fitted.fit), best)
+    starts = [air or fitted.fit for air, fitted in zip(low_noise, best, strict=True)]
     counts = [PARTNERS] * len(best)
-    if calm[0] is not None:
-        calm, starts, counts = [*calm, None], [*starts, best[0].fit], [*counts, 1]
+    if low_noise[0] is not None:
+        low_noise, starts, counts = [*low_noise, None], [*starts, best[0].fit], [*counts, 1]
 
     def partners(start: Fit, air: Fit | None, count: int) -> list[Job]:
-        looks = look(case, ground_of(case, start), names, worth)
-        return [Job(start, entry, air is not None) for entry in looks if entry.gain > FURTHER_GAIN][:count]
+        score_tests = score_effects(case, linearised(case, start), names, worth)
+        return [Job(start, entry, air is not None) for entry in score_tests if entry.gain > FURTHER_GAIN][:count]
 
-    jobs = each(partners, starts, calm, counts)
+    jobs = thread_map(partners, starts, low_noise, counts)
     of_the_first = [*jobs[0], *chain.from_iterable(jobs[len(best) :])]
     return [*of_the_first, *chain.from_iterable(jobs[1 : len(best)])] if of_the_first else []
 
@@ -210,23 +218,25 @@ def _grown(case: Case, best: Sequence[Tried], names: Sequence[str], worth: Set[s
 def _fit_all(
     case: Case,
     jobs: Sequence[Job],
-    found: dict[frozenset[str], Tried],
-    known: Tried,
+    found: dict[frozenset[str], FittedHypothesis],
+    known: FittedHypothesis,
 ) -> bool:
     """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
     fresh: dict[tuple[frozenset[str], bool], Job] = {}
     for job in jobs:
-        fresh.setdefault((frozenset((*case.added(job.start.supposed.effects), job.look.effect)), job.calm), job)
+        fresh.setdefault(
+            (frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect)), job.low_noise), job
+        )
     wanted = [job for (names, _), job in fresh.items() if names not in found]
-    firsts: dict[frozenset[str], Tried] = {}
-    keep_better(firsts, (entry for entry in each(lambda job: rough(case, job), wanted) if entry))
+    firsts: dict[frozenset[str], FittedHypothesis] = {}
+    keep_better(firsts, (entry for entry in thread_map(lambda job: rough(case, job), wanted) if entry))
     begun = list(firsts.values())
     if not begun:
         return False
     best, first = max(entry.evidence for entry in begun), known.evidence
     good = [entry for entry in begun if entry.evidence - first >= WORTH_REFINING * (best - first)]
-    ends = [entry for entry in each(lambda tried: refined(case, tried), good) if entry]
+    ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     done = sorted(ends, key=lambda entry: -entry.evidence)
-    done[:ONCE_MORE] = each(lambda entry: once_more(case, entry), done[:ONCE_MORE])
+    done[:ONCE_MORE] = thread_map(lambda entry: once_more(case, entry), done[:ONCE_MORE])
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
     return True

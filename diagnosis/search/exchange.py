@@ -4,20 +4,20 @@ from collections.abc import Set
 
 import numpy as np
 
-from diagnosis.detect.linearisation import ground_of
-from diagnosis.detect.score_tests import look
-from diagnosis.fit.evidence import Tried
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 
 FURTHER_GAIN = 10.0  # nats that a further effect must promise
 NEAR_BEST = 30.0  # nats that a first fit may be short of the best to be fitted to its end
 INSTEAD, NEARLY = 3, 0.03  # effects tried in the place of another, and the share of its gain that they must promise
 
 
-def exchange(case: Case, found: dict[frozenset[str], Tried], worth: Set[str]) -> None:
+def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]) -> None:
     """Each effect of the best hypothesis in turn changed for others, while that makes it better.
 
     A right effect that was fitted beside a wrong one, or beside none, may have ended with its numbers and the plant's bent; from where
@@ -32,7 +32,7 @@ def exchange(case: Case, found: dict[frozenset[str], Tried], worth: Set[str]) ->
         best = found[frozenset(better.effects)] = better
 
 
-def twins_tried(case: Case, found: dict[frozenset[str], Tried]) -> None:
+def fit_twins(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     """Effects that data hardly tell from the best single one, where they are not `found` yet, fitted in its place.
 
     Looks are taken from a plant without any effect, whose numbers are bent to take its part: there only one of a few that are alike
@@ -42,32 +42,36 @@ def twins_tried(case: Case, found: dict[frozenset[str], Tried]) -> None:
     if best is None or len(best.effects) != 1:
         return
     (name,) = best.effects
-    own = case.kit.effects[name].twins
-    twins = {t for t in case.kit.candidates if t in own or name in case.kit.effects[t].twins}
+    own = case.library.effects[name].twins
+    twins = {t for t in case.library.candidates if t in own or name in case.library.effects[t].twins}
     untried = {twin for twin in twins if frozenset((twin,)) not in found}
-    begun = [entry for entry in each(lambda job: at_its_place(case, job), _instead(case, best, name, untried)) if entry]
-    ends = [entry for entry in each(lambda entry: refined(case, entry), begun) if entry]
+    begun = [
+        entry for entry in thread_map(lambda job: at_its_place(case, job), _instead(case, best, name, untried)) if entry
+    ]
+    ends = [entry for entry in thread_map(lambda entry: refined(case, entry), begun) if entry]
     keep_better(found, [*begun, *ends])
 
 
-def _exchanged(case: Case, best: Tried, found: dict[frozenset[str], Tried], worth: Set[str]) -> Tried | None:
+def _exchanged(
+    case: Case, best: FittedHypothesis, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]
+) -> FittedHypothesis | None:
     """What is better than the best with one of its effects changed for another, None where nothing is; all that is tried is kept."""
-    jobs = [job for jobs in each(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
-    tried = [entry for entry in each(lambda job: at_its_place(case, job), jobs) if entry]
-    keep_better(found, tried)
-    first = max(tried, key=lambda entry: entry.evidence, default=None)
+    jobs = [job for jobs in thread_map(lambda name: _instead(case, best, name, worth), best.effects) for job in jobs]
+    fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
+    keep_better(found, fitted)
+    first = max(fitted, key=lambda entry: entry.evidence, default=None)
     if first is None or first.evidence < best.evidence - NEAR_BEST:
         return None
     end = refined(case, first)
     return end if end is not None and end.evidence > best.evidence else None
 
 
-def _instead(case: Case, tried: Tried, name: str, worth: Set[str]) -> list[Job]:
+def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -> list[Job]:
     """Effects that promise most in the place of `name`, all else as it was fitted."""
-    supposed = tried.fit.supposed
-    start = fit(case, supposed.with_effects({n: v for n, v in supposed.effects.items() if n != name}), rounds=0)
+    hypothesis = fitted.fit.hypothesis
+    start = fit(case, hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if n != name}), rounds=0)
     if start is None:
         return []
-    looks = look(case, ground_of(case, start), sorted(worth - {name}))
-    least = max(FURTHER_GAIN, NEARLY * (tried.fit.log_likelihood - start.log_likelihood))
-    return [Job(start, entry, True) for entry in looks if entry.gain > least][:INSTEAD]
+    score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
+    least = max(FURTHER_GAIN, NEARLY * (fitted.fit.log_likelihood - start.log_likelihood))
+    return [Job(start, entry, True) for entry in score_tests if entry.gain > least][:INSTEAD]

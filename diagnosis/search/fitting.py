@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.score_tests import Look, holding
-from diagnosis.fit.evidence import Tried, tried_as
+from diagnosis.detect.score_tests import ScoreTest, holding
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero, likelihood
 from diagnosis.fit.jitter import scatters, with_jitter
-from diagnosis.fit.low_process_noise import awake
-from diagnosis.fit.process_noise import unrest_of, with_unrest
+from diagnosis.fit.low_process_noise import with_own_process_noise
+from diagnosis.fit.process_noise import process_noise_of, with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed, passes
-from diagnosis.hypothesis.initial_state import FIRST_UNREST
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
+from diagnosis.hypothesis.initial_state import FIRST_PROCESS_NOISE
 
 Array = NDArray[np.float64]
 ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
@@ -30,67 +30,68 @@ LEVELS = np.geomspace(
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A further effect to fit from a start, whose air may have been `calm`ed."""
+    """A further effect to fit from a start, whose air may have been `low_noise`."""
 
     start: Fit
-    look: Look
-    calm: bool
+    score_test: ScoreTest
+    low_noise: bool
 
 
-def rough(case: Case, job: Job) -> Tried | None:
-    """A first joint fit, under the unrest that was there before, or what then shows where that had been lowered."""
-    supposed, entry = job.start.supposed, job.look
-    start = supposed.with_effects({**supposed.effects, entry.effect: entry.values})
+def rough(case: Case, job: Job) -> FittedHypothesis | None:
+    """A first joint fit, under the process noise that was there before, or what then shows where that had been lowered."""
+    hypothesis, entry = job.start.hypothesis, job.score_test
+    start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
     if entry.effect.endswith("_input.quantization"):
         start = _polished(case, start, entry.effect, POLISHING)
     found = fit(case, start, rounds=4)
-    if found is not None and job.calm:
-        found = awake(case, found)
+    if found is not None and job.low_noise:
+        found = with_own_process_noise(case, found)
     elif found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
-    astray = start if found is None else found.supposed
+    astray = start if found is None else found.hypothesis
     if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
         found = _likelier(found, _from_stated(case, start))
-    if found is not None and holding(case.kit, [entry.effect]):
+    if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)
-    return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
+    return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
 
 
-def at_its_place(case: Case, job: Job) -> Tried | None:
-    """A first fit from where the rest fits already, under calm air."""
-    supposed, entry = job.start.supposed, job.look
-    found = fit(case, supposed.with_effects({**supposed.effects, entry.effect: entry.values}), rounds=4)
-    found = None if found is None else awake(case, found)
-    return None if found is None or not _whole_counts(case, found) else tried_as(case, found)
+def at_its_place(case: Case, job: Job) -> FittedHypothesis | None:
+    """A first fit from where the rest fits already, under low process noise."""
+    hypothesis, entry = job.start.hypothesis, job.score_test
+    found = fit(case, hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values}), rounds=4)
+    found = None if found is None else with_own_process_noise(case, found)
+    return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
 
 
-def refined(case: Case, tried: Tried) -> Tried | None:
-    """The fit with the unrest that then remains."""
-    start = with_jitter(case, unrest_of(case, tried.fit), tried.effects)
-    for name in tried.effects:
+def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
+    """The fit with the process noise that then remains."""
+    start = with_jitter(case, process_noise_of(case, fitted.fit), fitted.effects)
+    for name in fitted.effects:
         start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
-    for name in holding(case.kit, tried.effects):
+    for name in holding(case.library, fitted.effects):
         start = _likeliest(case, start, name, LEVELS)
     found = fit(case, start, rounds=5)
-    return None if found is None else tried_as(case, found)
+    return None if found is None else as_fitted(case, found)
 
 
-def once_more(case: Case, tried: Tried) -> Tried:
+def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     """The same begun once more from the parameters as stated, where they have gone far and that ends better.
 
-    Once under calm air, and once under that of before any log was seen: a filter that expects any motion leads back from further off.
+    Once under low process noise, and once under that of before any log was seen: a filter that expects any motion
+    leads back from further off.
     """
-    supposed = tried.fit.supposed
-    if supposed.theta @ supposed.theta < FAR * len(supposed.theta):
-        return tried
-    restless = replace(supposed, unrest=np.full_like(supposed.unrest, FIRST_UNREST))
-    starts = [_from_stated(case, begun) for begun in (supposed, restless)]
-    ends = [refined(case, tried_as(case, start)) for start in starts if start is not None]
-    return max((tried, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
+    hypothesis = fitted.fit.hypothesis
+    if hypothesis.theta @ hypothesis.theta < FAR * len(hypothesis.theta):
+        return fitted
+    restless = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, FIRST_PROCESS_NOISE))
+    starts = [_from_stated(case, begun) for begun in (hypothesis, restless)]
+    ends = [refined(case, as_fitted(case, start)) for start in starts if start is not None]
+    return max((fitted, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
 
 
-def _polished(case: Case, start: Supposed, effect: str, reaches: Sequence[float]) -> Supposed:
+def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
     """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
     for reach in reaches:
         start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
@@ -101,46 +102,46 @@ def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | N
     """The fit, or a likelier one where readings come after a delay that scatters: in calmer air then."""
     if found is None or not any(scatters(case, name) for name in effects):
         return found
-    start = with_jitter(case, found.supposed, effects)
-    if start.effects == found.supposed.effects:
+    start = with_jitter(case, found.hypothesis, effects)
+    if start.effects == found.hypothesis.effects:
         return found
-    return _likelier(found, fit(case, with_unrest(case, start), rounds=4))
+    return _likelier(found, fit(case, with_process_noise(case, start), rounds=4))
 
 
 def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
     """The fit, or a likelier one from another level of a friction that holds its axis."""
-    start = _likeliest(case, found.supposed, effect, LEVELS)
-    if start.effects[effect] == found.supposed.effects[effect]:
+    start = _likeliest(case, found.hypothesis, effect, LEVELS)
+    if start.effects[effect] == found.hypothesis.effects[effect]:
         return found
     return _likelier(found, fit(case, start, rounds=4)) or found
 
 
-def _likeliest(case: Case, start: Supposed, effect: str, factors: Array) -> Supposed:
+def _likeliest(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
     """The start with that of the factors on an effect's size that the logs find likeliest."""
-    symbol = case.kit.effects[effect].size.symbol
-    tried = [
+    symbol = case.library.effects[effect].size.symbol
+    fitted = [
         start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: float(value)}})
         for value in start.effects[effect][symbol] * factors
     ]
-    values = [-np.inf if runs is None else likelihood(runs) for runs in (passes(case, entry) for entry in tried)]
-    return tried[int(np.argmax(values))] if np.max(values) > -np.inf else start
+    values = [-np.inf if runs is None else likelihood(runs) for runs in (passes(case, entry) for entry in fitted)]
+    return fitted[int(np.argmax(values))] if np.max(values) > -np.inf else start
 
 
-def _lessened(case: Case, start: Supposed, effect: str) -> Supposed:
+def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:
     """The start with an effect of a fifth of its size: what it is added to must not fit worse for it."""
     values = dict(start.effects[effect])
-    for parameter in case.kit.effects[effect].parameters:
+    for parameter in case.library.effects[effect].parameters:
         if from_zero(parameter):
             zero = parameter.zero or 0.0
             values[parameter.symbol] = zero + LESS * (values[parameter.symbol] - zero)
     return start.with_effects({**start.effects, effect: values})
 
 
-def _from_stated(case: Case, start: Supposed) -> Fit | None:
+def _from_stated(case: Case, start: Hypothesis) -> Fit | None:
     """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
-    calm = np.minimum(start.unrest, FIRST_UNREST)
-    found = fit(case, replace(start, theta=np.zeros_like(start.theta), unrest=calm), rounds=4)
-    return None if found is None else awake(case, found)
+    low_noise = np.minimum(start.process_noise, FIRST_PROCESS_NOISE)
+    found = fit(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise), rounds=4)
+    return None if found is None else with_own_process_noise(case, found)
 
 
 def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
@@ -151,18 +152,18 @@ def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:
 
 def _whole_counts(case: Case, found: Fit) -> bool:
     """Whether every slip of a sensor is at least a count: what is smaller is rounding."""
-    kit = case.kit
-    for name, values in found.supposed.effects.items():
+    library = case.library
+    for name, values in found.hypothesis.effects.items():
         if name.endswith(".count_slip"):
-            sensor = kit.bound.model.places.sensors[name.split(".")[0]].output
-            if abs(values["jump"]) < LEAST_SLIP * kit.bound.plant.sensors[sensor]:
+            sensor = library.bound.model.places.sensors[name.split(".")[0]].output
+            if abs(values["jump"]) < LEAST_SLIP * library.bound.plant.sensors[sensor]:
                 return False
     return True
 
 
-def keep_better(found: dict[frozenset[str], Tried], tried: Iterable[Tried]) -> None:
+def keep_better(found: dict[frozenset[str], FittedHypothesis], fitted: Iterable[FittedHypothesis]) -> None:
     """Of each set of effects the better of what was found and what was tried."""
-    for entry in tried:
+    for entry in fitted:
         known = found.setdefault(frozenset(entry.effects), entry)
         if entry.evidence > known.evidence:
             found[frozenset(entry.effects)] = entry

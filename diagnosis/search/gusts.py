@@ -9,69 +9,69 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.fit.evidence import Tried, tried_as
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit, likelihood_of
-from diagnosis.fit.process_noise import with_unrest
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed
-from jobs.thread_map import each
+from diagnosis.hypothesis.hypothesis import Hypothesis
+from jobs.thread_map import thread_map
 
 TIMES_S = (0.15, 0.5, 1.5, 5.0)
 SHARES = (0.003, 0.01, 0.03, 0.1)  # of the axis' usual torque
-CALMER = 0.7  # decades by which the unrest is lower where a gust takes its place
+LOWER_NOISE = 0.7  # decades by which the process noise is lower where a gust takes its place
 FACTORS = (2.0, 1.4, 1.15)  # by which size and time are then tried apart
 ROUNDS = 4
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 
-def gusts(case: Case, nominal: Tried) -> list[Tried]:
+def gusts(case: Case, nominal: FittedHypothesis) -> list[FittedHypothesis]:
     """The plant with a gust on each axis that moves, for those that can be fitted."""
     held = set.intersection(*(set(flight.locked) for flight in case.flights))
-    axes = [name.split(".")[0] for name in case.kit.gusts]
+    axes = [name.split(".")[0] for name in case.library.gusts]
     return [found for axis in axes if axis not in held and (found := _gust(case, nominal, axis)) is not None]
 
 
-def gust_sd(case: Case, supposed: Supposed, name: str) -> dict[str, float]:
+def gust_sd(case: Case, hypothesis: Hypothesis, name: str) -> dict[str, float]:
     """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over a factor of REACH to all
     sides, with each known to a factor of e before."""
-    v = np.reshape(each(lambda entry: likelihood_of(case, entry), list(_about(supposed, name, REACH))), (3, 3))
+    v = np.reshape(thread_map(lambda entry: likelihood_of(case, entry), list(_about(hypothesis, name, REACH))), (3, 3))
     bends = v[1, 0] + v[2, 0] - 2.0 * v[0, 0], v[0, 1] + v[0, 2] - 2.0 * v[0, 0]
     both = 0.25 * (v[1, 1] + v[2, 2] - v[1, 2] - v[2, 1])
     curvature = -np.nan_to_num([[bends[0], both], [both, bends[1]]]) / np.log(REACH) ** 2
     values, vectors = np.linalg.eigh(curvature)
     relative = np.sqrt(vectors**2 @ (1.0 / (1.0 + np.maximum(values, 0.0))))
     return {
-        symbol: float(share * supposed.effects[name][symbol])
+        symbol: float(share * hypothesis.effects[name][symbol])
         for symbol, share in zip(("sigma", "T"), relative, strict=True)
     }
 
 
-def _with(supposed: Supposed, name: str, numbers: Mapping[str, float]) -> Supposed:
-    return supposed.with_effects({**supposed.effects, name: {**supposed.effects[name], **numbers}})
+def _with(hypothesis: Hypothesis, name: str, numbers: Mapping[str, float]) -> Hypothesis:
+    return hypothesis.with_effects({**hypothesis.effects, name: {**hypothesis.effects[name], **numbers}})
 
 
-def _gust(case: Case, nominal: Tried, axis: str) -> Tried | None:
-    name, supposed = f"{axis}.gust", nominal.fit.supposed
-    unrest = supposed.unrest.copy()
-    unrest[[entry.name for entry in case.kit.bound.model.axes].index(axis)] -= CALMER
-    size = case.kit.bound.model.places.axes[axis].torque_size
+def _gust(case: Case, nominal: FittedHypothesis, axis: str) -> FittedHypothesis | None:
+    name, hypothesis = f"{axis}.gust", nominal.fit.hypothesis
+    process_noise = hypothesis.process_noise.copy()
+    process_noise[[entry.name for entry in case.library.bound.model.axes].index(axis)] -= LOWER_NOISE
+    size = case.library.bound.model.places.axes[axis].torque_size
     starts = [{"sigma": share * size, "T": T} for T in TIMES_S for share in SHARES]
-    calm = replace(supposed, unrest=unrest)
-    start = _likeliest(case, [calm.with_effects({**supposed.effects, name: values}) for values in starts])
+    low_noise = replace(hypothesis, process_noise=process_noise)
+    start = _likeliest(case, [low_noise.with_effects({**hypothesis.effects, name: values}) for values in starts])
     for factor in FACTORS:
-        start = _likeliest(case, list(_about(with_unrest(case, start), name, factor)))
+        start = _likeliest(case, list(_about(with_process_noise(case, start), name, factor)))
     found = fit(case, start, rounds=ROUNDS)
-    return None if found is None else tried_as(case, found)
+    return None if found is None else as_fitted(case, found)
 
 
-def _about(supposed: Supposed, name: str, factor: float) -> Iterator[Supposed]:
+def _about(hypothesis: Hypothesis, name: str, factor: float) -> Iterator[Hypothesis]:
     """The same, and with size and time larger and smaller by a factor, alone and together."""
-    values = supposed.effects[name]
+    values = hypothesis.effects[name]
     for by_size in (1.0, factor, 1.0 / factor):
         for by_time in (1.0, factor, 1.0 / factor):
-            yield _with(supposed, name, {"sigma": by_size * values["sigma"], "T": by_time * values["T"]})
+            yield _with(hypothesis, name, {"sigma": by_size * values["sigma"], "T": by_time * values["T"]})
 
 
-def _likeliest(case: Case, tried: Sequence[Supposed]) -> Supposed:
-    values = each(lambda supposed: likelihood_of(case, supposed), tried)
-    return tried[int(np.argmax(values))]
+def _likeliest(case: Case, fitted: Sequence[Hypothesis]) -> Hypothesis:
+    values = thread_map(lambda hypothesis: likelihood_of(case, hypothesis), fitted)
+    return fitted[int(np.argmax(values))]

@@ -22,14 +22,14 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import Ground, ground_of
-from diagnosis.filter.filter_input import Tape
+from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.fit.gauss_newton import Fit, fit, unfitted
-from diagnosis.fit.process_noise import with_unrest
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, Flight
-from diagnosis.hypothesis.hypothesis import Supposed, coefficients
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
 from diagnosis.library.input_effects import LOST_FRAMES, lost_with
-from jobs.thread_map import each
+from jobs.thread_map import thread_map
 from sim.bind import evaluated
 from toolchain.host import build_shared, load_shared
 
@@ -45,47 +45,48 @@ WORTH = 10.0  # nats below which no frame counts as lost
 OPENING = Lock()
 
 
-def with_losses(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
-    """The case whose tapes say of each frame how much likelier it is lost than not, and its fit with such losses, None where nothing
-    speaks for them: then what the tapes say keeps losses from explaining a delay. The case as it was where nothing can be said."""
-    if LOST_FRAMES not in case.kit.candidates or not drives(case):
+def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | None]:
+    """The case whose filter inputs say of each frame how much likelier it is lost than not, and its fit with such
+    losses, None where nothing
+    speaks for them: then what the filter inputs say keeps losses from explaining a delay. The case as it was where nothing can be said."""
+    if LOST_FRAMES not in case.library.candidates or not drives(case):
         return case, None
-    if any(len(tape.t_s) != tape.rows for tape in ground.tapes):
+    if any(len(filter_input.t_s) != filter_input.rows for filter_input in linearisation.filter_inputs):
         return case, None
-    answers = _all_answers(case, ground)
-    alone = _with_ratios(case, ground, answers, 0)
+    answers = _all_answers(case, linearisation)
+    alone = _with_ratios(case, linearisation, answers, 0)
     if evidence(alone, likely_share(alone)) < WORTH:
         return alone, None
-    found, fitted = _settled(case, ground, answers)
-    theta = ground.fit.supposed.theta
+    found, fitted = _settled(case, linearisation, answers)
+    theta = linearisation.fit.hypothesis.theta
     if fitted is not None and theta @ theta > FAR * len(theta):
-        found, fitted = _likelier((found, fitted), _from_stated(case, ground))
+        found, fitted = _likelier((found, fitted), _from_stated(case, linearisation))
     return found, fitted
 
 
-def _settled(case: Case, ground: Ground, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+def _settled(case: Case, linearisation: Linearisation, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
     """What the innovations say of every frame, found again with what was found supposed until nothing is gained."""
-    found, fitted = _fitted(case, ground, answers)
-    if fitted is None or fitted.log_posterior < ground.fit.log_posterior + WORTH:
+    found, fitted = _fitted(case, linearisation, answers)
+    if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + WORTH:
         return found, None
     for _ in range(ROUNDS):
-        calmer = ground_of(found, fitted)
-        again, better = _fitted(found, calmer, _all_answers(found, calmer))
+        refined_noise = linearised(found, fitted)
+        again, better = _fitted(found, refined_noise, _all_answers(found, refined_noise))
         if better is None or better.log_posterior < fitted.log_posterior + WORTH:
             break
         more = better.log_posterior - fitted.log_posterior
         found, fitted = again, better
-        if more < LITTLE * (fitted.log_posterior - ground.fit.log_posterior):
+        if more < LITTLE * (fitted.log_posterior - linearisation.fit.log_posterior):
             break
     return found, fitted
 
 
-def _from_stated(case: Case, ground: Ground) -> tuple[Case, Fit | None]:
+def _from_stated(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | None]:
     """The same from the parameters as stated: those of a plant fitted without losses bend to take their part."""
-    start = unfitted(case, ground.fit.supposed.unrest)
+    start = unfitted(case, linearisation.fit.hypothesis.process_noise)
     if start is None:
         return case, None
-    stated = ground_of(case, start)
+    stated = linearised(case, start)
     return _settled(case, stated, _all_answers(case, stated))
 
 
@@ -93,19 +94,19 @@ def _likelier(one: tuple[Case, Fit | None], other: tuple[Case, Fit | None]) -> t
     return max(one, other, key=lambda entry: -np.inf if entry[1] is None else entry[1].log_posterior)
 
 
-def _all_answers(case: Case, ground: Ground) -> list[Array]:
-    return each(partial(_unit_answers, case, ground), range(len(case.flights)))
+def _all_answers(case: Case, linearisation: Linearisation) -> list[Array]:
+    return thread_map(partial(_unit_answers, case, linearisation), range(len(case.flights)))
 
 
-def _fitted(case: Case, ground: Ground, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+def _fitted(case: Case, linearisation: Linearisation, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
     """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
-    found = _with_ratios(case, ground, answers, SWEEPS)
+    found = _with_ratios(case, linearisation, answers, SWEEPS)
     share = likely_share(found)
     if evidence(found, share) < WORTH:
         return found, None
-    supposed = ground.fit.supposed
-    start = supposed.with_effects({**supposed.effects, LOST_FRAMES: {"p": share}})
-    return found, fit(found, with_unrest(found, start), rounds=4)
+    hypothesis = linearisation.fit.hypothesis
+    start = hypothesis.with_effects({**hypothesis.effects, LOST_FRAMES: {"p": share}})
+    return found, fit(found, with_process_noise(found, start), rounds=4)
 
 
 def likely_share(case: Case) -> float:
@@ -115,16 +116,16 @@ def likely_share(case: Case) -> float:
 
 def evidence(case: Case, share: float) -> float:
     """Log evidence of a loss with probability `share` in every frame against none."""
-    ratios = np.concatenate([flight.tape.lost for flight in case.flights])
+    ratios = np.concatenate([flight.filter_input.lost for flight in case.flights])
     return float(np.sum(np.logaddexp(np.log1p(-share), np.log(share) + ratios[ratios != 0.0])))
 
 
 def drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     """Input column -> the state that it drives and by how much; only rotors whose speed is a state of its own have one."""
-    kit, model = case.kit, case.kit.bound.model
+    library, model = case.library, case.library.bound.model
     return {
         model.inputs.index(rotor.variable): (
-            kit.states.index(str(rotor.speed)),
+            library.states.index(str(rotor.speed)),
             sympy.diff(rotor.drive, rotor.variable),
         )
         for rotor in model.places.rotors.values()
@@ -132,32 +133,38 @@ def drives(case: Case) -> dict[int, tuple[int, sympy.Expr]]:
     }
 
 
-def _with_ratios(case: Case, ground: Ground, answers: Sequence[Array], sweeps: int) -> Case:
+def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Array], sweeps: int) -> Case:
     """The case with L of every frame, 0 where the command stays as it was; `sweeps` 0 takes every frame for itself."""
-    ends = np.cumsum([flight.tape.rows for flight in case.flights])[:-1]
+    ends = np.cumsum([flight.filter_input.rows for flight in case.flights])[:-1]
     columns = list(drives(case))
 
     def judged(flight: Flight, unit: Array, w: Array) -> Flight:
-        before = _supposed(flight.tape, ground.fit.supposed)
-        ratios, power = _ratios(flight.tape.u, columns, unit, w, before, _judged(flight.tape), sweeps)
-        return replace(flight, tape=replace(flight.tape, lost=ratios, loss_power=power))
+        before = _hypothesis(flight.filter_input, linearisation.fit.hypothesis)
+        ratios, power = _ratios(flight.filter_input.u, columns, unit, w, before, _judged(flight.filter_input), sweeps)
+        return replace(flight, filter_input=replace(flight.filter_input, lost=ratios, loss_power=power))
 
-    flights = each(judged, case.flights, answers, np.split(ground.w.reshape(-1, max(case.slots) + 1), ends))
+    flights = thread_map(
+        judged, case.flights, answers, np.split(linearisation.w.reshape(-1, max(case.slots) + 1), ends)
+    )
     return case.with_flights(flights)
 
 
-def _unit_answers(case: Case, ground: Ground, index: int) -> Array:
+def _unit_answers(case: Case, linearisation: Linearisation, index: int) -> Array:
     """Answers (rows, APART, slots, drives) of the innovations from a frame's own row on to a unit of each drive's input over that frame."""
-    tape, run, supposed = ground.tapes[index], ground.runs[index], ground.fit.supposed
-    p = coefficients(case, case.kit.variant(supposed.effects), supposed)
-    model = case.kit.bound.model
-    rows = np.arange(len(tape.t_s))
-    h = np.append(np.diff(tape.t_s), 0.0)
+    filter_input, run, hypothesis = (
+        linearisation.filter_inputs[index],
+        linearisation.runs[index],
+        linearisation.fit.hypothesis,
+    )
+    p = coefficients(case, case.library.compiled(hypothesis.effects), hypothesis)
+    model = case.library.bound.model
+    rows = np.arange(len(filter_input.t_s))
+    h = np.append(np.diff(filter_input.t_s), 0.0)
     found = []
     for state, gain in drives(case).values():
         values = np.zeros((len(rows), 1, APART))
-        values[rows, 0, rows % APART] = h * evaluated(model, p[: case.kit.own], gain)
-        found.append(ground.filter.response(tape, run, values.__getitem__, [state], case.slots))
+        values[rows, 0, rows % APART] = h * evaluated(model, p[: case.library.own], gain)
+        found.append(linearisation.filter.response(filter_input, run, values.__getitem__, [state], case.slots))
     return _unfolded(np.stack(found, axis=2))
 
 
@@ -169,17 +176,17 @@ def _unfolded(answers: Array) -> Array:
     return np.where((later < len(answers))[:, :, None, None], own, 0.0)
 
 
-def _supposed(tape: Tape, supposed: Supposed) -> Array:
+def _hypothesis(filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
     """The probability with which each frame's loss is supposed already."""
-    if LOST_FRAMES not in supposed.effects:
-        return np.zeros(tape.rows)
-    return lost_with(tape.lost, supposed.effects[LOST_FRAMES]["p"])
+    if LOST_FRAMES not in hypothesis.effects:
+        return np.zeros(filter_input.rows)
+    return lost_with(filter_input.lost, hypothesis.effects[LOST_FRAMES]["p"])
 
 
-def _judged(tape: Tape) -> NDArray[np.uint8]:
+def _judged(filter_input: FilterInput) -> NDArray[np.uint8]:
     """Whether each frame can be judged (rows,): not about rows that the log lacks, as nobody knows what was commanded there."""
-    judged = np.ones(tape.rows, dtype=np.uint8)
-    for row in np.flatnonzero(tape.untold_s):
+    judged = np.ones(filter_input.rows, dtype=np.uint8)
+    for row in np.flatnonzero(filter_input.untold_s):
         judged[max(row + NEAR.start, 0) : row + NEAR.stop] = 0
     return judged
 
@@ -192,7 +199,7 @@ def _ratios(
     not `judged` count as arrived."""
     _, lib = _library()
     ways = (lib.loss_ratios, lib.loss_ratios_together) if sweeps else (lib.loss_ratios,)
-    found = each(lambda way: _judged_by(way, u, columns, answers, w, before, judged, sweeps), ways)
+    found = thread_map(lambda way: _judged_by(way, u, columns, answers, w, before, judged, sweeps), ways)
     return max(found, key=lambda entry: entry[0])[1:]
 
 

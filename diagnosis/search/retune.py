@@ -7,10 +7,10 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
-from diagnosis.fit.process_noise import unrest_of
+from diagnosis.fit.process_noise import process_noise_of
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ MOST = 4
 class Retune:
     """The fit where the spreads of what had moved are taken WIDER times as wide, its parameters that left them, and its evidence."""
 
-    tried: Tried
+    fitted: FittedHypothesis
     parameters: tuple[str, ...]
     places: tuple[str, ...]
     score: float
@@ -36,32 +36,32 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
 
     Only what the fit within the spread had moved is set free: each spread that is taken wider costs evidence.
     """
-    moved = moved_parameters(case, nominal.supposed.theta, PULLED)[:MOST]
+    moved = moved_parameters(case, nominal.hypothesis.theta, PULLED)[:MOST]
     own = {entry.effect for entry in moved_effects(nominal, PULLED)}
     if not moved and not own:
         return None
     factor = np.ones(len(case.free))
     factor[moved] = WIDER
     wider = _wider(case, factor, own)
-    start = replace(nominal.supposed, theta=nominal.supposed.theta / factor)
+    start = replace(nominal.hypothesis, theta=nominal.hypothesis.theta / factor)
     found = fit(wider, start, rounds=6)
     if found is None:
         return None
-    found = fit(wider, unrest_of(wider, found), rounds=6)
+    found = fit(wider, process_noise_of(wider, found), rounds=6)
     if found is None:
         return None
     stated = _as_stated(found, factor, own)
-    far = [index for index in moved_parameters(case, stated.supposed.theta, FAR) if index in moved]
+    far = [index for index in moved_parameters(case, stated.hypothesis.theta, FAR) if index in moved]
     numbers = [entry for entry in moved_effects(stated, FAR) if entry.effect in own]
     if not 0 < len(far) + len(numbers) <= MOST:
         return None
-    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
+    names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     parameters = tuple(names[int(case.free[index])] for index in far)
     places = [place for name in parameters for place in places_of(case, name)]
     places += [entry.effect.split(".")[0] for entry in numbers]
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
     score = evidence(found) - NATS_PER_PARAMETER * len(told)
-    return Retune(Tried((), stated, evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
+    return Retune(FittedHypothesis((), stated, evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
 
 
 def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
@@ -71,7 +71,7 @@ def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
     free = [replace(entry, scale=entry.scale / unit) for entry, unit in zip(found.free, numbers, strict=True)]
     return replace(
         found,
-        supposed=replace(found.supposed, theta=factor * found.supposed.theta),
+        hypothesis=replace(found.hypothesis, theta=factor * found.hypothesis.theta),
         free=tuple(free),
         information=found.information / np.outer(units, units),
         pull=found.pull / units,
@@ -80,17 +80,17 @@ def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
 
 def _wider(case: Case, factor: Array, own: Collection[str]) -> Case:
     """The case with the coefficients' spreads times `factor` (free,), and those of the effects in `own` WIDER times as wide."""
-    sd = case.kit.bound.sd.copy()
+    sd = case.library.bound.sd.copy()
     sd[case.free] *= factor
     stated_sd = {
         name: {s: WIDER * v if name in own else v for s, v in of.items()} for name, of in case.stated_sd.items()
     }
-    return replace(case, kit=replace(case.kit, bound=replace(case.kit.bound, sd=sd)), stated_sd=stated_sd)
+    return replace(case, library=replace(case.library, bound=replace(case.library.bound, sd=sd)), stated_sd=stated_sd)
 
 
 def places_of(case: Case, coefficient: str) -> list[str]:
     """Places whose equations hold a coefficient, the nearest first."""
-    model = case.kit.bound.model
+    model = case.library.bound.model
     symbol = sympy.Symbol(coefficient, real=True)
     found = [
         name

@@ -27,14 +27,17 @@ Flights = Sequence[tuple[Array, Array, Mapping[str, Array]]]
 
 
 def agreements(outputs: Sequence[str], flights: Flights) -> dict[str, Agreement]:
-    """By output, and by the rate of each angle; `flights` are (t_s (n,), y (n, outputs), predictions by bar (n, outputs))."""
+    """By output, and by the rate of each angle; `flights` are (t_s (n,), y (n, outputs), predictions by model variant (n, outputs))."""
     found = {}
     for place, name in enumerate(outputs):
-        signals = [(t_s, y[:, place], {bar: values[:, place] for bar, values in by.items()}) for t_s, y, by in flights]
+        signals = [
+            (t_s, y[:, place], {variant: values[:, place] for variant, values in by.items()}) for t_s, y, by in flights
+        ]
         found[name] = _agreement(name, signals)
         if name.endswith("_rad"):
             rates = [
-                (t_s, _rate(t_s, y), {bar: _rate(t_s, values) for bar, values in by.items()}) for t_s, y, by in signals
+                (t_s, _rate(t_s, y), {variant: _rate(t_s, values) for variant, values in by.items()})
+                for t_s, y, by in signals
             ]
             found[f"{name}_s"] = _agreement(f"{name}_s", rates)
     return found
@@ -52,11 +55,11 @@ def _agreement(name: str, signals: Sequence[tuple[Array, Array, Mapping[str, Arr
     margin = next((value for unit, value in MARGIN_BY_UNIT.items() if name.endswith(unit)), None)
     measured = np.concatenate([y for _, y, _ in signals])
     mean = float(np.nanmean(measured)) if np.isfinite(measured).any() else 0.0
-    by = {bar: np.concatenate([values[bar] for _, _, values in signals]) for bar in signals[0][2]}
+    by = {variant: np.concatenate([values[variant] for _, _, values in signals]) for variant in signals[0][2]}
 
     def figures(of: Callable[[Array, Array], float]) -> dict[str, float]:
-        values = {bar: of(measured, estimated) for bar, estimated in by.items()}
-        return {bar: value for bar, value in values.items() if np.isfinite(value)}
+        values = {variant: of(measured, estimated) for variant, estimated in by.items()}
+        return {variant: value for variant, value in values.items() if np.isfinite(value)}
 
     return Agreement(
         margin=margin,

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.prediction import SETTLE_S, WINDOW_S, Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
@@ -45,7 +45,7 @@ class Lookahead:
     """
 
     def __init__(self, bound: BoundPlant, locked: Sequence[str] = ()) -> None:
-        self._kit = make_kit(without_effects(bound) if bound.effects else bound)
+        self._library = effect_library(without_effects(bound) if bound.effects else bound)
         self._bound = bound
         self._locked = tuple(locked)
         self._rows: list[LiveRow] = []
@@ -98,9 +98,9 @@ class Lookahead:
             y=np.array([row.y for row in rows]),
             locked=self._locked,
         )
-        case = make_case(self._kit, [log], stated=self._bound)
-        supposed = nothing_supposed(case, UNREST)
-        found = predictions(case, case.flights[0], supposed, spans=spans)
+        case = make_case(self._library, [log], stated=self._bound)
+        hypothesis = nominal_hypothesis(case, UNREST)
+        found = predictions(case, case.flights[0], hypothesis, spans=spans)
         return tuple(
             Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans
         )

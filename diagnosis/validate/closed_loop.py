@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.validate.prediction import SETTLE_S
 from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
@@ -21,7 +21,7 @@ from replay.flight import flight_of, has_replayable_columns
 from verification.host_law import HostLaw, host_law
 
 Array = NDArray[np.float64]
-BARS = ("nominal", "before", "after")
+MODEL_VARIANTS = ("nominal", "before", "after")
 SEEDS = (1, 2)  # flights of the floor
 WINDOW_S = 3.0
 MOST_SAMPLES = 12_000  # of each log: two minutes at 100 Hz tell what an hour would
@@ -31,7 +31,7 @@ DRAWS, SEED = 500, 7
 
 @dataclass(frozen=True, eq=False)
 class Reflown:
-    """One log flown again at t_s (n,): errors (n, outputs + inputs) by bar, and the mean squares of the floor likewise.
+    """One log flown again at t_s (n,): errors (n, outputs + inputs) by model variant, and the mean squares of the floor likewise.
 
     `reach` (outputs + inputs,) is the log's own range, `present` (n,) whether the log has the sample.
     """
@@ -45,11 +45,11 @@ class Reflown:
 
 
 def closed_loop(
-    case: Case, names: Sequence[str], tables: Sequence[ControllerTable | None], bars: Mapping[str, Supposed]
+    case: Case, names: Sequence[str], tables: Sequence[ControllerTable | None], variants: Mapping[str, Hypothesis]
 ) -> ClosedLoop | None:
-    """Fly every log of `case` again whose table is given; None where there is none. `bars` are the models by BARS."""
+    """Fly every log of `case` again whose table is given; None where there is none. `variants` are the models by MODEL_VARIANTS."""
     flown = [
-        refly(case.with_flights([flight]), name, table, bars)
+        refly(case.with_flights([flight]), name, table, variants)
         for flight, name, table in zip(case.flights, names, tables, strict=True)
         if table is not None and flight.log.loop == "closed" and has_replayable_columns(flight.log)
     ]
@@ -57,7 +57,7 @@ def closed_loop(
     return _summary(case, found) if found else None
 
 
-def refly(case: Case, name: str, table: ControllerTable, bars: Mapping[str, Supposed]) -> Reflown | None:
+def refly(case: Case, name: str, table: ControllerTable, variants: Mapping[str, Hypothesis]) -> Reflown | None:
     """The one flight of `case`; None where a model cannot be filtered along it or it ends before the filter is sure."""
     (flight,) = case.flights
     samples = flight_of(flight.log, table)
@@ -66,21 +66,21 @@ def refly(case: Case, name: str, table: ControllerTable, bars: Mapping[str, Supp
         return None
     law = host_law(table)
     led = _led(law, samples, first)
-    starts = {bar: _state_at(case, bars[bar], float(samples.t_s[first])) for bar in BARS}
+    starts = {variant: _state_at(case, variants[variant], float(samples.t_s[first])) for variant in MODEL_VARIANTS}
     if any(start is None for start in starts.values()):
         return None
 
-    def fly(bar: str, seed: int | None = None) -> Array:
-        start = starts[bar]
+    def fly(variant: str, seed: int | None = None) -> Array:
+        start = starts[variant]
         assert start is not None
-        plant = Flown(case, bars[bar], start, float(samples.t_s[first]), locked=flight.locked, seed=seed)
+        plant = Flown(case, variants[variant], start, float(samples.t_s[first]), locked=flight.locked, seed=seed)
         return _flight(law, led.copy(), samples, first, plant)
 
     logged = np.hstack([samples.angle_rad, samples.logged_V])[first : first + MOST_SAMPLES]
-    plain = {bar: fly(bar) for bar in BARS}
+    plain = {variant: fly(variant) for variant in MODEL_VARIANTS}
     floor = np.mean([(fly("after", seed) - plain["after"]) ** 2 for seed in SEEDS], axis=0)
     floor = np.where(np.isfinite(logged), floor, np.nan)
-    errors = {bar: values - logged for bar, values in plain.items()}
+    errors = {variant: values - logged for variant, values in plain.items()}
     reach = np.nanmax(logged, axis=0) - np.nanmin(logged, axis=0)
     return Reflown(name, samples.t_s[first : first + MOST_SAMPLES], reach, np.isfinite(logged[:, -1]), errors, floor)
 
@@ -103,9 +103,9 @@ def _held(columns: Array) -> Array:
     return found
 
 
-def _state_at(case: Case, supposed: Supposed, t_s: float) -> Array | None:
-    """The filter's state under `supposed` at the first row at or behind t_s, with that row's readings."""
-    runs = passes(case, supposed)
+def _state_at(case: Case, hypothesis: Hypothesis, t_s: float) -> Array | None:
+    """The filter's state under `hypothesis` at the first row at or behind t_s, with that row's readings."""
+    runs = passes(case, hypothesis)
     if runs is None:
         return None
     filtered = runs[0].filtered
@@ -136,13 +136,15 @@ def _flight(law: HostLaw, state: NDArray[np.uint32], samples: Samples, first: in
 def _summary(case: Case, flown: Sequence[Reflown]) -> ClosedLoop:
     columns = case.flights[0].log.columns
     names = [*columns.outputs, *columns.inputs]
-    squares = {bar: np.concatenate([entry.errors[bar] ** 2 for entry in flown]) for bar in BARS}
+    squares = {variant: np.concatenate([entry.errors[variant] ** 2 for entry in flown]) for variant in MODEL_VARIANTS}
     floor = np.concatenate([entry.floor for entry in flown])
-    diverged = tuple(bar for bar in BARS if any(_astray(entry, bar, len(columns.outputs)) for entry in flown))
+    diverged = tuple(
+        variant for variant in MODEL_VARIANTS if any(_astray(entry, variant, len(columns.outputs)) for entry in flown)
+    )
     windows = np.concatenate([_numbers(entry.t_s) + 10_000 * place for place, entry in enumerate(flown)])
     outputs = len(columns.outputs)
     fraction, interval = _fraction(squares, floor, windows, outputs) if not diverged else (None, None)
-    rms = {bar: _named(names, values) for bar, values in (*squares.items(), ("floor", floor))}
+    rms = {variant: _named(names, values) for variant, values in (*squares.items(), ("floor", floor))}
     return ClosedLoop(
         rms["nominal"],
         rms["before"],
@@ -155,12 +157,12 @@ def _summary(case: Case, flown: Sequence[Reflown]) -> ClosedLoop:
     )
 
 
-def _astray(entry: Reflown, bar: str, outputs: int) -> bool:
+def _astray(entry: Reflown, variant: str, outputs: int) -> bool:
     """Whether a flight was lost, or further from the log than the log's own range for more than ASTRAY_S."""
-    error = entry.errors[bar][:, :outputs]
+    error = entry.errors[variant][:, :outputs]
     step_s = float(np.median(np.diff(entry.t_s)))
     far = np.any(np.abs(error) > entry.reach[:outputs], axis=1)
-    lost = entry.present & ~np.isfinite(entry.errors[bar][:, -1])
+    lost = entry.present & ~np.isfinite(entry.errors[variant][:, -1])
     return bool(lost.any() or far.sum() * step_s > ASTRAY_S)
 
 

@@ -4,24 +4,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import Case, Flight
-from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.prediction import predictions, windows
 
 Array = NDArray[np.float64]
 MOVES = 5.0  # times its sensor's floor that an output must move within a window to count
 
 
-def ignorance(case: Case, supposed: Supposed) -> dict[str, float]:
+def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     """RMS error of 1 s predictions by output, over the RMS change of the readings since each window's start: 1 is to know nothing.
 
     Outputs that hardly move are left out: nothing could be known better than that they stand.
     """
-    outputs = list(case.kit.bound.model.outputs)
-    pairs = [_squares(flight, predictions(case, flight, supposed)) for flight in case.flights]
+    outputs = list(case.library.bound.model.outputs)
+    pairs = [_squares(flight, predictions(case, flight, hypothesis)) for flight in case.flights]
     own, still = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
     found = {}
     for place, name in enumerate(outputs):
-        floor = case.flights[0].tape.single[case.kit.outputs.index(name)]
+        floor = case.flights[0].filter_input.single[case.library.outputs.index(name)]
         known = np.isfinite(own[:, place])
         if known.any() and (change := float(np.mean(still[known, place]))) > MOVES**2 * floor:
             found[name] = float(np.sqrt(np.mean(own[known, place]) / change))

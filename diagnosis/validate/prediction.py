@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import Tape
+from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise
 from diagnosis.hypothesis.case import Case, Flight
-from diagnosis.hypothesis.hypothesis import Supposed, coefficients, noise_of, start_under, tape_under
-from diagnosis.library.effect_library import Variant
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
+from diagnosis.library.effect_library import CompiledFilter
 from sim.effect import Values
 
 Array = NDArray[np.float64]
@@ -29,42 +29,42 @@ class Span:
     last: int
 
 
-def predictions(case: Case, flight: Flight, supposed: Supposed, spans: Sequence[Span] | None = None) -> Array:
+def predictions(case: Case, flight: Flight, hypothesis: Hypothesis, spans: Sequence[Span] | None = None) -> Array:
     """Predicted readings (rows, outputs) of a log by free runs over `spans`, by default its windows of a second.
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
     """
-    kit = case.kit
-    variant = kit.variant(supposed.effects)
-    tape = tape_under(case, variant, flight, supposed.effects)
-    ahead_tape = tape_under(case, variant, _unforeseen(flight), supposed.effects)
-    given, noise = coefficients(case, variant, supposed), noise_of(case, variant, flight, supposed)
-    chosen = variant.filter
-    places = np.tile(np.arange(len(tape.t_s))[:, None], (1, tape.y.shape[1]))
-    whole = replace(tape, row=np.arange(len(tape.t_s)), place=places, rows=len(tape.t_s))
-    run = chosen.run(whole, given, start_under(variant, flight)[0], noise, case.slots, locked=flight.locked)
-    outputs = len(kit.bound.model.outputs)
+    library = case.library
+    compiled = library.compiled(hypothesis.effects)
+    filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
+    unforeseen_input = filter_input_under(case, compiled, _unforeseen(flight), hypothesis.effects)
+    given, noise = coefficients(case, compiled, hypothesis), noise_of(case, compiled, flight, hypothesis)
+    chosen = compiled.filter
+    places = np.tile(np.arange(len(filter_input.t_s))[:, None], (1, filter_input.y.shape[1]))
+    whole = replace(filter_input, row=np.arange(len(filter_input.t_s)), place=places, rows=len(filter_input.t_s))
+    run = chosen.run(whole, given, start_under(compiled, flight)[0], noise, case.slots, locked=flight.locked)
+    outputs = len(library.bound.model.outputs)
     found = np.full((len(flight.log.t_s), outputs), np.nan)
     if run is None:
         return found
-    lateness = _lateness(case, variant, supposed.effects)
+    lateness = _lateness(case, compiled, hypothesis.effects)
     ahead = Noise(
         np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0), np.zeros_like(noise.q), 0.0
     )
-    slots = [place if place < outputs else -1 for place in range(len(kit.outputs))]
+    slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
     t_s = flight.log.t_s
     for span in [Span(first, first, last) for first, last in windows(t_s)] if spans is None else spans:
-        begin = int(np.searchsorted(tape.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
-        end = int(np.searchsorted(tape.t_s, t_s[span.last - 1] + 1e-9, side="right"))
+        begin = int(np.searchsorted(filter_input.t_s, t_s[span.start] - max(lateness) + 1e-9, side="right")) - 1
+        end = int(np.searchsorted(filter_input.t_s, t_s[span.last - 1] + 1e-9, side="right"))
         if begin < 0 or t_s[span.start] < t_s[0] + SETTLE_S:
             continue
-        part = _unseen(ahead_tape, begin, end, outputs)
+        part = _unseen(unforeseen_input, begin, end, outputs)
         free = chosen.run(part, given, run.filtered[begin], ahead, slots, locked=flight.locked)
         if free is None:
             continue
         y, then = -free.w * np.sqrt(free.s), t_s[span.start : span.last]
         seen = np.column_stack([np.interp(then - lateness[k], part.t_s, y[:, k]) for k in range(outputs)])
-        _through_sensors(case, supposed.effects, flight.log.y[span.start], seen)
+        _through_sensors(case, hypothesis.effects, flight.log.y[span.start], seen)
         found[span.first : span.last] = seen[span.first - span.start :]
     return found
 
@@ -78,34 +78,38 @@ def windows(t_s: Array) -> list[tuple[int, int]]:
 
 def _unforeseen(flight: Flight) -> Flight:
     """The flight without what its own readings say of lost frames: a prediction knows only how many are lost."""
-    tape = flight.tape
-    return replace(flight, tape=replace(tape, lost=np.zeros_like(tape.lost))) if tape.lost.any() else flight
+    filter_input = flight.filter_input
+    return (
+        replace(flight, filter_input=replace(filter_input, lost=np.zeros_like(filter_input.lost)))
+        if filter_input.lost.any()
+        else flight
+    )
 
 
-def _lateness(case: Case, variant: Variant, effects: Mapping[str, Values]) -> list[float]:
+def _lateness(case: Case, compiled: CompiledFilter, effects: Mapping[str, Values]) -> list[float]:
     """How old each output's readings are."""
-    kit = case.kit
-    found = [0.0] * len(kit.bound.model.outputs)
+    library = case.library
+    found = [0.0] * len(library.bound.model.outputs)
     for name, values in effects.items():
         place, kind = name.split(".")
-        if place in kit.bound.model.places.sensors and kind in ("delay", "lag") and name not in variant.names:
-            found[kit.outputs.index(kit.bound.model.places.sensors[place].output)] += values["tau"]
+        if place in library.bound.model.places.sensors and kind in ("delay", "lag") and name not in compiled.names:
+            found[library.outputs.index(library.bound.model.places.sensors[place].output)] += values["tau"]
     return found
 
 
-def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
-    """A stretch of a tape whose readings are nothing but questions."""
+def _unseen(filter_input: FilterInput, begin: int, end: int, outputs: int) -> FilterInput:
+    """A stretch of a filter input whose readings are nothing but questions."""
     count = end - begin
-    y = np.full((count, tape.y.shape[1]), np.nan)
+    y = np.full((count, filter_input.y.shape[1]), np.nan)
     y[:, :outputs] = 0.0
-    return Tape(
-        tape.t_s[begin:end],
-        tape.u[begin:end],
+    return FilterInput(
+        filter_input.t_s[begin:end],
+        filter_input.u[begin:end],
         y,
         r=np.full_like(y, UNSEEN),
         read=y,
         standing=np.ones_like(y),
-        single=tape.single,
+        single=filter_input.single,
         row=np.arange(count),
         place=np.tile(np.arange(count)[:, None], (1, y.shape[1])),
         rows=count,
@@ -118,11 +122,11 @@ def _unseen(tape: Tape, begin: int, end: int, outputs: int) -> Tape:
 
 def _through_sensors(case: Case, effects: Mapping[str, Values], read: Array, predicted: Array) -> None:
     """What play and coarse encoders make of the predicted readings (rows, outputs) of one free run, in place; `read` are its first."""
-    kit = case.kit
+    library = case.library
     for name, values in effects.items():
         place, kind = name.split(".")
-        if place in kit.bound.model.places.sensors and kind in ("backlash", "quantization"):
-            output = kit.outputs.index(kit.bound.model.places.sensors[place].output)
+        if place in library.bound.model.places.sensors and kind in ("backlash", "quantization"):
+            output = library.outputs.index(library.bound.model.places.sensors[place].output)
             if kind == "backlash":
                 _behind_play(predicted[:, output], float(read[output]), values["width"])
             else:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.agreement import agreements
 from diagnosis.validate.closed_loop import closed_loop
 from diagnosis.validate.prediction import predictions, windows
@@ -15,33 +15,33 @@ from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
 Array = NDArray[np.float64]
-BARS = ("nominal", "before", "after")
+MODEL_VARIANTS = ("nominal", "before", "after")
 DRAWS, SEED = 1000, 7
 
 
 @dataclass(frozen=True, eq=False)
 class Predicted:
-    """Readings of a hold-out log predicted by each of BARS: (rows, outputs), NaN where a row could not be predicted.
+    """Readings of a hold-out log predicted by each of MODEL_VARIANTS: (rows, outputs), NaN where a row could not be predicted.
 
-    `bars` are the models that predicted.
+    `variants` are the models that predicted.
     """
 
     name: str
     t_s: Array
     y: Array
     by: Mapping[str, Array]
-    bars: Mapping[str, Supposed]
+    variants: Mapping[str, Hypothesis]
 
 
-def predict_all(case: Case, names: Sequence[str], bars: Mapping[str, Supposed]) -> tuple[Predicted, ...]:
-    """Predictions of every flight of `case` by each model in `bars`."""
+def predict_all(case: Case, names: Sequence[str], variants: Mapping[str, Hypothesis]) -> tuple[Predicted, ...]:
+    """Predictions of every flight of `case` by each model in `variants`."""
     return tuple(
         Predicted(
             name,
             flight.log.t_s,
             flight.log.y,
-            {bar: predictions(case, flight, supposed) for bar, supposed in bars.items()},
-            bars,
+            {variant: predictions(case, flight, hypothesis) for variant, hypothesis in variants.items()},
+            variants,
         )
         for name, flight in zip(names, case.flights, strict=True)
     )
@@ -52,38 +52,40 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
 
     `tables` are the controllers that flew the logs of `case`, None where it is not at hand: those logs are flown again.
     """
-    outputs = list(case.kit.bound.model.outputs)
-    squares = {bar: _squares(predicted, bar) for bar in BARS}
-    floor = np.sqrt([case.flights[0].tape.single[case.kit.outputs.index(name)] for name in outputs])
-    bars = {bar: _named(outputs, np.sqrt(_means(squares[bar]))) for bar in BARS}
+    outputs = list(case.library.bound.model.outputs)
+    squares = {variant: _squares(predicted, variant) for variant in MODEL_VARIANTS}
+    floor = np.sqrt([case.flights[0].filter_input.single[case.library.outputs.index(name)] for name in outputs])
+    variants = {variant: _named(outputs, np.sqrt(_means(squares[variant]))) for variant in MODEL_VARIANTS}
     count = len(squares["after"])
     fraction = _fractions(squares, floor, np.ones((1, count)))
     spread = _fractions(squares, floor, _drawn(count))
     interval = (float(np.percentile(spread, 2.5)), float(np.percentile(spread, 97.5))) if spread.size else None
     return Shrinkage(
-        rms_nominal=bars["nominal"],
-        rms_before=bars["before"],
-        rms_after=bars["after"],
+        rms_nominal=variants["nominal"],
+        rms_before=variants["before"],
+        rms_after=variants["after"],
         rms_floor=_named(outputs, floor),
         fraction=float(fraction[0]) if fraction.size else None,
         fraction_ci95=interval if fraction.size else None,
         agreement=agreements(outputs, [(entry.t_s, entry.y, entry.by) for entry in predicted]),
-        closed_loop=closed_loop(case, [e.name for e in predicted], tables, predicted[0].bars) if any(tables) else None,
+        closed_loop=closed_loop(case, [e.name for e in predicted], tables, predicted[0].variants)
+        if any(tables)
+        else None,
     )
 
 
-def error(case: Case, predicted: Sequence[Predicted], bar: str) -> float:
-    """Mean square error of a bar, each output in units of its floor."""
-    outputs = list(case.kit.bound.model.outputs)
-    floor = np.array([case.flights[0].tape.single[case.kit.outputs.index(name)] for name in outputs])
-    return float(np.nansum(_means(_squares(predicted, bar)) / floor))
+def error(case: Case, predicted: Sequence[Predicted], variant: str) -> float:
+    """Mean square error of a model variant, each output in units of its floor."""
+    outputs = list(case.library.bound.model.outputs)
+    floor = np.array([case.flights[0].filter_input.single[case.library.outputs.index(name)] for name in outputs])
+    return float(np.nansum(_means(_squares(predicted, variant)) / floor))
 
 
-def _squares(predicted: Sequence[Predicted], bar: str) -> Array:
+def _squares(predicted: Sequence[Predicted], variant: str) -> Array:
     """Mean square error by window and output; NaN for an output that a log does not hold; windows lacking another are left out."""
     found = []
     for entry in predicted:
-        square = (entry.by[bar] - entry.y) ** 2
+        square = (entry.by[variant] - entry.y) ** 2
         held: NDArray[np.bool_] = np.asarray(np.isfinite(entry.y).any(axis=0))
         for first, last in windows(entry.t_s):
             means = _means(square[first:last])
@@ -100,7 +102,7 @@ def _drawn(count: int) -> Array:
 
 def _fractions(squares: Mapping[str, Array], floor: Array, weights: Array) -> Array:
     """Shares of the removable error that are gone, one for each row of `weights` (draws, windows) under which anything is removable."""
-    before, after = (_weighted_means(squares[bar], weights) / floor**2 for bar in ("before", "after"))
+    before, after = (_weighted_means(squares[variant], weights) / floor**2 for variant in ("before", "after"))
     removable = np.nansum(before - 1.0, axis=1)
     gone = np.nansum(before - after, axis=1)
     return np.asarray(gone[removable > 0.0] / removable[removable > 0.0])

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.gauss_newton import SCATTERS
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Supposed, coefficients
-from diagnosis.library.effect_library import Kit, Variant
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
+from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
 from sim.composition.build import paths_with
 from sim.effect import Values
 from sim.paths.path import Held, OutputStage, Trace, pass_inputs, pass_output
@@ -22,41 +22,41 @@ UNSEEN = 1e8  # variance of a reading that only asks
 
 
 class Flown:
-    """The plant of `case` under `supposed` at time `t_s` in state `x` (states of its variant,).
+    """The plant of `case` under `hypothesis` at time `t_s` in state `x` (states of its variant,).
 
     `x0` holds the plant's own states first; what effects brought and x0 lacks starts at rest. Axes `locked` stay where they stand. With a
-    `seed` the supposed unrest shakes the axes and delays scatter as supposed; without, all is as on average. `lost` is set once the
+    `seed` the supposed process noise shakes the axes and delays scatter as supposed; without, all is as on average. `lost` is set once the
     state has left all bounds; then nothing moves any more.
     """
 
     def __init__(
         self,
         case: Case,
-        supposed: Supposed,
+        hypothesis: Hypothesis,
         x0: Array,
         t_s: float = 0.0,
         *,
         locked: tuple[str, ...] = (),
         seed: int | None = None,
     ) -> None:
-        kit = case.kit
-        variant = kit.variant(supposed.effects)
-        further = {name: values for name, values in supposed.effects.items() if name not in variant.names}
+        library = case.library
+        compiled = library.compiled(hypothesis.effects)
+        further = {name: values for name, values in hypothesis.effects.items() if name not in compiled.names}
         further = further if seed is not None else {name: without_scatter(values) for name, values in further.items()}
-        on_input, on_output = paths_with(MODELS[kit.bound.plant.model](), further)
-        self._case, self._filter, self.t_s, self.lost = case, variant.filter, t_s, False
-        self._outputs = len(kit.bound.model.outputs)
-        self._steps = np.array([kit.bound.plant.sensors[name] for name in kit.bound.model.outputs])
+        on_input, on_output = paths_with(MODELS[library.bound.plant.model](), further)
+        self._case, self._filter, self.t_s, self.lost = case, compiled.filter, t_s, False
+        self._outputs = len(library.bound.model.outputs)
+        self._steps = np.array([library.bound.plant.sensors[name] for name in library.bound.model.outputs])
         self._stepped = self._steps > 0.0
         self._divisors = np.where(self._stepped, self._steps, 1.0)
         self._rng = None if seed is None else np.random.default_rng(seed)
-        self._shaken = _shaken(case, supposed, locked)
+        self._shaken = _shaken(case, hypothesis, locked)
         self._on_input = on_input
         self._input_memory: tuple[Any, ...] | None = None
         self._ways = [(place, [s for s in on_output if s.output == place]) for place in range(self._outputs)]
         self._memory: dict[int, Any] = {}
-        self._make_request(coefficients(case, variant, supposed), locked)
-        self._arrays["x0"][:] = _begun(kit, variant, x0)
+        self._make_request(coefficients(case, compiled, hypothesis), locked)
+        self._arrays["x0"][:] = _begun(library, compiled, x0)
         self._ask(1)
         self._y = self._behind(np.array([t_s]))
 
@@ -120,7 +120,7 @@ class Flown:
         return float(behind.y[-1]), kept
 
     def _make_request(self, p: Array, locked: tuple[str, ...]) -> None:
-        chosen, inputs = self._filter, len(self._case.kit.bound.model.inputs)
+        chosen, inputs = self._filter, len(self._case.library.bound.model.inputs)
         n, outputs, width = chosen.states, chosen.outputs, self._outputs
         y = np.full((2, outputs), np.nan)
         y[:, :width] = 0.0
@@ -153,18 +153,18 @@ def without_scatter(values: Values) -> Values:
     return {symbol: 0.0 if symbol == SCATTERS else value for symbol, value in values.items()}
 
 
-def _begun(kit: Kit, variant: Variant, x0: Array) -> Array:
+def _begun(library: EffectLibrary, compiled: CompiledFilter, x0: Array) -> Array:
     """The states that a rig begins with, what effects brought with them: what is read late begins where it is, all else at rest."""
-    begun = dict(zip(variant.states, x0.tolist(), strict=False))
-    late = {f"{name}_read": begun.get(name, 0.0) for name in kit.bound.model.outputs}
-    return np.array([begun.get(state, late.get(state, 0.0)) for state in variant.states])
+    begun = dict(zip(compiled.states, x0.tolist(), strict=False))
+    late = {f"{name}_read": begun.get(name, 0.0) for name in library.bound.model.outputs}
+    return np.array([begun.get(state, late.get(state, 0.0)) for state in compiled.states])
 
 
-def _shaken(case: Case, supposed: Supposed, locked: tuple[str, ...]) -> Array:
+def _shaken(case: Case, hypothesis: Hypothesis, locked: tuple[str, ...]) -> Array:
     """Unrest (states,) per square root of a second: on the speeds of axes that are free."""
-    states = case.kit.states
-    found = np.zeros(case.kit.variant(supposed.effects).filter.states)
-    for axis, unrest in zip(case.kit.bound.model.axes, supposed.unrest, strict=True):
+    states = case.library.states
+    found = np.zeros(case.library.compiled(hypothesis.effects).filter.states)
+    for axis, process_noise in zip(case.library.bound.model.axes, hypothesis.process_noise, strict=True):
         if axis.name not in locked:
-            found[states.index(str(axis.velocity))] = 10.0**unrest
+            found[states.index(str(axis.velocity))] = 10.0**process_noise
     return found

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from diagnosis.hypothesis.case import make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.ahead import EVERY_S, UNREST, Ahead, Lookahead
 from diagnosis.validate.prediction import Span, predictions
 from records.live import LiveRow
@@ -34,25 +34,25 @@ def errors(found: list[Ahead]) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def calm(fly: Fly, plant: BoundPlant) -> list[LiveRow]:
+def low_noise(fly: Fly, plant: BoundPlant) -> list[LiveRow]:
     """A rig with the twin's own coefficients and no air."""
     names = [str(symbol) for symbol in plant.model.parameter_symbols]
     return rows_of(fly(3, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
 
 
-def test_a_twin_that_is_exact_leaves_what_the_encoder_leaves(plant: BoundPlant, calm: list[LiveRow]) -> None:
+def test_a_twin_that_is_exact_leaves_what_the_encoder_leaves(plant: BoundPlant, low_noise: list[LiveRow]) -> None:
     # A state estimated from readings of one step's resolution by a filter that expects some air, run on for a second of a lively
     # flight: rms within one and a half steps, nothing beyond six times that.
     lookahead = Lookahead(plant)
-    found = fed(lookahead, calm)
+    found = fed(lookahead, low_noise)
     assert np.abs(errors(found)).max() < 9 * STEP_RAD
     assert max(gap for gap in lookahead.gap if gap is not None) < 1.5 * STEP_RAD
 
 
 def test_it_begins_after_three_seconds_and_goes_on_twenty_times_a_second(
-    plant: BoundPlant, calm: list[LiveRow]
+    plant: BoundPlant, low_noise: list[LiveRow]
 ) -> None:
-    times = np.array([entry.t_s for entry in fed(Lookahead(plant), calm)])
+    times = np.array([entry.t_s for entry in fed(Lookahead(plant), low_noise)])
     assert times[0] == pytest.approx(3.0, abs=0.011)
     assert np.allclose(np.diff(times), EVERY_S)
 
@@ -76,29 +76,29 @@ def test_it_is_the_prediction_of_the_whole_log(plant: BoundPlant, fly: Fly) -> N
     rows = rows_of(log)
     found = fed(Lookahead(plant), rows)
     places = [round(entry.t_s / 0.01) for entry in found]
-    case = make_case(make_kit(plant), [log], stated=plant)
+    case = make_case(effect_library(plant), [log], stated=plant)
     spans = [Span(place - 100, place, place + 1) for place in places]
-    whole = predictions(case, case.flights[0], nothing_supposed(case, UNREST), spans=spans)[places]
+    whole = predictions(case, case.flights[0], nominal_hypothesis(case, UNREST), spans=spans)[places]
     assert np.abs(whole - [entry.predicted for entry in found]).max() < 0.5 * STEP_RAD
 
 
-def test_rows_one_by_one_and_in_batches_give_the_same(plant: BoundPlant, calm: list[LiveRow]) -> None:
-    one, many = (np.array([e.predicted for e in fed(Lookahead(plant), calm[:500], batch)]) for batch in (1, 25))
+def test_rows_one_by_one_and_in_batches_give_the_same(plant: BoundPlant, low_noise: list[LiveRow]) -> None:
+    one, many = (np.array([e.predicted for e in fed(Lookahead(plant), low_noise[:500], batch)]) for batch in (1, 25))
     assert one.shape == many.shape
     assert np.abs(one - many).max() < 0.1 * STEP_RAD
 
 
-def test_after_a_leap_it_begins_anew(plant: BoundPlant, calm: list[LiveRow]) -> None:
+def test_after_a_leap_it_begins_anew(plant: BoundPlant, low_noise: list[LiveRow]) -> None:
     lookahead = Lookahead(plant)
-    fed(lookahead, calm[:400])
+    fed(lookahead, low_noise[:400])
     lookahead.forget()
     assert lookahead.gap == (None, None)
-    assert not fed(lookahead, calm[:290])
-    assert fed(lookahead, calm[290:310])
+    assert not fed(lookahead, low_noise[:290])
+    assert fed(lookahead, low_noise[290:310])
 
 
-def test_a_reading_that_is_missing_leaves_no_gap_of_its_own(plant: BoundPlant, calm: list[LiveRow]) -> None:
-    blind = [LiveRow(row.t_s, row.u, (row.y[0], float("nan")), row.reference) for row in calm[:500]]
+def test_a_reading_that_is_missing_leaves_no_gap_of_its_own(plant: BoundPlant, low_noise: list[LiveRow]) -> None:
+    blind = [LiveRow(row.t_s, row.u, (row.y[0], float("nan")), row.reference) for row in low_noise[:500]]
     lookahead = Lookahead(plant)
     fed(lookahead, blind)
     assert lookahead.gap[0] is not None

@@ -8,10 +8,10 @@ import pytest
 from diagnosis.decide.contradiction import contradiction
 from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.improved import improved_plant
-from diagnosis.fit.gauss_newton import log_prior, strain
+from diagnosis.fit.gauss_newton import log_prior, prior_chi_squared
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from records.correlation import Correlation
 from records.log import RunLog
 from records.plant import plant_text
@@ -34,7 +34,7 @@ def case(plant: BoundPlant) -> Case:
 
 def case_of(plant: BoundPlant, other: str, logs: list[RunLog]) -> Case:
     stated = Correlation(("J_E", other), ((1.0, HANG), (HANG, 1.0)))
-    return make_case(make_kit(bind(replace(plant.plant, correlation=stated))), logs)
+    return make_case(effect_library(bind(replace(plant.plant, correlation=stated))), logs)
 
 
 def flown(plant: BoundPlant, moved: dict[str, float]) -> RunLog:
@@ -56,7 +56,7 @@ def index(plant: BoundPlant, name: str) -> int:
 
 def place(case: Case, name: str) -> int:
     """The place of a coefficient in theta."""
-    return case.free.tolist().index(index(case.kit.bound, name))
+    return case.free.tolist().index(index(case.library.bound, name))
 
 
 def test_the_strain_is_that_of_the_joint_normal_law(case: Case) -> None:
@@ -64,20 +64,20 @@ def test_the_strain_is_that_of_the_joint_normal_law(case: Case) -> None:
     for sign in (1.0, -1.0):
         theta = np.zeros(len(case.free))
         theta[[place(case, "J_E"), place(case, "J_A")]] = 1.0, sign
-        supposed = replace(nothing_supposed(case, -3.0), theta=theta)
-        assert strain(case, supposed, ()) == pytest.approx(2.0 / (1.0 + sign * HANG), rel=1e-9)
-        assert log_prior(case, supposed, ()) == pytest.approx(-1.0 / (1.0 + sign * HANG), rel=1e-9)
+        hypothesis = replace(nominal_hypothesis(case, -3.0), theta=theta)
+        assert prior_chi_squared(case, hypothesis, ()) == pytest.approx(2.0 / (1.0 + sign * HANG), rel=1e-9)
+        assert log_prior(case, hypothesis, ()) == pytest.approx(-1.0 / (1.0 + sign * HANG), rel=1e-9)
 
 
 def test_what_the_log_cannot_show_follows_what_it_shows(case: Case) -> None:
     # Truth: nothing of J_A is in these data, so it stands at its conditional mean, r times the deviation of J_E, known to sqrt(1 - r^2).
     found = nominal_fit(case)
-    theta = found.supposed.theta
+    theta = found.hypothesis.theta
     assert abs(theta[place(case, "J_E")]) > 0.1
     assert theta[place(case, "J_A")] == pytest.approx(HANG * theta[place(case, "J_E")], rel=1e-3)
     improved = improved_plant(case, found)
-    deviation = improved.parameters["J_A"].sds[0] / case.kit.bound.plant.parameters["J_A"].sds[0]
-    j_E = improved.parameters["J_E"].sds[0] / case.kit.bound.plant.parameters["J_E"].sds[0]
+    deviation = improved.parameters["J_A"].sds[0] / case.library.bound.plant.parameters["J_A"].sds[0]
+    j_E = improved.parameters["J_E"].sds[0] / case.library.bound.plant.parameters["J_E"].sds[0]
     assert deviation**2 == pytest.approx(1.0 - HANG**2 * (1.0 - j_E**2), rel=1e-3)
     again = bind(improved).plant
     assert again.correlation is not None
@@ -85,12 +85,12 @@ def test_what_the_log_cannot_show_follows_what_it_shows(case: Case) -> None:
 
 
 def test_without_a_stated_correlation_nothing_changes(plant: BoundPlant, case: Case) -> None:
-    plain = make_case(make_kit(plant), [case.flights[0].log])
+    plain = make_case(effect_library(plant), [case.flights[0].log])
     assert plain.spread is None
     assert np.array_equal(plain.known, np.eye(len(plain.free)))
     theta = np.linspace(-1.0, 1.0, len(plain.free))
     assert plain.pull_of(theta) is theta
-    assert strain(plain, replace(nothing_supposed(plain, -3.0), theta=theta), ()) == float(theta @ theta)
+    assert prior_chi_squared(plain, replace(nominal_hypothesis(plain, -3.0), theta=theta), ()) == float(theta @ theta)
 
 
 def test_two_rigs_that_differ_against_the_correlation_gain_less_by_numbers_of_their_own(plant: BoundPlant) -> None:

@@ -10,7 +10,7 @@ from diagnosis.decide.doubt import UNNAMED, Doubt, contradicting
 from diagnosis.decide.weighing import Weighed
 from diagnosis.diagnose import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.validate.misfit import ignorance
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -20,8 +20,8 @@ SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 
 
 @pytest.fixture(scope="module")
-def kit(plant: BoundPlant) -> Kit:
-    return make_kit(plant)
+def library(plant: BoundPlant) -> EffectLibrary:
+    return effect_library(plant)
 
 
 def part(log: RunLog, rows: slice) -> RunLog:
@@ -34,40 +34,40 @@ def gain_of_own_numbers(case: Case) -> float:
     return found.gain
 
 
-def test_two_parts_of_one_flight_agree_and_flights_of_two_plants_do_not(kit: Kit, fly: Fly) -> None:
+def test_two_parts_of_one_flight_agree_and_flights_of_two_plants_do_not(library: EffectLibrary, fly: Fly) -> None:
     # About 25 numbers of its own gain a log half a nat each by chance; a spring that only one of two plants has gains hundreds.
     flight = fly(41)
-    agreeing = make_case(kit, [part(flight, slice(0, 1500)), part(flight, slice(1500, 3000))])
+    agreeing = make_case(library, [part(flight, slice(0, 1500)), part(flight, slice(1500, 3000))])
     assert gain_of_own_numbers(agreeing) < 30.0
-    differing = make_case(kit, [part(flight, slice(0, 1500)), part(fly(42, SPRING), slice(0, 1500))])
+    differing = make_case(library, [part(flight, slice(0, 1500)), part(fly(42, SPRING), slice(0, 1500))])
     assert gain_of_own_numbers(differing) > 100.0
-    assert contradiction(make_case(kit, [flight]), nominal_fit(agreeing)) is None
+    assert contradiction(make_case(library, [flight]), nominal_fit(agreeing)) is None
 
 
-def test_a_hold_out_of_another_rig_is_told_though_each_is_as_stated(kit: Kit, fly: Fly) -> None:
+def test_a_hold_out_of_another_rig_is_told_though_each_is_as_stated(library: EffectLibrary, fly: Fly) -> None:
     # Every rig is within its stated spread; the third log is of another one.
     one, same, other = (fly(seed, rig_seed=rig) for seed, rig in ((71, 71), (72, 71), (73, 74)))
-    alike, unlike = make_case(kit, [one, same]), make_case(kit, [one, other])
-    assert contradicting(alike, nominal_fit(alike).supposed, ["train", "hold"]) == ()
-    (told,) = contradicting(unlike, nominal_fit(make_case(kit, [one])).supposed, ["train", "hold"])
+    alike, unlike = make_case(library, [one, same]), make_case(library, [one, other])
+    assert contradicting(alike, nominal_fit(alike).hypothesis, ["train", "hold"]) == ()
+    (told,) = contradicting(unlike, nominal_fit(make_case(library, [one])).hypothesis, ["train", "hold"])
     assert "these logs contradict each other" in told
 
 
-def test_a_plant_knows_its_own_flights_and_nothing_of_a_random_walk(kit: Kit, fly: Fly) -> None:
+def test_a_plant_knows_its_own_flights_and_nothing_of_a_random_walk(library: EffectLibrary, fly: Fly) -> None:
     # Errors over those of holding the last reading: a small share where the plant is right, 1 where nothing can be known.
     flight = part(fly(43), slice(0, 1500))
-    known = make_case(kit, [flight])
-    assert max(ignorance(known, nominal_fit(known).supposed).values()) < 0.2
+    known = make_case(library, [flight])
+    assert max(ignorance(known, nominal_fit(known).hypothesis).values()) < 0.2
     walk = np.cumsum(np.random.default_rng(3).normal(0.0, 0.004, flight.y.shape), axis=0)
-    unknown = make_case(kit, [replace(flight, y=np.clip(walk, -0.7, 0.7))])
-    found = ignorance(unknown, nominal_fit(unknown).supposed)
+    unknown = make_case(library, [replace(flight, y=np.clip(walk, -0.7, 0.7))])
+    found = ignorance(unknown, nominal_fit(unknown).hypothesis)
     assert min(found.values()) > 0.9
 
 
-def test_an_output_that_stands_says_nothing_of_what_is_known(kit: Kit, fly: Fly) -> None:
+def test_an_output_that_stands_says_nothing_of_what_is_known(library: EffectLibrary, fly: Fly) -> None:
     flight = part(fly(43), slice(0, 600))
-    case = make_case(kit, [replace(flight, y=np.column_stack([np.full(600, 0.1), flight.y[:, 1]]))])
-    assert set(ignorance(case, nominal_fit(case).supposed)) <= {"phi_rad"}
+    case = make_case(library, [replace(flight, y=np.column_stack([np.full(600, 0.1), flight.y[:, 1]]))])
+    assert set(ignorance(case, nominal_fit(case).hypothesis)) <= {"phi_rad"}
 
 
 def test_a_doubt_leaves_next_to_nothing_for_names_and_all_probabilities_sum_to_one() -> None:

@@ -60,8 +60,8 @@ def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, spring:
 
 def test_predictions_cover_the_hold_out(spring: Result) -> None:
     (predicted,) = spring.predicted
-    for bar in ("nominal", "before", "after"):
-        assert np.isfinite(predicted.by[bar]).mean() > 0.9
+    for variant in ("nominal", "before", "after"):
+        assert np.isfinite(predicted.by[variant]).mean() > 0.9
 
 
 def test_a_parameter_beyond_its_spread_is_named_and_no_effect(plant: BoundPlant, fly: Fly) -> None:

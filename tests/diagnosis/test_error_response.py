@@ -5,14 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.detect.linearisation import Ground, ground_of
+from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.error_response import error_responses
 from diagnosis.explain.maps import band_map
 from diagnosis.explain.spectra import averages, coherence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 
@@ -53,9 +53,9 @@ def test_a_delay_shows_as_its_own_frequency_response(plant: BoundPlant, fly: Fly
     # about the flight: from an answer by finite differences it is 1 % off on the elevation, 15 % on the azimuth, where the size of the
     # delay comes out about a third too small.
     tau_s = 0.04
-    ground = delayed(plant, fly, f"{place}_input.delay", tau_s)
+    linearisation = delayed(plant, fly, f"{place}_input.delay", tau_s)
     output, u = ("psi_rad", "u_M_V") if place == "main" else ("phi_rad", "u_T_V")
-    rows = [row for row in error_responses(ground) if (row.output, row.input) == (output, u)]
+    rows = [row for row in error_responses(linearisation) if (row.output, row.input) == (output, u)]
     assert len(rows) > 1
     for row in rows:
         low, high = (2.0 * np.sin(np.pi * f * tau_s) for f in (row.from_Hz, row.to_Hz))
@@ -74,15 +74,15 @@ def test_a_delay_of_one_input_is_no_difference_of_the_other(plant: BoundPlant, f
 @pytest.mark.parametrize("seed", [81, 82, 83])
 def test_feedback_of_noise_is_no_difference(plant: BoundPlant, fly: Fly, seed: int) -> None:
     # Truth: the rig is the model. Strong air moves it, the controller answers with both inputs: they go with the error, but after it.
-    case = make_case(make_kit(plant), [fly(seed, rig_seed=80, gusts=20.0)])
-    assert error_responses(ground_of(case, nominal_fit(case))) == ()
+    case = make_case(effect_library(plant), [fly(seed, rig_seed=80, gusts=20.0)])
+    assert error_responses(linearised(case, nominal_fit(case))) == ()
 
 
-def delayed(plant: BoundPlant, fly: Fly, effect: str, tau_s: float) -> Ground:
+def delayed(plant: BoundPlant, fly: Fly, effect: str, tau_s: float) -> Linearisation:
     """Two flights of a rig that is as stated but for a delay, under the plant as stated."""
     as_stated = dict.fromkeys((str(symbol) for symbol in plant.model.parameter_symbols), 1.0)
     logs = [fly(seed, {effect: {"tau": tau_s}}, factors=as_stated, jumps_rad=0.05, air=False) for seed in (71, 72)]
-    case = make_case(make_kit(plant), logs)
-    stated = unfitted(case, nominal_fit(case).supposed.unrest)
+    case = make_case(effect_library(plant), logs)
+    stated = unfitted(case, nominal_fit(case).hypothesis.process_noise)
     assert stated is not None
-    return ground_of(case, stated)
+    return linearised(case, stated)

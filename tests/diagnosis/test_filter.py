@@ -7,13 +7,13 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import nominal_fit
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import UNTOLD_S, Case, make_case
-from diagnosis.hypothesis.hypothesis import Supposed, coefficients, nothing_supposed, passes
-from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.search.lost_frames import drives
 from diagnosis.validate.prediction import predictions
 from records.log import RunLog
@@ -27,13 +27,13 @@ TOLD = round(UNTOLD_S / 0.01)  # the first row that counts
 
 
 @pytest.fixture(scope="module")
-def kit(plant: BoundPlant) -> Kit:
-    return make_kit(plant)
+def library(plant: BoundPlant) -> EffectLibrary:
+    return effect_library(plant)
 
 
 @pytest.fixture(scope="module")
-def case(kit: Kit, fly: Fly) -> Case:
-    return make_case(kit, [fly(1)])
+def case(library: EffectLibrary, fly: Fly) -> Case:
+    return make_case(library, [fly(1)])
 
 
 @pytest.fixture(scope="module")
@@ -42,28 +42,28 @@ def fitted(case: Case) -> Fit:
 
 
 @pytest.fixture(scope="module")
-def settled(fitted: Fit) -> Supposed:
-    return fitted.supposed
+def settled(fitted: Fit) -> Hypothesis:
+    return fitted.hypothesis
 
 
 @pytest.fixture(scope="module")
-def stuck(kit: Kit, fly: Fly) -> tuple[Case, Supposed]:
+def stuck(library: EffectLibrary, fly: Fly) -> tuple[Case, Hypothesis]:
     """A flight whose azimuth sticks now and then, and what fits it."""
     sticky = {"azimuth.coulomb": {"b": 2e-3}}
-    case = make_case(kit, [fly(1, sticky)])
-    found = fit(case, nothing_supposed(case, -3.0).with_effects(sticky))
+    case = make_case(library, [fly(1, sticky)])
+    found = fit(case, nominal_hypothesis(case, -3.0).with_effects(sticky))
     assert found is not None
-    return case, found.supposed
+    return case, found.hypothesis
 
 
-def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed) -> None:
+def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Hypothesis) -> None:
     # Some 2000 readings that change from row to row have unit variance: the mean square within 6 sd = 19 %, the first correlation
     # within 6/sqrt(2000) = 0.13 and a little more for the encoder's rounding. Readings that stand are trusted less than they deserve.
     (run,) = passes(case, settled) or [None]
     assert run is not None
     (flight,) = case.flights
     for place, w in enumerate(run.w[TOLD:].T):
-        moving = flight.tape.r[TOLD:, place] < 1.01 * flight.tape.single[place]
+        moving = flight.filter_input.r[TOLD:, place] < 1.01 * flight.filter_input.single[place]
         assert moving.sum() > 1500
         assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25
@@ -71,12 +71,12 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Supposed
 
 
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
-def test_further_instants_change_nothing(stuck: tuple[Case, Supposed], sensor: str) -> None:
+def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor: str) -> None:
     # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
-    case, supposed = stuck
-    (plain,) = passes(case, supposed) or [None]
+    case, hypothesis = stuck
+    (plain,) = passes(case, hypothesis) or [None]
     (late,) = passes(
-        case, supposed.with_effects({**supposed.effects, f"{sensor}.delay": {"tau": 1e-5, "jitter": 0.0}})
+        case, hypothesis.with_effects({**hypothesis.effects, f"{sensor}.delay": {"tau": 1e-5, "jitter": 0.0}})
     ) or [None]
     assert plain is not None
     assert late is not None
@@ -84,21 +84,21 @@ def test_further_instants_change_nothing(stuck: tuple[Case, Supposed], sensor: s
     assert late.log_likelihood == pytest.approx(plain.log_likelihood, abs=0.5)
 
 
-def changed(case: Case, supposed: Supposed, name: str) -> tuple[Pass, np.ndarray, np.ndarray]:
+def changed(case: Case, hypothesis: Hypothesis, name: str) -> tuple[Pass, np.ndarray, np.ndarray]:
     """The pass, its slopes by a coefficient in standard deviations, and what a thousandth of one changes (rows, slots)."""
-    names = [str(symbol) for symbol in case.kit.bound.model.parameter_symbols]
+    names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     index = int(np.flatnonzero(case.free == names.index(name))[0])
-    theta = supposed.theta.copy()
+    theta = hypothesis.theta.copy()
     theta[index] += 1e-3
-    (run,) = passes(case, supposed, case.free.tolist(), slopes=True) or [None]
-    (moved,) = passes(case, replace(supposed, theta=theta)) or [None]
+    (run,) = passes(case, hypothesis, case.free.tolist(), slopes=True) or [None]
+    (moved,) = passes(case, replace(hypothesis, theta=theta)) or [None]
     assert run is not None
     assert moved is not None
     assert run.dw is not None
     return run, run.dw[:, :, index] * case.sd[index], (moved.w - run.w) / 1e-3
 
 
-def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> None:
+def test_slopes_are_those_of_small_changes(case: Case, settled: Hypothesis) -> None:
     # The slopes leave out how the gain and the instants of stiction move: 20 % of their size, for parameters without friction.
     for name in ("J_E", "K_M", "tau_gE", "K_T"):
         _, slope, change = changed(case, settled, name)
@@ -106,17 +106,17 @@ def test_slopes_are_those_of_small_changes(case: Case, settled: Supposed) -> Non
 
 
 @pytest.mark.parametrize("name", ["J_A", "K_T"])
-def test_no_parameter_moves_what_friction_holds(stuck: tuple[Case, Supposed], name: str) -> None:
+def test_no_parameter_moves_what_friction_holds(stuck: tuple[Case, Hypothesis], name: str) -> None:
     # Where the azimuth sticks, what its inertia and its rotor do to the readings is what they had done before: 20 % of it as above.
-    case, supposed = stuck
-    run, slope, change = changed(case, supposed, name)
-    held = run.x[:, case.kit.velocities[1]] == 0.0
+    case, hypothesis = stuck
+    run, slope, change = changed(case, hypothesis, name)
+    held = run.x[:, case.library.velocities[1]] == 0.0
     held[:TOLD] = False
     assert 50 < held.sum() < 0.2 * len(held)
     assert np.linalg.norm((change - slope)[held]) < 0.2 * np.linalg.norm(change[held])
 
 
-def test_products_are_those_of_the_slopes(case: Case, settled: Supposed) -> None:
+def test_products_are_those_of_the_slopes(case: Case, settled: Hypothesis) -> None:
     (run,) = passes(case, settled, case.free.tolist()[:5], slopes=True) or [None]
     assert run is not None
     assert run.dw is not None
@@ -125,7 +125,7 @@ def test_products_are_those_of_the_slopes(case: Case, settled: Supposed) -> None
     assert np.allclose(run.pull, dw.T @ w, rtol=1e-6, atol=1e-6 * np.abs(run.gram).max())
 
 
-def test_predictions_begin_at_what_was_read(case: Case, settled: Supposed) -> None:
+def test_predictions_begin_at_what_was_read(case: Case, settled: Hypothesis) -> None:
     # At a window's first row the filter has seen the reading: within two encoder steps of it.
     flight = case.flights[0]
     found = predictions(case, flight, settled)
@@ -134,27 +134,32 @@ def test_predictions_begin_at_what_was_read(case: Case, settled: Supposed) -> No
     assert np.isnan(found[:200]).all()
 
 
-def test_a_plant_of_other_parameters_predicts_worse(case: Case, settled: Supposed) -> None:
+def test_a_plant_of_other_parameters_predicts_worse(case: Case, settled: Hypothesis) -> None:
     flight = case.flights[0]
     own = predictions(case, flight, settled) - flight.log.y
-    stated = predictions(case, flight, nothing_supposed(case, -3.0)) - flight.log.y
+    stated = predictions(case, flight, nominal_hypothesis(case, -3.0)) - flight.log.y
     assert np.nanmean(own**2) < 0.5 * np.nanmean(stated**2)
 
 
-def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit, settled: Supposed) -> None:
-    # What the filter answers linearly to a slightly higher input is what it finds on a tape with that input, within 2 % of the largest
+def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit, settled: Hypothesis) -> None:
+    # What the filter answers linearly to a slightly higher input is what it finds on a filter input with that input,
+    # within 2 % of the largest
     # change: it takes the rise half a step late. After more than half a second the gain itself has moved, which the answer leaves out.
-    ground = ground_of(case, fitted)
-    (tape,), (run,) = ground.tapes, ground.runs
+    linearisation = linearised(case, fitted)
+    (filter_input,), (run,) = linearisation.filter_inputs, linearisation.runs
     (column, (state, gain)) = next(iter(drives(case).items()))
     start, end = 1000, 1050
-    raised = 1e-3 * (np.arange(len(tape.t_s)) >= start)
-    h = np.append(np.diff(tape.t_s), 0.0)
-    rate = evaluated(case.kit.bound.model, coefficients(case, case.kit.plain, settled)[: case.kit.own], gain)
-    found = ground.answer([(raised * h * rate)[:, None].__getitem__], state).reshape(run.w.shape)
-    u = tape.u.copy()
+    raised = 1e-3 * (np.arange(len(filter_input.t_s)) >= start)
+    h = np.append(np.diff(filter_input.t_s), 0.0)
+    rate = evaluated(
+        case.library.bound.model, coefficients(case, case.library.plain, settled)[: case.library.own], gain
+    )
+    found = linearisation.answer([(raised * h * rate)[:, None].__getitem__], state).reshape(run.w.shape)
+    u = filter_input.u.copy()
     u[:, column] -= raised
-    (other,) = passes(case.with_flights([replace(case.flights[0], tape=replace(tape, u=u))]), settled) or [None]
+    (other,) = passes(
+        case.with_flights([replace(case.flights[0], filter_input=replace(filter_input, u=u))]), settled
+    ) or [None]
     assert other is not None
     change = np.nan_to_num(other.w - run.w)[:end]
     assert np.all(change[:start] == 0.0), change[:start]
@@ -165,17 +170,17 @@ def test_answers_are_those_of_small_changes_of_the_input(case: Case, fitted: Fit
 def test_sums_over_parts_are_those_of_the_whole_answer(
     case: Case, fitted: Fit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Each disturbance begins and ends in another part of the tape, the last in none; every sum within 1e-9 of the whole's largest.
-    ground = ground_of(case, fitted)
-    steps = len(ground.tapes[0].t_s)
+    # Each disturbance begins and ends in another part of the filter input, the last in none; every sum within 1e-9 of the whole's largest.
+    linearisation = linearised(case, fitted)
+    steps = len(linearisation.filter_inputs[0].t_s)
     values = np.zeros((steps, 4))
     for column, first in enumerate((0, PART - 1, 3 * PART + 7)):
         values[first : first + 2 * PART, column] = np.linspace(1.0, -2.0, len(values[first : first + 2 * PART]))
-    for target in (1, len(case.kit.states)):
-        parts = ground.scores_by([values.__getitem__], target)
+    for target in (1, len(case.library.states)):
+        parts = linearisation.scores_by([values.__getitem__], target)
         with monkeypatch.context() as patched:
             patched.setattr("diagnosis.filter.kalman.PART", steps)
-            whole = ground.scores_of(ground.answer([values.__getitem__], target))
+            whole = linearisation.scores_of(linearisation.answer([values.__getitem__], target))
         for one, other in ((parts.gram, whole.gram), (parts.score, whole.score), (parts.raw, whole.raw)):
             assert np.allclose(one, other, rtol=0.0, atol=1e-9 * np.abs(other).max())
         assert parts.raw[3] == 0.0
@@ -185,10 +190,12 @@ def test_sums_over_parts_are_those_of_the_whole_answer(
 def test_what_was_not_read_answers_nothing(case: Case, fitted: Fit) -> None:
     # A second without readings in the middle of a steady push: the innovations there are none, whatever came before.
     (flight,) = case.flights
-    y = flight.tape.y.copy()
+    y = flight.filter_input.y.copy()
     y[PART : PART + 100] = np.nan
-    ground = ground_of(case.with_flights([replace(flight, tape=replace(flight.tape, y=y))]), fitted)
-    found = ground.answer([np.full((len(y), 1), 0.01).__getitem__], 1).reshape(len(y), -1)
+    linearisation = linearised(
+        case.with_flights([replace(flight, filter_input=replace(flight.filter_input, y=y))]), fitted
+    )
+    found = linearisation.answer([np.full((len(y), 1), 0.01).__getitem__], 1).reshape(len(y), -1)
     assert np.all(found[PART : PART + 100] == 0.0)
     assert np.all(np.abs(found[PART - 1]) + np.abs(found[PART + 101]) > 0.0)
 
@@ -209,7 +216,9 @@ def test_the_quick_exponential_is_e_to_the_x() -> None:
     assert y[-1] == pytest.approx(np.exp(-700.0), rel=1e-15)
 
 
-def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(kit: Kit, plant: BoundPlant) -> None:
+def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(
+    library: EffectLibrary, plant: BoundPlant
+) -> None:
     # Truth: the log begins 0.2 s after a ramp of 0.08 rad/s has ended, the arm slides on. Model and noise are those that flew, so no
     # innovation after the first second is beyond 5 sd; taken to rest at its first readings, the arm is 7 sd away when it moves again.
     table, _ = design(plant, read_settings(plant))
@@ -220,7 +229,7 @@ def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(kit: Kit,
     x0 = np.array([470.0, 0.0, 0.0, 150.0, 0.0, 0.0])
     run = simulate(plant, t_s, x0, table, reference=reference, noise=noise, keep="uy")
     log = RunLog(log_columns(plant.model), 0.01, "closed", t_s[880:], run.u[880:], run.y[880:])
-    case = make_case(kit, [log])
-    (found,) = passes(case, nothing_supposed(case, -3.2)) or [None]
+    case = make_case(library, [log])
+    (found,) = passes(case, nominal_hypothesis(case, -3.2)) or [None]
     assert found is not None
     assert np.nanmax(np.abs(found.w)) < 5.0

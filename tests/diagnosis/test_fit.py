@@ -7,8 +7,8 @@ import pytest
 
 from diagnosis.fit.gauss_newton import fit, likelihood
 from diagnosis.hypothesis.case import make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
+from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
@@ -32,16 +32,16 @@ def lagging(log: RunLog) -> RunLog:
 def test_a_lag_that_smooths_the_air_is_fitted_by_what_it_does_to_the_air_too(
     plant: BoundPlant, fly: Fly, start_s: float
 ) -> None:
-    case = make_case(make_kit(plant), [lagging(fly(7, seconds=20.0, gusts=GUSTS))])
-    start = nothing_supposed(case, np.log10(1e-3 * GUSTS)).with_effects({LAG: {"tau": start_s}})
+    case = make_case(effect_library(plant), [lagging(fly(7, seconds=20.0, gusts=GUSTS))])
+    start = nominal_hypothesis(case, np.log10(1e-3 * GUSTS)).with_effects({LAG: {"tau": start_s}})
     found = fit(case, start, rounds=20)
     assert found is not None
 
     def at(tau_s: float) -> float:
-        runs = passes(case, replace(found.supposed, effects={LAG: {"tau": tau_s}}))
+        runs = passes(case, replace(found.hypothesis, effects={LAG: {"tau": tau_s}}))
         return -np.inf if runs is None else likelihood(runs)
 
-    tau_s = found.supposed.effects[LAG]["tau"]
+    tau_s = found.hypothesis.effects[LAG]["tau"]
     assert found.log_likelihood == pytest.approx(at(tau_s), abs=1e-6)
     # Truth: the top of the likelihood itself, the plant held. Tolerance: what ends a fit, a tenth of a nat.
     assert max(at(tau) for tau in np.geomspace(0.5, 2.0, 41) * tau_s) < found.log_likelihood + 0.1

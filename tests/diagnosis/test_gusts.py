@@ -6,9 +6,9 @@ import pytest
 
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.explain.improved import improved_plant
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from diagnosis.search.gusts import gust_sd, gusts
 from records.log import RunLog
 from sim.added_effects import with_effects
@@ -19,10 +19,10 @@ from tests.diagnosis.conftest import Fly
 GUST = {"elevation.gust": {"sigma": 1e-3, "T": 0.7}}
 
 
-def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, Tried]:
-    case = make_case(make_kit(plant), logs)
+def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis]:
+    case = make_case(effect_library(plant), logs)
     nominal = nominal_fit(case)
-    return case, Tried((), nominal, evidence(nominal))
+    return case, FittedHypothesis((), nominal, evidence(nominal))
 
 
 def test_a_gust_is_found_on_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
@@ -32,8 +32,8 @@ def test_a_gust_is_found_on_its_axis_with_its_numbers(plant: BoundPlant, fly: Fl
     gust = found["elevation.gust"]
     assert gust.evidence > nominal.evidence + 100.0
     assert found["azimuth.gust"].evidence < nominal.evidence
-    values = gust.fit.supposed.effects["elevation.gust"]
-    sd = gust_sd(case, gust.fit.supposed, "elevation.gust")
+    values = gust.fit.hypothesis.effects["elevation.gust"]
+    sd = gust_sd(case, gust.fit.hypothesis, "elevation.gust")
     for symbol, truth in GUST["elevation.gust"].items():
         assert abs(values[symbol] - truth) < 3.0 * sd[symbol]
     assert 0.02 < sd["sigma"] / values["sigma"] < 0.2
@@ -76,8 +76,8 @@ def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant:
     stated = with_effects(
         plant, {"elevation.gust": {"sigma": 2.5e-4, "T": 0.7}}, sd={"elevation.gust": {"sigma": 1e-4}}
     )
-    case = make_case(make_kit(plant), [fly(seed, GUST, rig_seed=90) for seed in (91, 92)], stated=stated)
+    case = make_case(effect_library(plant), [fly(seed, GUST, rig_seed=90) for seed in (91, 92)], stated=stated)
     nominal = nominal_fit(case)
-    found = {entry.effects[0]: entry for entry in gusts(case, Tried((), nominal, evidence(nominal)))}
+    found = {entry.effects[0]: entry for entry in gusts(case, FittedHypothesis((), nominal, evidence(nominal)))}
     sigma = bind(improved_plant(case, found["elevation.gust"].fit)).effects["elevation.gust"]["sigma"]
     assert abs(sigma.values[0] - GUST["elevation.gust"]["sigma"]) < 3.0 * sigma.sds[0] < 6e-4

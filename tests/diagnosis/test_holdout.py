@@ -8,10 +8,10 @@ from diagnosis.decide.holdout import Holdout, partly, worse
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
 from diagnosis.diagnose import Material, diagnose, nominal_fit
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Result
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -80,14 +80,16 @@ def test_a_coarse_sensor_is_not_blamed_for_what_its_steps_leave(plant: BoundPlan
 
 def test_the_steps_of_a_sensor_are_not_refuted_by_predictions(plant: BoundPlant, fly: Fly) -> None:
     # They make no prediction better, and a start from coarse readings is less sure; the hold-out's own readings lie on the grid.
-    case = make_case(make_kit(plant), [fly(56, {"phi_sensor.quantization": {"q": 0.036}}, rig_seed=55, air=False)])
+    case = make_case(
+        effect_library(plant), [fly(56, {"phi_sensor.quantization": {"q": 0.036}}, rig_seed=55, air=False)]
+    )
     base = nominal_fit(case)
 
     def refuted(name: str, size: float) -> float:
         effects = {name: {"q" if "quantization" in name else "offset": size}}
-        wrong = replace(base, supposed=base.supposed.with_effects(effects))
-        holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
-        return worse(holdout, Weighed((Tried((name,), wrong, 1.0),), (0.9,), 0.1, 0.0, 1.0))
+        wrong = replace(base, hypothesis=base.hypothesis.with_effects(effects))
+        holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
+        return worse(holdout, Weighed((FittedHypothesis((name,), wrong, 1.0),), (0.9,), 0.1, 0.0, 1.0))
 
     assert refuted("phi_sensor.quantization", 0.036) == 0.0
     assert refuted("tail_input.offset", 3.0) > 1.5
@@ -98,28 +100,28 @@ def test_what_takes_nothing_of_the_hold_outs_error_is_seen(
     plant: BoundPlant, fly: Fly, there: bool, idle: bool
 ) -> None:
     # Truth: a spring that the hold-out has, or has not; what is named is a spring a tenth as stiff as one that would show.
-    case = make_case(make_kit(plant), [fly(57, SPRING if there else None, rig_seed=57)])
+    case = make_case(effect_library(plant), [fly(57, SPRING if there else None, rig_seed=57)])
     base = nominal_fit(case)
     named = SPRING if there else {"azimuth.cable_spring": {"k": 4e-5, "angle_0": 0.0, "h": 0.0}}
     sprung = (
-        fit(case, base.supposed.with_effects(named))
+        fit(case, base.hypothesis.with_effects(named))
         if there
-        else replace(base, supposed=base.supposed.with_effects(named))
+        else replace(base, hypothesis=base.hypothesis.with_effects(named))
     )
     assert sprung is not None
-    holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
-    weighed = Weighed((Tried(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
+    holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
+    weighed = Weighed((FittedHypothesis(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
     after, notes = partly(holdout, weighed, 0.0)
     assert (after.nameless, len(notes) == 1) == (idle, idle)
 
 
 def test_a_push_is_not_asked_what_it_takes_of_another_log(plant: BoundPlant, fly: Fly) -> None:
-    case = make_case(make_kit(plant), [fly(58, rig_seed=57)])
+    case = make_case(effect_library(plant), [fly(58, rig_seed=57)])
     base = nominal_fit(case)
     push = {"azimuth.disturbance": {"torque": 2e-3, "t_0": 12.0, "duration": 1.0}}
-    pushed = replace(base, supposed=base.supposed.with_effects(push))
-    holdout = Holdout(case, ["hold"], [None], Tried((), base, 0.0))
-    weighed = Weighed((Tried(tuple(push), pushed, 1.0),), (0.9,), 0.1, 0.0, 1.0)
+    pushed = replace(base, hypothesis=base.hypothesis.with_effects(push))
+    holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
+    weighed = Weighed((FittedHypothesis(tuple(push), pushed, 1.0),), (0.9,), 0.1, 0.0, 1.0)
     assert partly(holdout, weighed, 0.0) == (weighed, ())
 
 

@@ -10,7 +10,7 @@ from design.table import design
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
 from diagnosis.hypothesis.case import make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
@@ -42,16 +42,16 @@ def test_it_is_found_with_its_scatter(plant: BoundPlant) -> None:
 
 
 def test_a_steady_delay_has_none(plant: BoundPlant) -> None:
-    case = make_case(make_kit(plant), [late_flight(plant, 0.0)])
-    supposed = nominal_fit(case).supposed.with_effects({DELAY: {"tau": TAU_S, "jitter": 0.0}})
-    assert with_jitter(case, supposed, [DELAY]).effects[DELAY]["jitter"] == 0.0
-    assert 0.0 < jitter_sd(case, supposed, DELAY) < 0.03 * TAU_S
+    case = make_case(effect_library(plant), [late_flight(plant, 0.0)])
+    hypothesis = nominal_fit(case).hypothesis.with_effects({DELAY: {"tau": TAU_S, "jitter": 0.0}})
+    assert with_jitter(case, hypothesis, [DELAY]).effects[DELAY]["jitter"] == 0.0
+    assert 0.0 < jitter_sd(case, hypothesis, DELAY) < 0.03 * TAU_S
 
 
 def test_readings_show_at_most_what_they_scatter(plant: BoundPlant) -> None:
     # Truth: motion alone, however fast, shows none. What shows leaves room for scatter that neighbours share, sqrt 5, and for chance.
     def most_s(jitter_s: float) -> float:
-        return most_shown_s(make_case(make_kit(plant), [late_flight(plant, jitter_s)]), "psi_rad")
+        return most_shown_s(make_case(effect_library(plant), [late_flight(plant, jitter_s)]), "psi_rad")
 
     assert most_s(0.0) == 0.0
     assert JITTER_S < most_s(JITTER_S) < 3.0 * JITTER_S
@@ -61,11 +61,11 @@ def test_noise_that_is_the_same_at_all_speeds_is_no_scatter(plant: BoundPlant) -
     # Truth: 2 mrad of noise, twice what 3 ms of scatter would bring at 0.3 rad/s.
     log = late_flight(plant, 0.0)
     noise = 2e-3 * np.random.default_rng(5).standard_normal(log.y.shape)
-    assert most_shown_s(make_case(make_kit(plant), [replace(log, y=log.y + noise)]), "psi_rad") == 0.0
+    assert most_shown_s(make_case(effect_library(plant), [replace(log, y=log.y + noise)]), "psi_rad") == 0.0
 
 
 def test_an_axis_that_turns_at_one_speed_shows_nothing(plant: BoundPlant) -> None:
     # Truth: without a faster half there is nothing to compare.
     log = late_flight(plant, 0.0)
     steady = np.column_stack([0.5 * log.t_s, log.y[:, 1]])
-    assert most_shown_s(make_case(make_kit(plant), [replace(log, y=steady)]), "psi_rad") == 0.0
+    assert most_shown_s(make_case(effect_library(plant), [replace(log, y=steady)]), "psi_rad") == 0.0

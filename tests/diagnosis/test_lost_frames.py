@@ -6,11 +6,11 @@ from threading import Barrier
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import nominal_fit
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import lost_frames
 from diagnosis.search.lost_frames import APART, SWEEPS, WORTH, _ratios, evidence, likely_share, with_losses
 from records.log import RunLog
@@ -36,8 +36,8 @@ def test_threads_that_open_the_library_at_once_get_the_same() -> None:
 
 
 def losses(plant: BoundPlant, log: RunLog) -> tuple[Case, Fit | None]:
-    case = make_case(make_kit(plant), [log])
-    return with_losses(case, ground_of(case, nominal_fit(case)))
+    case = make_case(effect_library(plant), [log])
+    return with_losses(case, linearised(case, nominal_fit(case)))
 
 
 def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
@@ -47,7 +47,7 @@ def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
         plant, fly(41, {"loop.dropped_frames": {"p": SHARE}}, seconds=60.0, air=False, jumps_rad=0.05)
     )
     assert fitted is not None
-    ratios = case.flights[0].tape.lost
+    ratios = case.flights[0].filter_input.lost
     lost = uniform(np.arange(len(ratios)), 0) < SHARE
     order = np.argsort(np.argsort(ratios))
     told = (order[lost].mean() - 0.5 * (lost.sum() - 1)) / (~lost).sum()
@@ -63,12 +63,12 @@ def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> Non
 def test_a_loop_that_is_late_loses_no_frames(plant: BoundPlant, fly: Fly) -> None:
     """That every frame were lost by a third, which no frame can be, must not explain a delay of a third of a frame as well as the delay."""
     case = make_case(
-        make_kit(plant), [fly(41, {"loop.delay": {"tau": 0.0035}}, seconds=60.0, air=False, jumps_rad=0.05)]
+        effect_library(plant), [fly(41, {"loop.delay": {"tau": 0.0035}}, seconds=60.0, air=False, jumps_rad=0.05)]
     )
     nominal = nominal_fit(case)
-    judged, lossy = with_losses(case, ground_of(case, nominal))
-    late = fit(judged, nominal.supposed.with_effects({"loop.delay": {"tau": 0.003}}))
-    lost = fit(judged, nominal.supposed.with_effects({"loop.dropped_frames": {"p": 0.2}}))
+    judged, lossy = with_losses(case, linearised(case, nominal))
+    late = fit(judged, nominal.hypothesis.with_effects({"loop.delay": {"tau": 0.003}}))
+    lost = fit(judged, nominal.hypothesis.with_effects({"loop.dropped_frames": {"p": 0.2}}))
     assert late is not None
     assert max(found.log_posterior for found in (lossy, lost) if found) < late.log_posterior - 50.0
 

@@ -3,9 +3,9 @@
 import pytest
 
 from diagnosis.decide.weighing import RETUNE_COST, weigh
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 
-NOMINAL = Tried((), None, 100.0)  # type: ignore[arg-type]
+NOMINAL = FittedHypothesis((), None, 100.0)  # type: ignore[arg-type]
 
 
 def test_parameters_alone_are_told_as_that() -> None:
@@ -20,4 +20,4 @@ def test_what_no_re_tune_explains_is_unknown(left: float, retune: float | None) 
     # Truth: either there is no such re-tune, or it gains nothing and forms go on gaining thousands of nats.
     found = weigh([NOMINAL], NOMINAL, left=left, retune=retune)
     assert found.unknown > 0.95
-    assert found.tried == ()
+    assert found.fitted == ()

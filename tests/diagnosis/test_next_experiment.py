@@ -9,14 +9,14 @@ import pytest
 from diagnosis.decide.weighing import Weighed
 from diagnosis.experiment.menu import gravity_parameters, plans
 from diagnosis.experiment.next_experiment import next_experiment
-from diagnosis.experiment.simulated_experiment import missed, recorded, rehearse, setting
+from diagnosis.experiment.simulated_experiment import missed, recorded, setting, simulate_experiment
 from diagnosis.experiment.stand_in import stand_in
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import fit
-from diagnosis.fit.process_noise import with_unrest
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 from tests.plants import bound
@@ -28,31 +28,33 @@ PERIOD_S = 0.02
 
 @pytest.fixture(scope="module")
 def case(plant: BoundPlant, fly: Fly) -> Case:
-    return make_case(make_kit(plant), [fly(11, SPRING, seconds=15.0)])
+    return make_case(effect_library(plant), [fly(11, SPRING, seconds=15.0)])
 
 
-def fitted(case: Case, effects: Mapping[str, Mapping[str, float]]) -> Tried:
-    start = with_unrest(case, nothing_supposed(case, -1.5).with_effects(effects))
+def as_found(case: Case, effects: Mapping[str, Mapping[str, float]]) -> FittedHypothesis:
+    start = with_process_noise(case, nominal_hypothesis(case, -1.5).with_effects(effects))
     found = fit(case, start, rounds=5)
     assert found is not None
-    return Tried(tuple(effects), found, evidence(found))
+    return FittedHypothesis(tuple(effects), found, evidence(found))
 
 
-def weighed(*tried: Tried) -> Weighed:
-    return Weighed(tried, tuple(1.0 / len(tried) for _ in tried), 0.0, 0.0, 4.0)
-
-
-@pytest.fixture(scope="module")
-def spring(case: Case) -> Tried:
-    return fitted(case, SPRING)
+def weighed(*fitted: FittedHypothesis) -> Weighed:
+    return Weighed(fitted, tuple(1.0 / len(fitted) for _ in fitted), 0.0, 0.0, 4.0)
 
 
 @pytest.fixture(scope="module")
-def tilt(case: Case) -> Tried:
-    return fitted(case, TILT)
+def spring(case: Case) -> FittedHypothesis:
+    return as_found(case, SPRING)
 
 
-def test_a_wide_sweep_tells_a_spring_from_a_tilted_base(case: Case, spring: Tried, tilt: Tried) -> None:
+@pytest.fixture(scope="module")
+def tilt(case: Case) -> FittedHypothesis:
+    return as_found(case, TILT)
+
+
+def test_a_wide_sweep_tells_a_spring_from_a_tilted_base(
+    case: Case, spring: FittedHypothesis, tilt: FittedHypothesis
+) -> None:
     # Truth: over small angles both pull back in proportion; a spring goes on growing where gravity's part turns over.
     found = next_experiment(case, weighed(spring, tilt))
     assert found is not None
@@ -64,7 +66,9 @@ def test_a_wide_sweep_tells_a_spring_from_a_tilted_base(case: Case, spring: Trie
     assert next_experiment(case, weighed(spring, tilt)) == found
 
 
-def test_with_the_azimuth_locked_nothing_on_it_can_show(case: Case, spring: Tried, tilt: Tried) -> None:
+def test_with_the_azimuth_locked_nothing_on_it_can_show(
+    case: Case, spring: FittedHypothesis, tilt: FittedHypothesis
+) -> None:
     z = separations(case, spring, tilt)
     assert z["azimuth locked"] < 2.0
     assert z["rig turned by 90 degrees"] < 2.0
@@ -72,28 +76,28 @@ def test_with_the_azimuth_locked_nothing_on_it_can_show(case: Case, spring: Trie
     assert z["wide azimuth sweep"] > z["slow ramp"]
 
 
-def separations(case: Case, one: Tried, other: Tried) -> dict[str, float]:
+def separations(case: Case, one: FittedHypothesis, other: FittedHypothesis) -> dict[str, float]:
     """z of every plan of the menu on what `one` records."""
     found = {}
     for plan in plans(case, PERIOD_S):
-        law = stand_in(case.kit.bound, {}, np.array([0.1, 0.2]), PERIOD_S, plan.locked)
+        law = stand_in(case.library.bound, {}, np.array([0.1, 0.2]), PERIOD_S, plan.locked)
         assert law is not None
         there = setting(case, plan)
-        flown = rehearse(there, plan, law, one.fit.supposed)
+        flown = simulate_experiment(there, plan, law, one.fit.hypothesis)
         assert flown is not None
-        data, unrest = recorded(there, flown), one.fit.supposed.unrest
-        own, missing = (missed(data, tried.fit, plan, unrest) for tried in (one, other))
+        data, process_noise = recorded(there, flown), one.fit.hypothesis.process_noise
+        own, missing = (missed(data, fitted.fit, plan, process_noise) for fitted in (one, other))
         assert own is not None
         assert missing is not None
         found[plan.name] = float(np.sqrt(max(missing - own, 0.0)))
     return found
 
 
-def test_two_names_of_one_torque_are_not_said_to_be_told_apart(case: Case, tilt: Tried) -> None:
+def test_two_names_of_one_torque_are_not_said_to_be_told_apart(case: Case, tilt: FittedHypothesis) -> None:
     # Truth: a tilted base and a steady force of 1e-9 N m turn the azimuth as the tilted base alone does, in every run.
-    supposed = tilt.fit.supposed
-    both = {**supposed.effects, "azimuth.offset_force": {"offset": 1e-9}}
-    pair = Tried(tuple(both), replace(tilt.fit, supposed=supposed.with_effects(both)), tilt.evidence)
+    hypothesis = tilt.fit.hypothesis
+    both = {**hypothesis.effects, "azimuth.offset_force": {"offset": 1e-9}}
+    pair = FittedHypothesis(tuple(both), replace(tilt.fit, hypothesis=hypothesis.with_effects(both)), tilt.evidence)
     found = next_experiment(case, weighed(tilt, pair))
     assert found is not None
     assert found["experiment"] == "none of the menu"
@@ -102,7 +106,7 @@ def test_two_names_of_one_torque_are_not_said_to_be_told_apart(case: Case, tilt:
     assert found["expected_outcome"].startswith(told)
 
 
-def test_nothing_undecided_asks_for_nothing(case: Case, spring: Tried, tilt: Tried) -> None:
+def test_nothing_undecided_asks_for_nothing(case: Case, spring: FittedHypothesis, tilt: FittedHypothesis) -> None:
     sure = Weighed((spring, tilt), (0.995, 0.001), 0.004, 0.0, 4.0)
     assert next_experiment(case, sure) is None
 
@@ -115,10 +119,10 @@ def test_gravity_is_taken_out_by_what_is_gravity_alone(name: str, coefficients: 
 
 def test_the_stand_in_law_holds_an_unstable_plant_along_its_references(case: Case) -> None:
     # Truth: without a law the arm falls to its stop, 0.79 rad away; with it, each axis follows a slow ramp a little late.
-    law = stand_in(case.kit.bound, {}, np.array([0.1, 0.2]), PERIOD_S)
+    law = stand_in(case.library.bound, {}, np.array([0.1, 0.2]), PERIOD_S)
     assert law is not None
     plan = next(plan for plan in plans(case, PERIOD_S) if plan.name == "slow ramp")
-    flown = rehearse(case, plan, law, nothing_supposed(case, -4.0))
+    flown = simulate_experiment(case, plan, law, nominal_hypothesis(case, -4.0))
     assert flown is not None
     assert flown.within_limits
     assert np.abs(flown.log.y - plan.reference)[100:].max() < 0.15

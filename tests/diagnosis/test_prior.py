@@ -12,40 +12,40 @@ from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
 from diagnosis.detect.replicas import Tail
 from diagnosis.diagnose import borne_out, confirmed_by
-from diagnosis.fit.evidence import Tried
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, Free
-from diagnosis.hypothesis.hypothesis import Supposed
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.result import Judged
 from diagnosis.search.beam import Search
 from sim.effect import EffectParameter
 
 
-def tried(evidence: float = 0.0, **effects: dict[str, float]) -> Tried:
+def fitted(evidence: float = 0.0, **effects: dict[str, float]) -> FittedHypothesis:
     named = {name.replace("__", "."): values for name, values in effects.items()}
-    supposed = Supposed(np.zeros(1), named, np.zeros(2))
-    return Tried(tuple(named), Fit(supposed, 0.0, 0.0, (), np.eye(1), np.zeros(1)), evidence)
+    hypothesis = Hypothesis(np.zeros(1), named, np.zeros(2))
+    return FittedHypothesis(tuple(named), Fit(hypothesis, 0.0, 0.0, (), np.eye(1), np.zeros(1)), evidence)
 
 
 def test_a_common_effect_goes_before_a_rare_one_of_the_same_form() -> None:
-    tilt = tried(azimuth__tilt={"m": 0.002, "Phi_0": 0.0})
-    wind = tried(azimuth__wind={"c": 0.002, "Phi_w": 0.0})
+    tilt = fitted(azimuth__tilt={"m": 0.002, "Phi_0": 0.0})
+    wind = fitted(azimuth__wind={"c": 0.002, "Phi_w": 0.0})
     assert prior_odds(tilt) > prior_odds(wind)
 
 
 def test_a_spring_that_pushes_away_is_less_probable_than_one_that_pulls() -> None:
-    pulls, pushes = (tried(elevation__cable_spring={"k": k, "angle_0": 0.0, "h": 0.0}) for k in (0.002, -0.002))
+    pulls, pushes = (fitted(elevation__cable_spring={"k": k, "angle_0": 0.0, "h": 0.0}) for k in (0.002, -0.002))
     assert prior_odds(pulls) > prior_odds(pushes)
 
 
 def test_a_constant_force_belongs_to_joints_that_gravity_pushes() -> None:
-    carriage, turntable = (tried(**{f"{axis}__offset_force": {"offset": 0.1}}) for axis in ("carriage", "azimuth"))
+    carriage, turntable = (fitted(**{f"{axis}__offset_force": {"offset": 0.1}}) for axis in ("carriage", "azimuth"))
     assert prior_odds(carriage) > prior_odds(turntable)
 
 
 @pytest.mark.parametrize(("tau_s", "further"), [(0.99, 0.0), (1.0, 4.5), (0.0, 0.0)])
 def test_a_size_at_the_end_of_its_range_is_rather_something_else(tau_s: float, further: float) -> None:
     # A lag of a second beside air of 0.9 rad/s per root second followed a torque that drifted, 1.6e3 nats better than no lag.
-    usual, asked = (tried(psi_sensor__lag={"tau": value}) for value in (0.02, tau_s))
+    usual, asked = (fitted(psi_sensor__lag={"tau": value}) for value in (0.02, tau_s))
     lag = EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0)
     free = replace(asked, fit=replace(asked.fit, free=(Free("psi_sensor.lag", lag, 0.02),)))
     assert prior_odds(usual) - prior_odds(free) == pytest.approx(further)
@@ -53,20 +53,20 @@ def test_a_size_at_the_end_of_its_range_is_rather_something_else(tau_s: float, f
 
 def test_a_hold_out_does_not_speak_for_a_size_at_the_end_of_its_range() -> None:
     # Truth: what is not asked of the hold-out needs none.
-    named = tried(2000.0, psi_sensor__lag={"tau": 1.0})
+    named = fitted(2000.0, psi_sensor__lag={"tau": 1.0})
     lag = Free("psi_sensor.lag", EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0), 0.02)
     weighed = Weighed((replace(named, fit=replace(named.fit, free=(lag,))),), (0.1,), 0.9, 0.0, 10.0)
-    assert overruled(object(), weighed, tried(), left=1.0) is weighed  # type: ignore[arg-type]
+    assert overruled(object(), weighed, fitted(), left=1.0) is weighed  # type: ignore[arg-type]
 
 
 def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
     # Losses that nobody sees make commands late by a share of a frame; beside lost frames only a longer delay is one of its own.
     def odds(tau_s: float) -> float:
-        return prior_odds(tried(loop__dropped_frames={"p": 0.2}, loop__delay={"tau": tau_s}))
+        return prior_odds(fitted(loop__dropped_frames={"p": 0.2}, loop__delay={"tau": tau_s}))
 
     assert odds(0.0005) < odds(0.02) - 5.0
-    assert odds(0.02) == prior_odds(tried(loop__delay={"tau": 0.0005})) + prior_odds(
-        tried(loop__dropped_frames={"p": 0.2})
+    assert odds(0.02) == prior_odds(fitted(loop__delay={"tau": 0.0005})) + prior_odds(
+        fitted(loop__dropped_frames={"p": 0.2})
     )
 
 
@@ -74,7 +74,7 @@ def test_a_cyclic_error_of_less_than_half_a_count_is_the_rounding_itself() -> No
     # Truth: rounding to steps of q is a sawtooth of the angle, whose first sine is of q / pi; read at a steady speed, it beats slowly.
     step_rad = 2e-3
     small, large = (
-        tried(phi_sensor__cyclic={"amplitude": a, "waves": 5.0, "phase": 0.0}) for a in (step_rad / np.pi, -step_rad)
+        fitted(phi_sensor__cyclic={"amplitude": a, "waves": 5.0, "phase": 0.0}) for a in (step_rad / np.pi, -step_rad)
     )
     assert prior_odds(small, steps={"phi_sensor": step_rad}) < prior_odds(large, steps={"phi_sensor": step_rad}) - 5.0
     assert prior_odds(small, steps={"phi_sensor": 0.0}) == prior_odds(large)
@@ -82,7 +82,7 @@ def test_a_cyclic_error_of_less_than_half_a_count_is_the_rounding_itself() -> No
 
 def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
     # Truth: twice the friction one way only is the same both ways beside a pull, which gravity's own moment takes over.
-    one_way, both = tried(azimuth__friction_asymmetry={"difference": 4e-4}), tried(azimuth__coulomb={"b": 2e-4})
+    one_way, both = fitted(azimuth__friction_asymmetry={"difference": 4e-4}), fitted(azimuth__coulomb={"b": 2e-4})
     assert prior_odds(one_way, ["azimuth"]) < prior_odds(both, ["azimuth"]) - 1.0
     assert prior_odds(one_way, ["elevation"]) == prior_odds(both, ["elevation"])
 
@@ -100,17 +100,19 @@ def seen(largest: float) -> Detection:
 def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure: bool, gap: bool) -> None:
     # Without a gap, evidence of x nats has a chance of exp(-x) at most: 3 nats are nothing, 12 nats are 6e-6, but for an effect whose
     # size may be zero they say nothing.
-    nothing = tried()
-    ground = object()
-    found = Search((tried(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, ground, ())  # type: ignore[arg-type]
+    nothing = fitted()
+    linearisation = object()
+    found = Search(
+        (fitted(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, linearisation, ()
+    )  # type: ignore[arg-type]
     assert (confirmed_by(seen(largest), found, None).p <= 0.01) is gap
 
 
 @pytest.mark.parametrize(("largest", "unknown", "gap"), [(20.0, 0.95, False), (20.0, 0.3, True), (200.0, 0.95, True)])
 def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float, unknown: float, gap: bool) -> None:
     # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap.
-    weighed = Weighed((tried(12.0),), (1.0 - unknown,), unknown, 0.0, 10.0)
-    judged = Judged(object(), None, weighed, tried(), None, ())  # type: ignore[arg-type]
+    weighed = Weighed((fitted(12.0),), (1.0 - unknown,), unknown, 0.0, 10.0)
+    judged = Judged(object(), None, weighed, fitted(), None, ())  # type: ignore[arg-type]
     assert (borne_out(seen(largest), judged).p <= 0.01) is gap
 
 
@@ -118,7 +120,7 @@ def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float,
 def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first: str, second_counts: bool) -> None:
     # Truth: steps that are read off the log to a thousandth are exact, and 150 nats beside them are as many as alone. A lag that gains
     # 40000 nats is a form, and what it lacks of the truth may gain as much.
-    one = tried(40000.0, **{first.replace(".", "__"): {}})
-    both = tried(40150.0, **{first.replace(".", "__"): {}, "elevation__cable_spring": {"k": 0.003}})
-    found = weigh([both, one], tried(), left=10.0)
-    assert (found.tried[0] is both) is second_counts
+    one = fitted(40000.0, **{first.replace(".", "__"): {}})
+    both = fitted(40150.0, **{first.replace(".", "__"): {}, "elevation__cable_spring": {"k": 0.003}})
+    found = weigh([both, one], fitted(), left=10.0)
+    assert (found.fitted[0] is both) is second_counts

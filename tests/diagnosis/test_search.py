@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.weighing import Weighed
-from diagnosis.detect.linearisation import ground_of
-from diagnosis.detect.score_tests import look
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
 from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.places import place_shares
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
-from diagnosis.fit.low_process_noise import calmed
+from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import Supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import LEAST_GAIN, Search, certainties
-from diagnosis.search.exchange import exchange, twins_tried
+from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -28,50 +28,50 @@ STEP_V, OFFSET_RAD = 0.107565, -0.0046
 FINELY = 2e-5
 
 
-def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> Tried:
+def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHypothesis:
     """The fit of these effects from these values."""
-    found = fit(case, nominal.supposed.with_effects(effects))
+    found = fit(case, nominal.hypothesis.with_effects(effects))
     assert found is not None
-    return Tried(tuple(effects), found, evidence(found))
+    return FittedHypothesis(tuple(effects), found, evidence(found))
 
 
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
     # Rounded commands of 100 steps shift where they round with a step 1e-4 off, which costs 100 nats and bends all else.
     truth = {"main_input.quantization": {"q": STEP_V}, "psi_sensor.offset": {"offset": OFFSET_RAD}}
-    case = make_case(make_kit(plant), [fly(41, truth, air=False)])
+    case = make_case(effect_library(plant), [fly(41, truth, air=False)])
     nominal = nominal_fit(case)
     off = {**truth, "main_input.quantization": {"q": STEP_V * (1.0 + 7e-4)}}
-    end: Tried | None = fitted(case, nominal, off)
+    end: FittedHypothesis | None = fitted(case, nominal, off)
     for _ in range(2):
         assert end is not None
         end = refined(case, end)
     assert end is not None
-    assert end.fit.supposed.effects["main_input.quantization"]["q"] == pytest.approx(STEP_V, rel=FINELY)
+    assert end.fit.hypothesis.effects["main_input.quantization"]["q"] == pytest.approx(STEP_V, rel=FINELY)
 
 
 def test_an_effect_is_exchanged_for_its_like(plant: BoundPlant, fly: Fly) -> None:
     # 50 ms of delay of the main input, taken for a lag of the elevation's sensor beside the right spring.
     spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
-    case = make_case(make_kit(plant), [fly(42, {**spring, "main_input.delay": {"tau": 0.05}}, air=False)])
+    case = make_case(effect_library(plant), [fly(42, {**spring, "main_input.delay": {"tau": 0.05}}, air=False)])
     nominal = nominal_fit(case)
     wrong = fitted(case, nominal, {**spring, "psi_sensor.lag": {"tau": 0.05}})
     found = {frozenset(wrong.effects): wrong}
     exchange(case, found, {"main_input.delay", "main_input.lag", "psi_sensor.delay", "psi_sensor.lag"})
     best = max(found.values(), key=lambda entry: entry.evidence)
     assert set(best.effects) == {"azimuth.cable_spring", "main_input.delay"}
-    assert best.fit.supposed.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
+    assert best.fit.hypothesis.effects["main_input.delay"]["tau"] == pytest.approx(0.05, abs=0.002)
     assert best.evidence > wrong.evidence + 20.0
 
 
 def test_the_twin_of_the_best_is_tried_in_its_place(plant: BoundPlant, fly: Fly) -> None:
     # A lag of the elevation's sensor, of which the search so far knows no more than the delay that is alike.
-    case = make_case(make_kit(plant), [fly(44, {"psi_sensor.lag": {"tau": 0.06}}, air=False)])
+    case = make_case(effect_library(plant), [fly(44, {"psi_sensor.lag": {"tau": 0.06}}, air=False)])
     late = fitted(case, nominal_fit(case), {"psi_sensor.delay": {"tau": 0.05, "jitter": 0.0}})
     found = {frozenset(late.effects): late}
-    twins_tried(case, found)
+    fit_twins(case, found)
     best = max(found.values(), key=lambda entry: entry.evidence)
     assert best.effects == ("psi_sensor.lag",)
-    assert best.fit.supposed.effects["psi_sensor.lag"]["tau"] == pytest.approx(0.06, abs=0.003)
+    assert best.fit.hypothesis.effects["psi_sensor.lag"]["tau"] == pytest.approx(0.06, abs=0.003)
 
 
 def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: BoundPlant) -> None:
@@ -81,9 +81,9 @@ def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: Bound
     both = np.array([[100.0, 99.99], [99.99, 100.0]])
     values = {spring.name: {"k": 1.0, "angle_0": 0.5, "h": 0.0}}
     free = (Free(spring.name, k, 1.0), Free(spring.name, angle_0, 1.0))
-    supposed = Supposed(np.zeros(0), values, np.zeros(2))
-    assert certainties(Fit(supposed, 0.0, 0.0, free, both, np.zeros(2)))[spring.name] == pytest.approx(10.0)
-    beside = Supposed(np.zeros(0), {**values, push.name: {"offset": 1.0}}, np.zeros(2))
+    hypothesis = Hypothesis(np.zeros(0), values, np.zeros(2))
+    assert certainties(Fit(hypothesis, 0.0, 0.0, free, both, np.zeros(2)))[spring.name] == pytest.approx(10.0)
+    beside = Hypothesis(np.zeros(0), {**values, push.name: {"offset": 1.0}}, np.zeros(2))
     three = np.block([[both, np.zeros((2, 1))], [np.zeros((1, 2)), np.full((1, 1), 25.0)]])
     found = certainties(Fit(beside, 0.0, 0.0, (*free, Free(push.name, offset, 1.0)), three, np.zeros(3)))
     assert found[spring.name] == pytest.approx(0.1414, abs=1e-3)
@@ -93,10 +93,12 @@ def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: Bound
 def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: Fly) -> None:
     # Commands stay well under the limit of 8.5 V, whose corner is rounded from 6.8 V on: a limit that they reach is far from the truth.
     truth = {"main_input.saturation": {"limit": 8.5, "w": 0.2}}
-    case = make_case(make_kit(plant), [fly(seed, truth, rig_seed=43, air=False, seconds=60.0) for seed in (45, 46)])
-    assert 6.8 < max(np.max(flight.tape.u[:, 0]) for flight in case.flights) < 0.9 * 8.5
-    looks = look(case, ground_of(case, nominal_fit(case)), case.kit.candidates)
-    gains = {entry.effect: entry.gain for entry in looks}
+    case = make_case(
+        effect_library(plant), [fly(seed, truth, rig_seed=43, air=False, seconds=60.0) for seed in (45, 46)]
+    )
+    assert 6.8 < max(np.max(flight.filter_input.u[:, 0]) for flight in case.flights) < 0.9 * 8.5
+    score_tests = score_effects(case, linearised(case, nominal_fit(case)), case.library.candidates)
+    gains = {entry.effect: entry.gain for entry in score_tests}
     assert gains["main_input.saturation"] > LEAST_GAIN
 
 
@@ -104,11 +106,11 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: Bo
     # Two effects of some size; of the two alone only one was tried, so that nothing says what the other takes from the evidence.
     spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
     late = {"main_input.delay": {"tau": 0.05}}
-    case = make_case(make_kit(plant), [fly(42, {**spring, **late}, air=False)])
+    case = make_case(effect_library(plant), [fly(42, {**spring, **late}, air=False)])
     nominal = nominal_fit(case)
     both, single = (fitted(case, nominal, effects) for effects in ({**spring, **late}, late))
-    none = Tried((), nominal, evidence(nominal))
-    search = Search((both, single, none), none, True, ground_of(case, nominal), ())
+    none = FittedHypothesis((), nominal, evidence(nominal))
+    search = Search((both, single, none), none, True, linearised(case, nominal), ())
     weighed = Weighed((both,), (1.0,), 0.0, 0.0, 1.0)
     shares = {row.place: row.share for row in place_shares(search, weighed, None)}
     known = both.evidence - single.evidence  # what the spring gains beside the delay
@@ -118,20 +120,26 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: Bo
 
 
 def test_a_fit_gone_astray_under_calm_air_is_led_back_by_restless_air(plant: BoundPlant, fly: Fly) -> None:
-    # A motor that loses a fifth of its pull as it warms up: from the plant bent to hide that, calm air holds the fit where it is.
+    # A motor that loses a fifth of its pull as it warms up: from the plant bent to hide that, low process noise holds the fit where it is.
     truth = {"tail_rotor.warmup": {"a": 0.22, "T": 18.0}}
-    case = make_case(make_kit(plant), [fly(seed, truth, rig_seed=63, air=False, seconds=60.0) for seed in (63, 73)])
+    case = make_case(
+        effect_library(plant), [fly(seed, truth, rig_seed=63, air=False, seconds=60.0) for seed in (63, 73)]
+    )
     nominal = nominal_fit(case)
-    calm = calmed(case, nominal)
-    assert calm is not None
-    (seen,) = (entry for entry in look(case, ground_of(case, calm), case.kit.candidates) if entry.effect in truth)
-    begun = rough(case, Job(calm, seen, True))
+    low_noise = with_low_process_noise(case, nominal)
+    assert low_noise is not None
+    (seen,) = (
+        entry
+        for entry in score_effects(case, linearised(case, low_noise), case.library.candidates)
+        if entry.effect in truth
+    )
+    begun = rough(case, Job(low_noise, seen, True))
     assert begun is not None
     strayed = refined(case, begun)
     assert strayed is not None
     # In standard deviations, from which the rig's own numbers were drawn.
-    assert np.max(np.abs(strayed.fit.supposed.theta)) > 4.0
+    assert np.max(np.abs(strayed.fit.hypothesis.theta)) > 4.0
     found = once_more(case, strayed)
     assert found.evidence > strayed.evidence + 50.0
-    assert np.max(np.abs(found.fit.supposed.theta)) < 3.5
-    assert found.fit.supposed.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)
+    assert np.max(np.abs(found.fit.hypothesis.theta)) < 3.5
+    assert found.fit.hypothesis.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)

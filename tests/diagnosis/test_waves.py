@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from diagnosis.detect.instants import target_of
-from diagnosis.detect.linearisation import ground_of
+from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.waves import likely_waves, wave_starts
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.hypothesis.case import make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
@@ -24,26 +24,26 @@ PERIODIC = {"elevation.periodic_torque": {"amplitude": 0.001, "rate": 5.0, "phas
 def test_a_sine_begins_near_its_waves(plant: BoundPlant, fly: Fly, truth) -> None:
     # A start must be within a sixth of a wave over the whole way, which is 1 rad, or 15 s to either side: 1 rad a rad, 0.07 rad/s.
     ((name, values),) = truth.items()
-    case = make_case(make_kit(plant), [fly(61, truth, rig_seed=61)])
-    starts = wave_starts(ground_of(case, nominal_fit(case)), library(plant)[name])
+    case = make_case(effect_library(plant), [fly(61, truth, rig_seed=61)])
+    starts = wave_starts(linearised(case, nominal_fit(case)), library(plant)[name])
     symbol, reach = ("rate", 0.07) if "rate" in values else ("waves", 1.0)
     assert min(abs(start[symbol] - values[symbol]) for start in starts) < reach
 
 
 def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
-    case = make_case(make_kit(plant), [fly(62)])
-    assert wave_starts(ground_of(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []
+    case = make_case(effect_library(plant), [fly(62)])
+    assert wave_starts(linearised(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []
 
 
 def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly: Fly) -> None:
     # A spring beside whose force the model swings wrongly wherever the arm swings, and nothing else: a sine in time would take its part.
     log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, rig_seed=61)
-    ground = ground_of(case := make_case(make_kit(plant), [log]), nominal_fit(case))
+    linearisation = linearised(case := make_case(effect_library(plant), [log]), nominal_fit(case))
     effect = library(plant)["elevation.periodic_torque"]
     target = target_of(case, effect)
     assert target is not None
-    likely = likely_waves(ground, target)
-    begun = {start["rate"] for start in wave_starts(ground, effect)}
+    likely = likely_waves(linearisation, target)
+    begun = {start["rate"] for start in wave_starts(linearisation, effect)}
     assert begun < set(likely)
     # Independent of the code: the share of the arm's speed, by differences, that a sine and a cosine of a frequency explain.
     assert min(swung(log, rate) for rate in set(likely) - begun) > 0.3 > max(swung(log, rate) for rate in begun)

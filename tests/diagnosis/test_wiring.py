@@ -9,7 +9,7 @@ from diagnosis.decide.wiring import demand_wiring, likelier_wiring
 from diagnosis.diagnose import nominal_fit
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -24,8 +24,8 @@ EFFECTS = [
 
 
 @pytest.fixture(scope="module")
-def kit(plant: BoundPlant) -> Kit:
-    return make_kit(plant)
+def library(plant: BoundPlant) -> EffectLibrary:
+    return effect_library(plant)
 
 
 def turned(log: RunLog, block: str, place: int) -> RunLog:
@@ -42,11 +42,11 @@ def demanded(case: Case) -> None:
     demand_wiring(case, nominal_fit(case), nominal_fit, "the logs to explain")
 
 
-def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(kit: Kit, fly: Fly) -> None:
+def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
     def never(_: Case) -> Fit:
         raise AssertionError("asked")
 
-    case = make_case(kit, [fly(31, seconds=SECONDS)])
+    case = make_case(library, [fly(31, seconds=SECONDS)])
     demand_wiring(case, nominal_fit(case), never, "the logs to explain")
 
 
@@ -60,22 +60,24 @@ def test_the_columns_of_a_plant_that_follows_its_logs_are_not_doubted(kit: Kit, 
         (("y", None), "psi_rad and phi_rad stand in each other's place"),
     ],
 )
-def test_a_slip_of_the_columns_is_refused_by_name(kit: Kit, fly: Fly, slip: tuple[str, int | None], named: str) -> None:
+def test_a_slip_of_the_columns_is_refused_by_name(
+    library: EffectLibrary, fly: Fly, slip: tuple[str, int | None], named: str
+) -> None:
     block, place = slip
     log = fly(31, seconds=SECONDS)
     spoiled = swapped(log, block) if place is None else turned(log, block, place)
     with pytest.raises(BadInput, match=named):
-        demanded(make_case(kit, [spoiled]))
+        demanded(make_case(library, [spoiled]))
 
 
 @pytest.mark.parametrize("effects", EFFECTS, ids=[next(iter(effects)) for effects in EFFECTS])
 def test_a_plant_that_lacks_something_is_not_taken_for_one_wired_wrongly(
-    kit: Kit, fly: Fly, effects: dict[str, dict[str, float]]
+    library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
 ) -> None:
-    assert likelier_wiring(make_case(kit, [fly(32, effects, SECONDS)]), nominal_fit) is None
+    assert likelier_wiring(make_case(library, [fly(32, effects, SECONDS)]), nominal_fit) is None
 
 
-def test_numbers_without_meaning_are_not_taken_for_a_slip(kit: Kit, fly: Fly) -> None:
+def test_numbers_without_meaning_are_not_taken_for_a_slip(library: EffectLibrary, fly: Fly) -> None:
     log, rng = fly(33, seconds=SECONDS), np.random.default_rng(3)
     walk = np.cumsum(rng.normal(0.0, 0.004, log.y.shape), axis=0)
-    assert likelier_wiring(make_case(kit, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit) is None
+    assert likelier_wiring(make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit) is None

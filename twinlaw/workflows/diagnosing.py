@@ -143,7 +143,7 @@ def _firmware(
 
 def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
     """The predictions, plant.toml, diagnosis.json and the page by file name, in the order in which they are to be written."""
-    outputs = list(result.case.kit.bound.model.outputs)
+    outputs = list(result.case.library.bound.model.outputs)
     predictions = {f"prediction-{flight.name}.csv": prediction_text(flight, outputs) for flight in result.predicted}
     return {
         **predictions,
@@ -156,7 +156,7 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
 def _page(result: Result, logs: Sequence[str]) -> Page:
     from twinlaw.pages.diagnose import report
 
-    bound = result.case.kit.bound
+    bound = result.case.library.bound
     outputs = list(bound.model.outputs)
     curves = [
         report.Predicted(
@@ -186,7 +186,7 @@ def widths(result: Result) -> Mapping[str, float]:
     """How far apart the bounds of every parameter of the library are, by "place.effect.symbol"."""
     return {
         f"{name}.{symbol}": parameter.upper - parameter.lower
-        for name, effect in library(result.case.kit.bound).items()
+        for name, effect in library(result.case.library.bound).items()
         for symbol, parameter in effect.parameter.items()
     }
 

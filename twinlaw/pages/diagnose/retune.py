@@ -33,7 +33,7 @@ def moved_most(result: Result) -> tuple[Moved, ...]:
 
 
 def _parameters(result: Result) -> Iterator[Moved]:
-    bound = result.case.kit.bound
+    bound = result.case.library.bound
     names = [str(symbol) for symbol in bound.model.parameter_symbols]
     order = [spec.name for spec in bound.model.parameters]
     stated, now = _values(bound.plant, order), _values(result.plant, order)

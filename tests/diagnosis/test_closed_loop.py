@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.closed_loop import closed_loop, refly
 from records.log import RunLog
 from sim.added_effects import with_effects
@@ -33,14 +33,14 @@ def log(plant: BoundPlant) -> RunLog:
 
 @pytest.fixture(scope="module")
 def case(plant: BoundPlant, log: RunLog) -> Case:
-    return make_case(make_kit(plant), [log])
+    return make_case(effect_library(plant), [log])
 
 
 def test_the_true_model_flies_the_log_and_one_without_the_spring_does_not(case: Case) -> None:
-    # Truth: the rig had no unrest, so the model with its spring errs by rounding alone: under two counts in every output.
-    without = nothing_supposed(case, -4.0)
-    bars = {"nominal": without, "before": without, "after": without.with_effects(SPRING)}
-    found = closed_loop(case, ["hold"], [ce150_table()], bars)
+    # Truth: the rig had no process noise, so the model with its spring errs by rounding alone: under two counts in every output.
+    without = nominal_hypothesis(case, -4.0)
+    variants = {"nominal": without, "before": without, "after": without.with_effects(SPRING)}
+    found = closed_loop(case, ["hold"], [ce150_table()], variants)
     assert found is not None
     assert found.logs == ("hold",)
     assert found.diverged == ()
@@ -54,7 +54,7 @@ def test_the_true_model_flies_the_log_and_one_without_the_spring_does_not(case: 
 
 
 def test_a_flight_that_leaves_the_log_is_called_diverged(case: Case) -> None:
-    without = nothing_supposed(case, -4.0)
+    without = nominal_hypothesis(case, -4.0)
     runaway = without.with_effects({"azimuth.cable_spring": {"k": -0.05, "angle_0": -1.0, "h": 0.0}})
     found = closed_loop(case, ["hold"], [ce150_table()], {"nominal": runaway, "before": without, "after": without})
     assert found is not None
@@ -69,27 +69,27 @@ def test_rows_that_are_missing_are_flown_through(plant: BoundPlant, log: RunLog)
     kept[0] = True
     extra = {name: column[kept] for name, column in log.extra.items()}
     torn = replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept], extra=extra)
-    case = make_case(make_kit(plant), [torn])
-    without = nothing_supposed(case, -4.0)
-    bars = {"nominal": without, "before": without, "after": without.with_effects(SPRING)}
-    found = closed_loop(case, ["hold"], [ce150_table()], bars)
+    case = make_case(effect_library(plant), [torn])
+    without = nominal_hypothesis(case, -4.0)
+    variants = {"nominal": without, "before": without, "after": without.with_effects(SPRING)}
+    found = closed_loop(case, ["hold"], [ce150_table()], variants)
     assert found is not None
     assert found.rms_after["phi_rad"] < 4.0 * STEP_RAD
     assert found.rms_before["phi_rad"] > 3.0 * found.rms_after["phi_rad"]
 
 
 def test_logs_without_a_table_are_not_flown(case: Case) -> None:
-    without = nothing_supposed(case, -4.0)
+    without = nominal_hypothesis(case, -4.0)
     assert closed_loop(case, ["hold"], [None], dict.fromkeys(("nominal", "before", "after"), without)) is None
 
 
 def test_only_the_first_samples_of_a_long_log_are_flown(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     # Truth: the spring's flights of the first 200 samples behind the lead of 2 s are those of the whole flight, cut.
-    without = nothing_supposed(case, -4.0)
-    bars = dict.fromkeys(("nominal", "before", "after"), without)
-    whole = refly(case, "hold", ce150_table(), bars)
+    without = nominal_hypothesis(case, -4.0)
+    variants = dict.fromkeys(("nominal", "before", "after"), without)
+    whole = refly(case, "hold", ce150_table(), variants)
     monkeypatch.setattr("diagnosis.validate.closed_loop.MOST_SAMPLES", 200)
-    cut = refly(case, "hold", ce150_table(), bars)
+    cut = refly(case, "hold", ce150_table(), variants)
     assert whole is not None
     assert cut is not None
     assert len(cut.t_s) == 200

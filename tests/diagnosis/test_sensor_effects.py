@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.filter.filter_input import Tape, late, tape_of
+from diagnosis.filter.filter_input import FilterInput, filter_input_of, late
 from diagnosis.library.lattice import coarse_step, grid_evidence
 from diagnosis.library.sensor_effects import behind_play, standing_rows, unsure_when
 from records.log import RunLog
@@ -17,11 +17,11 @@ from sim.columns import log_columns
 STEP = 1.5e-3
 
 
-def tape(y: np.ndarray) -> Tape:
+def filter_input(y: np.ndarray) -> FilterInput:
     rows = len(y)
     values = y[:, None]
     places = np.arange(rows)[:, None]
-    return Tape(
+    return FilterInput(
         t_s=0.01 * np.arange(rows),
         u=np.zeros((rows, 1)),
         y=values,
@@ -43,11 +43,11 @@ def test_a_reading_of_unsure_time_is_as_unsure_as_its_rate_makes_it() -> None:
     # Truth: 2 ms at 0.3 rad/s are 0.6 mrad; where the axis stands, time does not matter.
     rows = np.arange(400)
     angle = STEP * np.round(0.003 * np.minimum(rows, 200) / STEP)
-    found = unsure_when(tape(angle), 0, 2e-3, STEP**2 / 12).r[:, 0] - STEP**2 / 12
+    found = unsure_when(filter_input(angle), 0, 2e-3, STEP**2 / 12).r[:, 0] - STEP**2 / 12
     np.testing.assert_allclose(found[10:190], (0.3 * 2e-3) ** 2, rtol=0.15)
     assert np.all(found[210:] == 0.0)
     # Noise that the readings had shown beside the step is that scatter, on average.
-    noisy = replace(tape(angle), r=np.full((400, 1), 2 * STEP**2 / 12), single=np.array([2 * STEP**2 / 12]))
+    noisy = replace(filter_input(angle), r=np.full((400, 1), 2 * STEP**2 / 12), single=np.array([2 * STEP**2 / 12]))
     assert unsure_when(noisy, 0, 2e-3, STEP**2 / 12).r.mean() == pytest.approx(2 * STEP**2 / 12)
 
 
@@ -86,14 +86,14 @@ def test_counts_that_a_conversion_leaves_out_are_no_coarse_grid_of_five_thirds(s
 def test_readings_that_turn_are_unsure_behind_play() -> None:
     # Up, still, down: between the last step up and the first step down the axis crosses the play.
     up, still, down = np.arange(50) * STEP, np.full(30, 49 * STEP), (49 - np.arange(1, 50)) * STEP
-    standing = standing_rows(tape(np.concatenate([up, still, down])), 0)
+    standing = standing_rows(filter_input(np.concatenate([up, still, down])), 0)
     assert set(range(50, 80)) <= set(standing.tolist())
     assert not set(range(2, 49)) & set(standing.tolist())
 
 
 @pytest.mark.parametrize("tau_s", [0.004, 0.02, 0.0237])
 def test_late_readings_are_put_back_to_when_they_were_true(tau_s: float) -> None:
-    moved = late(tape(np.arange(100.0)), 0, tau_s)
+    moved = late(filter_input(np.arange(100.0)), 0, tau_s)
     seen = np.isfinite(moved.y[:, 0])
     # Reading k was taken at 0.01 k s; those from before the log are lost.
     assert np.allclose(moved.t_s[seen], 0.01 * moved.y[seen, 0] - tau_s, atol=1e-6)
@@ -101,13 +101,13 @@ def test_late_readings_are_put_back_to_when_they_were_true(tau_s: float) -> None
     assert seen.sum() >= 97
 
 
-def readings(y: np.ndarray) -> Tape:
+def readings(y: np.ndarray) -> FilterInput:
     """Readings of one output of the CE150 that only an encoder of STEP rounds."""
     plant = load_plant(Path("plants/ce150.toml"))
     columns = log_columns(bind(plant).model)
     t_s = 0.01 * np.arange(len(y))
     log = RunLog(columns, 0.01, "closed", t_s, np.zeros((len(y), 2)), np.column_stack([y, y]))
-    return tape_of(log, replace(plant, sensors={"psi_rad": STEP, "phi_rad": STEP}), list(columns.outputs))
+    return filter_input_of(log, replace(plant, sensors={"psi_rad": STEP, "phi_rad": STEP}), list(columns.outputs))
 
 
 def test_the_same_count_read_again_says_no_more_than_once() -> None:

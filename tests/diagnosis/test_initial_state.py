@@ -7,9 +7,9 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from diagnosis.filter.filter_input import tape_of
+from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.hypothesis.initial_state import start_of
-from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.loop import fly_law
@@ -19,8 +19,8 @@ AT_REST_RAD_S, LEVEL_RAD_S = 0.0, 415.0  # of the main rotor, switched off and i
 
 
 @pytest.fixture(scope="module")
-def kit(plant: BoundPlant) -> Kit:
-    return make_kit(plant)
+def library(plant: BoundPlant) -> EffectLibrary:
+    return effect_library(plant)
 
 
 @pytest.fixture(scope="module")
@@ -30,26 +30,26 @@ def flown(plant: BoundPlant) -> RunLog:
     return fly_law(plant, table, flight(plant))
 
 
-def begun(kit: Kit, log: RunLog, first: int) -> float:
+def begun(library: EffectLibrary, log: RunLog, first: int) -> float:
     """The main rotor's speed from which the filter begins the log's rows from `first` on."""
     part = replace(log, t_s=log.t_s[first:], u=log.u[first:], y=log.y[first:], extra={})
-    x0, _ = start_of(kit, tape_of(part, kit.bound.plant, kit.outputs), ())
-    return float(x0[kit.states.index("omega_M_rad_s")])
+    x0, _ = start_of(library, filter_input_of(part, library.bound.plant, library.outputs), ())
+    return float(x0[library.states.index("omega_M_rad_s")])
 
 
-def test_rotors_at_rest_begin_there(kit: Kit, flown: RunLog) -> None:
+def test_rotors_at_rest_begin_there(library: EffectLibrary, flown: RunLog) -> None:
     # The flight's own inputs would hold 413 rad/s from its first row on.
-    assert begun(kit, flown, 0) == pytest.approx(AT_REST_RAD_S, abs=1.0)
+    assert begun(library, flown, 0) == pytest.approx(AT_REST_RAD_S, abs=1.0)
 
 
 @pytest.mark.parametrize("first", [2000, 3500, 5000, 8000])
-def test_rotors_that_run_begin_near_their_speed(kit: Kit, flown: RunLog, first: int) -> None:
+def test_rotors_that_run_begin_near_their_speed(library: EffectLibrary, flown: RunLog, first: int) -> None:
     # Flight needs 396 rad/s at the stop and 415 rad/s level: within 20 % of that, as half of it would let the helicopter fall.
-    assert begun(kit, flown, first) == pytest.approx(LEVEL_RAD_S, rel=0.2)
+    assert begun(library, flown, first) == pytest.approx(LEVEL_RAD_S, rel=0.2)
 
 
-def test_readings_that_are_no_numbers_leave_a_start(kit: Kit, flown: RunLog) -> None:
+def test_readings_that_are_no_numbers_leave_a_start(library: EffectLibrary, flown: RunLog) -> None:
     blind = replace(flown, y=np.full_like(flown.y, np.nan), extra={})
-    x0, p0 = start_of(kit, tape_of(blind, kit.bound.plant, kit.outputs), ())
+    x0, p0 = start_of(library, filter_input_of(blind, library.bound.plant, library.outputs), ())
     assert np.isfinite(x0).all()
     assert (p0 > 0.0).all()

@@ -5,30 +5,30 @@ import os
 
 import pytest
 
-from diagnosis.library.effect_library import MADE_FROM, _build, _build_of, make_kit
-from diagnosis.library.subprocess import NotDone, apart
+from diagnosis.library.effect_library import MADE_FROM, _build, _build_of, effect_library
+from diagnosis.library.subprocess import NotDone, in_subprocess
 from tests.plants import bound
 
 
 def test_an_answer_comes_back() -> None:
-    assert apart(math.hypot, 3.0, 4.0) == 5.0
+    assert in_subprocess(math.hypot, 3.0, 4.0) == 5.0
 
 
 def test_what_the_work_prints_does_not_spoil_the_answer() -> None:
-    assert apart(os.write, 1, b"beside") == len(b"beside")
+    assert in_subprocess(os.write, 1, b"beside") == len(b"beside")
 
 
 def test_what_the_process_raises_is_told() -> None:
     with pytest.raises(NotDone, match="math domain error"):
-        apart(math.sqrt, -1.0)
+        in_subprocess(math.sqrt, -1.0)
 
 
 def test_a_library_built_by_another_process_is_that_built_here() -> None:
     plant = bound("aeroshield")
-    names = make_kit(plant).whole
-    assert apart(_build_of, plant.plant, names, MADE_FROM) == _build(plant, names)
+    names = effect_library(plant).whole
+    assert in_subprocess(_build_of, plant.plant, names, MADE_FROM) == _build(plant, names)
 
 
 def test_a_process_of_other_sources_builds_nothing() -> None:
     with pytest.raises(NotDone, match="sources were changed"):
-        apart(_build_of, bound("aeroshield").plant, (), b"")
+        in_subprocess(_build_of, bound("aeroshield").plant, (), b"")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import Supposed, nothing_supposed
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.simulated import Flown
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
@@ -22,7 +22,7 @@ STEP_RAD = 2.0 * np.pi / 4096.0
 
 @pytest.fixture(scope="module")
 def case(plant: BoundPlant, fly: Fly) -> Case:
-    return make_case(make_kit(plant), [fly(3, seconds=2.0)])
+    return make_case(effect_library(plant), [fly(3, seconds=2.0)])
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_it_moves_as_the_simulation_does(
 ) -> None:
     # The other effects of a variant's equations stand a billionth away from nothing: at most a count may round otherwise.
     x0 = equilibrium(plant, 0.0).x0
-    own = readings(law, Flown(case, _supposed(case, effects), x0))
+    own = readings(law, Flown(case, _hypothesis(case, effects), x0))
     simulated = readings(law, SteppedPlant(with_effects(plant, effects) if effects else plant, x0))
     assert np.ptp(simulated[:, 1]) > 0.5
     assert np.abs(own - simulated).max() <= 1.01 * STEP_RAD
@@ -64,13 +64,13 @@ def test_it_moves_as_the_simulation_does(
 def test_a_lagging_sensor_begins_where_the_arm_is(plant: BoundPlant, case: Case) -> None:
     # Else its first readings would be those of a jump that nothing made, by which it could be told from a delay.
     x0 = equilibrium(plant, 0.3).x0
-    rig = Flown(case, _supposed(case, {"psi_sensor.lag": {"tau": 0.1}}), x0)
+    rig = Flown(case, _hypothesis(case, {"psi_sensor.lag": {"tau": 0.1}}), x0)
     assert rig.measured()[0] == pytest.approx(0.3, abs=STEP_RAD)
 
 
 def test_unrest_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case, law: HostLaw) -> None:
     x0 = equilibrium(plant, 0.0).x0
-    restless = nothing_supposed(case, -1.0)
+    restless = nominal_hypothesis(case, -1.0)
     one, same, other = (readings(law, Flown(case, restless, x0, seed=seed), 200) for seed in (1, 1, 2))
     assert np.array_equal(one, same)
     assert not np.array_equal(one, other)
@@ -82,21 +82,21 @@ def test_unrest_shakes_by_its_seed_and_locks_hold(plant: BoundPlant, case: Case,
 def test_a_delay_scatters_by_the_seed_and_not_at_all_on_average(plant: BoundPlant, case: Case, law: HostLaw) -> None:
     x0 = equilibrium(plant, 0.0).x0
     steady, unsteady = (
-        _supposed(case, {"phi_sensor.delay": {"tau": 0.033, "jitter": jitter_s}}) for jitter_s in (0.0, 0.005)
+        _hypothesis(case, {"phi_sensor.delay": {"tau": 0.033, "jitter": jitter_s}}) for jitter_s in (0.0, 0.005)
     )
     assert np.array_equal(readings(law, Flown(case, unsteady, x0)), readings(law, Flown(case, steady, x0)))
-    shaken = [readings(law, Flown(case, supposed, x0, seed=1)) for supposed in (steady, unsteady)]
+    shaken = [readings(law, Flown(case, hypothesis, x0, seed=1)) for hypothesis in (steady, unsteady)]
     assert not np.array_equal(*shaken)
 
 
 def test_what_leaves_all_bounds_is_lost(plant: BoundPlant, case: Case) -> None:
     x0 = equilibrium(plant, 0.0).x0
     x0[0] = 2e9
-    rig = Flown(case, nothing_supposed(case, -3.0), x0)
+    rig = Flown(case, nominal_hypothesis(case, -3.0), x0)
     rig.advance(np.zeros(2), 0.01)
     assert rig.lost
     assert not np.isfinite(rig.measured()).all()
 
 
-def _supposed(case: Case, effects: Mapping[str, Mapping[str, float]]) -> Supposed:
-    return nothing_supposed(case, -3.0).with_effects(effects)
+def _hypothesis(case: Case, effects: Mapping[str, Mapping[str, float]]) -> Hypothesis:
+    return nominal_hypothesis(case, -3.0).with_effects(effects)

@@ -12,8 +12,8 @@ import pytest
 
 from diagnosis.filter.kalman import Pass
 from diagnosis.hypothesis.case import make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
-from diagnosis.library.effect_library import Kit, make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
+from diagnosis.library.effect_library import EffectLibrary, effect_library
 from jobs.thread_map import WORKERS
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -22,7 +22,7 @@ from sim.effect import Values
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 
-# Three threads of a process ask for two variants of one kit, as a search does; then the filter runs in all of them.
+# Three threads of a process ask for two variants of one library, as a search does; then the filter runs in all of them.
 ASK = """
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
@@ -34,13 +34,13 @@ from sim.columns import log_columns
 from tests.plants import bound
 
 plant = bound("aeroshield")
-kit = make_kit(plant)
+library = make_kit(plant)
 t_s = np.arange(200) * 0.01
 log = RunLog(log_columns(plant.model), 0.01, "open", t_s, np.full((200, 1), 1.5), np.sin(t_s)[:, None])
-case = make_case(kit, [log])
+case = make_case(library, [log])
 
 def likelihood(_):
-    kit.variant(()), kit.variant(kit.wide_names)
+    library.variant(()), library.variant(library.wide_names)
     return passes(case, nothing_supposed(case, -1.5))[0].log_likelihood
 
 with ThreadPoolExecutor(3) as pool:
@@ -52,8 +52,8 @@ ANNOUNCE = """
 from diagnosis.library.effect_library import make_kit
 from tests.plants import bound
 
-kit = make_kit(bound("emps"))
-kit.prepare()
+library = make_kit(bound("emps"))
+library.prepare()
 """
 
 WAIT = """
@@ -101,18 +101,22 @@ def test_what_was_announced_is_there_when_the_process_ends(tmp_path: Path) -> No
 
 
 def test_of_three_variants_the_narrowest_is_taken(plant: BoundPlant) -> None:
-    kit = make_kit(plant)
-    assert kit.variant(["psi_sensor.delay"]).names == frozenset()
-    for wanted in (["psi_sensor.lag"], [kit.names[0]], [kit.names[0], "phi_sensor.lag"]):
-        assert kit.variant(wanted).names == {*kit.names, "psi_sensor.lag", "phi_sensor.lag"}
-    for wanted in (["psi_sensor.lag", kit.wide_names[0]], [kit.names[0], kit.wide_names[0]], list(kit.bristles)):
-        assert kit.variant(wanted).names == set(kit.whole)
+    library = effect_library(plant)
+    assert library.compiled(["psi_sensor.delay"]).names == frozenset()
+    for wanted in (["psi_sensor.lag"], [library.names[0]], [library.names[0], "phi_sensor.lag"]):
+        assert library.compiled(wanted).names == {*library.names, "psi_sensor.lag", "phi_sensor.lag"}
+    for wanted in (
+        ["psi_sensor.lag", library.wide_names[0]],
+        [library.names[0], library.wide_names[0]],
+        list(library.bristles),
+    ):
+        assert library.compiled(wanted).names == set(library.whole)
 
 
 def test_what_no_filter_follows_is_in_none_and_is_no_candidate(plant: BoundPlant) -> None:
-    kit = make_kit(plant)
-    assert "main_rotor.imbalance" in kit.effects
-    assert not any(name.endswith(".imbalance") for name in (*kit.whole, *kit.candidates))
+    library = effect_library(plant)
+    assert "main_rotor.imbalance" in library.effects
+    assert not any(name.endswith(".imbalance") for name in (*library.whole, *library.candidates))
 
 
 @pytest.mark.parametrize(
@@ -127,31 +131,31 @@ def test_what_no_filter_follows_is_in_none_and_is_no_candidate(plant: BoundPlant
 def test_effects_that_sleep_change_nothing(plant: BoundPlant, effects: dict[str, Values]) -> None:
     # Truth: a filter of these effects' equations and the rotors' friction alone, which differs by the order of sums. Without that friction
     # it differed by 5e-6 of 20: a rotor is then no axis, and no step ends where it stands still.
-    kit = make_kit(plant)
+    library = effect_library(plant)
     model = plant.model
     t_s = np.arange(400) * 0.01
     y = np.column_stack([0.3 * np.sin(t_s), 0.2 * np.cos(2.0 * t_s)])
     u = np.column_stack([3.0 + np.sin(5.0 * t_s), np.cos(3.0 * t_s)])
-    case = make_case(kit, [RunLog(log_columns(model), 0.01, "open", t_s, u, y)])
+    case = make_case(library, [RunLog(log_columns(model), 0.01, "open", t_s, u, y)])
     symbols = [(name, symbol) for name, values in effects.items() for symbol in values]
 
-    def run(kit: Kit) -> Pass:
-        variant = kit.variant(effects)
-        supposed = nothing_supposed(case, -1.5).with_effects(effects)
-        places = [*range(kit.own), *(variant.place(name, symbol) for name, symbol in symbols)]
-        found = passes(replace(case, kit=kit), supposed, places)
+    def run(library: EffectLibrary) -> Pass:
+        compiled = library.compiled(effects)
+        hypothesis = nominal_hypothesis(case, -1.5).with_effects(effects)
+        places = [*range(library.own), *(compiled.place(name, symbol) for name, symbol in symbols)]
+        found = passes(replace(case, library=library), hypothesis, places)
         assert found is not None
         return found[0]
 
     kept = {*effects, "main_rotor.dry_friction", "tail_rotor.dry_friction"}
     few = replace(
-        kit,
-        effects={name: kit.effects[name] for name in kept},
-        names=tuple(name for name in kit.names if name in effects),
-        wide_names=tuple(name for name in kit.wide_names if name in kept),
-        bristles=tuple(name for name in kit.bristles if name in effects),
+        library,
+        effects={name: library.effects[name] for name in kept},
+        names=tuple(name for name in library.names if name in effects),
+        wide_names=tuple(name for name in library.wide_names if name in kept),
+        bristles=tuple(name for name in library.bristles if name in effects),
     )
-    beside, alone = run(kit), run(few)
+    beside, alone = run(library), run(few)
     assert beside.x.shape[1] > alone.x.shape[1]
     np.testing.assert_allclose(beside.w, alone.w, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(beside.gram, alone.gram, rtol=1e-7, atol=1e-9 * np.abs(alone.gram).max())

@@ -9,10 +9,10 @@ import pytest
 from design.settings import read_settings
 from design.table import design
 from diagnosis.diagnose import Material, diagnose, nominal_fit
-from diagnosis.filter.filter_input import tape_of
-from diagnosis.fit.evidence import Tried, evidence
+from diagnosis.filter.filter_input import filter_input_of
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.hypothesis.case import make_case
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from diagnosis.search.presliding_friction import needed, yielding
 from records.log import RunLog
 from sim.added_effects import with_effects, without_effects
@@ -73,12 +73,12 @@ def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
 
 def test_axes_that_give_before_they_slide_are_taken_to(plant: BoundPlant) -> None:
     # Truth: the plant as stated, its friction a brush that slides after 3 mrad, two encoder steps.
-    case = make_case(make_kit(plant), [default_flight(plant, GIVE)])
+    case = make_case(effect_library(plant), [default_flight(plant, GIVE)])
     nominal = nominal_fit(case)
-    supposed = yielding(case, [Tried((), nominal, evidence(nominal))]).stated
-    assert set(supposed) == set(GIVE)
+    hypothesis = yielding(case, [FittedHypothesis((), nominal, evidence(nominal))]).stated
+    assert set(hypothesis) == set(GIVE)
     for name in GIVE:
-        assert supposed[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
+        assert hypothesis[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
 
 
 @pytest.mark.parametrize(("effects", "is_needed"), [(GIVE, True), ({}, False)])
@@ -86,17 +86,17 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(
     plant: BoundPlant, effects: Mapping[str, Mapping[str, float]], is_needed: bool
 ) -> None:
     # Truth: a rig whose friction gives over 3 mrad, and one that sticks, each as fitted by a plant that gives.
-    plain = make_case(make_kit(plant), [default_flight(plant, effects)])
+    plain = make_case(effect_library(plant), [default_flight(plant, effects)])
     taken = replace(plain, stated=GIVE, stated_sd={name: {"z_0": 0.0} for name in GIVE})
     found = nominal_fit(taken)
-    assert needed(plain, Tried((), found, evidence(found))) is is_needed
+    assert needed(plain, FittedHypothesis((), found, evidence(found))) is is_needed
 
 
 def test_axes_give_only_for_what_is_asked_of_them(plant: BoundPlant) -> None:
     # Truth: no flight of 50 s is a million nats likelier for its friction.
-    case = make_case(make_kit(plant), [default_flight(plant, GIVE)])
+    case = make_case(effect_library(plant), [default_flight(plant, GIVE)])
     nominal = nominal_fit(case)
-    assert yielding(case, [Tried((), nominal, evidence(nominal))], further=1e6) is case
+    assert yielding(case, [FittedHypothesis((), nominal, evidence(nominal))], further=1e6) is case
 
 
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
@@ -104,10 +104,10 @@ def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: Bound
     drag = "elevation.quadratic_drag"
     stated = with_effects(plant, {drag: {"c": 2e-3}}, sd={drag: {"c": 1e-4}})
     log = default_flight(plant, {**GIVE, drag: {"c": 4e-3}})
-    case = make_case(make_kit(without_effects(stated)), [log], stated=stated)
+    case = make_case(effect_library(without_effects(stated)), [log], stated=stated)
     nominal = nominal_fit(case)
-    assert nominal.supposed.effects[drag]["c"] != pytest.approx(2e-3, rel=0.01)
-    found = yielding(case, [Tried((), nominal, evidence(nominal))])
+    assert nominal.hypothesis.effects[drag]["c"] != pytest.approx(2e-3, rel=0.01)
+    found = yielding(case, [FittedHypothesis((), nominal, evidence(nominal))])
     assert set(found.stated) == {drag, *GIVE}
     assert found.stated[drag] == {"c": 2e-3}
     assert found.stated_sd[drag] == {"c": 1e-4}
@@ -131,16 +131,16 @@ def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
 
 
 def test_axes_that_stick_are_not_taken_to_yield(plant: BoundPlant) -> None:
-    case = make_case(make_kit(plant), [default_flight(plant, {})])
+    case = make_case(effect_library(plant), [default_flight(plant, {})])
     nominal = nominal_fit(case)
-    assert yielding(case, [Tried((), nominal, evidence(nominal))]) is case
+    assert yielding(case, [FittedHypothesis((), nominal, evidence(nominal))]) is case
 
 
 def test_a_speed_in_whole_counts_is_known_to_a_count(plant: BoundPlant, fly: Fly) -> None:
     # Truth: readings of 0.5 rad/s that stand still in most rows are off by 0.5 / sqrt(12), not by nothing.
     log = fly(34, rig_seed=3)
     speed = np.round(np.linspace(400.0, 410.0, len(log.t_s)) / 0.5) * 0.5
-    kit = make_kit(plant)
-    tape = tape_of(replace(log, extra={"omega_M_rad_s": speed}), plant.plant, kit.outputs)
-    single = tape.single[kit.outputs.index("omega_M_rad_s")]
+    library = effect_library(plant)
+    filter_input = filter_input_of(replace(log, extra={"omega_M_rad_s": speed}), plant.plant, library.outputs)
+    single = filter_input.single[library.outputs.index("omega_M_rad_s")]
     assert np.sqrt(single) == pytest.approx(0.5 / np.sqrt(12.0), rel=0.01)
