@@ -27,21 +27,21 @@ ASK = """
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from diagnosis.hypothesis.case import make_case
-from diagnosis.hypothesis.hypothesis import nothing_supposed, passes
-from diagnosis.library.effect_library import make_kit
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis, passes
+from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.columns import log_columns
 from tests.plants import bound
 
 plant = bound("aeroshield")
-library = make_kit(plant)
+library = effect_library(plant)
 t_s = np.arange(200) * 0.01
 log = RunLog(log_columns(plant.model), 0.01, "open", t_s, np.full((200, 1), 1.5), np.sin(t_s)[:, None])
 case = make_case(library, [log])
 
 def likelihood(_):
-    library.variant(()), library.variant(library.wide_names)
-    return passes(case, nothing_supposed(case, -1.5))[0].log_likelihood
+    library.compiled(()), library.compiled(library.wide_names)
+    return passes(case, nominal_hypothesis(case, -1.5))[0].log_likelihood
 
 with ThreadPoolExecutor(3) as pool:
     print(repr(list(pool.map(likelihood, range(6)))))
@@ -49,10 +49,10 @@ with ThreadPoolExecutor(3) as pool:
 
 # A search is announced, and the process is through before anything of it is built.
 ANNOUNCE = """
-from diagnosis.library.effect_library import make_kit
+from diagnosis.library.effect_library import effect_library
 from tests.plants import bound
 
-library = make_kit(bound("emps"))
+library = effect_library(bound("emps"))
 library.prepare()
 """
 

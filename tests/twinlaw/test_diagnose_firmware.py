@@ -12,8 +12,8 @@ from records.log import save_log
 from records.table import table_text
 from sim.loop import Controller, fly
 from sim.manoeuvres import flight
-from tests.diagnosis.firmware_flights import Wrapped, flown, plant, rows_of, stale
 from tests.law_tables import ce150_table, changed_axis
+from tests.replay.firmware_flights import Wrapped, flown, plant, rows_of, stale
 from twinlaw.command import main
 from verification.host_law import host_law
 

@@ -239,7 +239,7 @@ def test_what_moved_is_told_in_standard_deviations_the_furthest_first_and_at_mos
     result: Any = SimpleNamespace(
         plant=replace(bound.plant, parameters=parameters, effects={"psi_sensor": {"lag": lag}}),
         case=SimpleNamespace(
-            kit=SimpleNamespace(bound=bound),
+            library=SimpleNamespace(bound=bound),
             stated={"psi_sensor.lag": {"tau": 0.01}},
             stated_sd={"psi_sensor.lag": {"tau": 0.002}},
         ),

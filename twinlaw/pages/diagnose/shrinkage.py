@@ -58,7 +58,7 @@ def _predictions(shrinkage: Shrinkage, found: bool, retuned: str) -> Section:
 def _closed_loop(loop: ClosedLoop, found: bool) -> Section:
     sentences = [
         f"The controller's own code flew each model along {', '.join(loop.logs)} again, from where the rig was after 2 s. "
-        "The bars show how far angles and commands then are from the log; the floor is what unrest and rounding make of it."
+        "The bars show how far angles and commands then are from the log; the floor is what process noise and rounding make of it."
     ]
     if loop.fraction is not None and found:
         sentences.append(f"Of what a perfect model could remove beyond re-tuning, {percent(loop.fraction)} is removed.")

@@ -19,8 +19,8 @@ from replay.table import replay_log
 from sim.loop import Controller, fly
 from sim.manoeuvres import flight
 from tests.controllers.rows import designed
-from tests.diagnosis.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
 from tests.law_tables import ce150_table, changed_axis, dense_table
+from tests.replay.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.host_law import HostLaw, host_law
 from verification.stimuli import reference_jumps, saturating, with_special_numbers

@@ -12,8 +12,8 @@ from records.errors import BadInput
 from records.log import LogColumns, RunLog
 from sim.columns import log_columns
 from sim.simulate import simulate
-from tests.diagnosis.firmware_flights import flown, lively, plant, rows_of
 from tests.law_tables import ce150_table
+from tests.replay.firmware_flights import flown, lively, plant, rows_of
 from verification.host_law import host_law
 
 TURN_STEP_RAD = 2.0 * np.pi / 4096.0

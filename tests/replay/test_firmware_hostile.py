@@ -11,8 +11,8 @@ from records.table import ControllerTable
 from replay.firmware import FirmwareReplay, replay_firmware
 from sim.loop import fly
 from sim.manoeuvres import flight
-from tests.diagnosis.firmware_flights import Wrapped, edited_law, flown, plant, rows_of, stale
 from tests.law_tables import ce150_table, changed_axis
+from tests.replay.firmware_flights import Wrapped, edited_law, flown, plant, rows_of, stale
 from verification.host_law import host_law
 
 TABLE = ce150_table()

@@ -7,8 +7,8 @@ import pytest
 
 from replay.firmware import FirmwareReplay, replay_firmware
 from sim.loop import Controller
-from tests.diagnosis.firmware_flights import Command, Lossy, Wrapped, edited_law, flown, rows_of, stale
 from tests.law_tables import ce150_table
+from tests.replay.firmware_flights import Command, Lossy, Wrapped, edited_law, flown, rows_of, stale
 from verification.host_law import host_law
 
 TABLE = ce150_table()
