@@ -51,7 +51,8 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
 
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
-    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its parameters where they are stated."""
+    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its
+    parameters where they are stated."""
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, LOOKED_AT_S)) for flight in case.flights]
     )
