@@ -178,7 +178,7 @@ class Filter:
             value = _double(values(slice(request.first, request.end)))
             request.value = self.ffi.cast("void *", value.ctypes.data)
             self.lib.filter_respond(request)
-            yield places[begin:end], room[: end - begin, : request.with_own_process_noise]
+            yield places[begin:end], room[: end - begin, : request.awake]
 
     def response(
         self, filter_input: FilterInput, run: Pass, values: Disturbances, targets: Sequence[int], slots: Sequence[int]
