@@ -98,7 +98,7 @@ def _lossy(lost: Array, wanted: Array) -> Array:
 
 
 def _means(beside: Array, wanted: Array, stage: Callable[..., None]) -> Array:
-    """What a stage of c/inputs.c makes of commands (m,), with the numbers (m,) that it is told beside them."""
+    """What a stage of input_effects.c makes of commands (m,), with the numbers (m,) that it is told beside them."""
     ffi, _ = _library()
     told, given = np.ascontiguousarray(beside), np.ascontiguousarray(wanted)
     found = np.empty_like(given)
@@ -108,5 +108,5 @@ def _means(beside: Array, wanted: Array, stage: Callable[..., None]) -> Array:
 
 @cache
 def _library() -> tuple[Any, Any]:
-    path = build_shared("inputs", [Path(__file__).parent / "c" / "inputs.c"])
+    path = build_shared("inputs", [Path(__file__).with_name("input_effects.c")])
     return load_shared(DECLARATIONS, path)
