@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
@@ -19,7 +20,6 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.hypothesis.initial_state import FIRST_PROCESS_NOISE
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library, is_gust
 from diagnosis.library.input_effects import LOST_FRAMES
@@ -33,23 +33,14 @@ from records.errors import BadInput
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
-ALARM = 0.01
-PLAIN_TO_SEE = 40.0  # nats
 ROUNDS = 4
 SETTLED = 0.05
-# Times what the best name explains that a gust must: beside EMPS' dry friction, which is there, a gust is a little likelier.
-AIR_EXPLAINS = 1.5
-WELL_EXPLAINED = 0.85  # probability of a name from which the air is not asked
-ASKED = 4  # hypotheses beside which axes may yield
-# Of what the best single effect explains, that yielding axes must explain besides: 0.02 at EMPS, whose friction is dry, 1 and more
-# where rigs do yield.
-EARLY_SHARE = 0.2
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
-    if seen.detection.p > ALARM:
+    if seen.detection.p > decisions.ALARM:
         return _nothing(seen, material, _holdout(seen, material))
     demand_wiring(seen.case, seen.retuned.fit, nominal_fit, "the logs to explain")
     seen, found = _explained(seen)
@@ -57,11 +48,11 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
         return _nothing(seen, material, _holdout(seen, material))
     beyond = retune(seen.case, seen.retuned.fit)
     seen = replace(seen, detection=confirmed_by(seen.detection, found, beyond))
-    if seen.detection.p > ALARM:
+    if seen.detection.p > decisions.ALARM:
         return _nothing(seen, material, _holdout(seen, material))
     judged = _judged(seen, material, found, beyond)
     seen = replace(seen, detection=borne_out(seen.detection, judged))
-    if seen.detection.p > ALARM:
+    if seen.detection.p > decisions.ALARM:
         return _nothing(seen, material, judged.holdout)
     return gap(seen, material, judged)
 
@@ -115,14 +106,14 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     still need them.
     """
     begun = _alone(seen)
-    first = begun.best(ASKED)
-    again = _yielding(seen, first, EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
+    first = begun.best(decisions.YIELDING_ASKED)
+    again = _yielding(seen, first, decisions.YIELDING_EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    again = _yielding(seen, found.fitted[:ASKED])
+    again = _yielding(seen, found.fitted[: decisions.YIELDING_ASKED])
     if again is None:
         return seen, found
     further = _searched(again)
@@ -139,7 +130,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
 
 def _searched(seen: Seen) -> Search | None:
     """What is found; None where there is no gap."""
-    return None if seen.detection.p > ALARM else search(seen.case, seen.case.library.candidates, _alone(seen))
+    return None if seen.detection.p > decisions.ALARM else search(seen.case, seen.case.library.candidates, _alone(seen))
 
 
 def _alone(seen: Seen) -> Alone:
@@ -152,8 +143,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     """Weigh what was found, and check it on the hold-out."""
     case, retuned = seen.case, seen.retuned
     left, weighed = _weighed(seen, found, beyond)
-    if max(weighed.retune, *weighed.probabilities, 0.0) < WELL_EXPLAINED:
-        enough = retuned.evidence + AIR_EXPLAINS * (found.fitted[0].evidence - retuned.evidence)
+    if max(weighed.retune, *weighed.probabilities, 0.0) < decisions.WELL_EXPLAINED:
+        enough = retuned.evidence + decisions.GUST_EXPLAINS * (found.fitted[0].evidence - retuned.evidence)
         further = [entry for entry in gusts(case, retuned) if entry.evidence > enough]
         if further:
             found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
@@ -193,7 +184,7 @@ def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Hol
 def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> Detection:
     """A small gap also needs effects of sure size, or parameters, that explain it: without a gap, evidence of x nats has a chance of
     exp(-x) at most."""
-    if detection.largest > PLAIN_TO_SEE:
+    if detection.largest > decisions.PLAIN_TO_SEE:
         return detection
     explained = [entry.evidence for entry in found.fitted if entry.effects and found.sure]
     explained += [] if beyond is None else [beyond.score]
@@ -203,12 +194,16 @@ def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> 
 
 def borne_out(detection: Detection, judged: Judged) -> Detection:
     """A small gap whose explanations do not hold, be it on the hold-out, is explained by nothing: evidence of 0 nats."""
-    return replace(detection, p=1.0) if detection.largest <= PLAIN_TO_SEE and judged.weighed.nameless else detection
+    return (
+        replace(detection, p=1.0)
+        if detection.largest <= decisions.PLAIN_TO_SEE and judged.weighed.nameless
+        else detection
+    )
 
 
 def nominal_fit(case: Case) -> Fit:
     """The plant re-tuned within its spread, with the process noise that then remains."""
-    hypothesis = nominal_hypothesis(case, FIRST_PROCESS_NOISE)
+    hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
     found = fit(case, hypothesis, rounds=ROUNDS)
     for turn in range(ROUNDS):
         if found is None:

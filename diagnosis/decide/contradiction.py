@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
-from diagnosis.fit.gauss_newton import WIDE, Fit, fit
+from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 
@@ -39,7 +40,7 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     if runs is None:
         return None
     scale = np.concatenate([case.sd, [entry.scale for entry in inside]])
-    before = WIDE**-2 * np.eye(len(scale))
+    before = decisions.SIZE_SD**-2 * np.eye(len(scale))
     before[: len(case.free), : len(case.free)] = case.known
     names = [str(case.library.bound.model.parameter_symbols[place]) for place in case.free]
     names += [f"{entry.effect}.{entry.parameter.symbol}" for entry in inside]

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.decide.contradiction import Contradiction, contradiction, parted_gain
-from diagnosis.decide.weighing import UNNAMED, Weighed
+from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import is_event
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
@@ -14,12 +15,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.beam import Search
 from diagnosis.validate.misfit import ignorance
 
-WORTH_TELLING = 150.0  # nats that one log gains by numbers of its own; logs of one rig were seen to gain up to 85, of two rigs 250 and more
-TOO_MUCH = 0.15  # of the gap, beyond which no single cause is named
 ROUNDS = 4  # of a fit to all logs together
-KNOWS_NOTHING = 0.9  # error of predictions over that of holding the last reading
-OTHERS = 8.0  # standard deviations beyond which a parameter is another plant's
-REFUTED = 1.4  # times the mean square error of the hold-out without it, beyond which a cause is refuted
 
 
 @dataclass(frozen=True)
@@ -31,7 +27,11 @@ class Doubt:
 
     def applied(self, weighed: Weighed) -> Weighed:
         """The probabilities with what is doubted given to the unknown."""
-        return weighed if not self.forbids or weighed.unknown >= UNNAMED else weighed.with_unknown(UNNAMED)
+        return (
+            weighed
+            if not self.forbids or weighed.unknown >= decisions.UNNAMED
+            else weighed.with_unknown(decisions.UNNAMED)
+        )
 
 
 def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
@@ -41,27 +41,29 @@ def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], wor
     gain = best.evidence - found.nominal.evidence
     sentences, forbids = [], False
     apart = contradiction(case, best.fit)
-    if apart is not None and apart.gain > max(WORTH_TELLING, TOO_MUCH * gain):
+    if apart is not None and apart.gain > max(decisions.CONTRADICTION, decisions.CONTRADICTION_SHARE * gain):
         apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
-    if apart is not None and apart.gain > WORTH_TELLING:
+    if apart is not None and apart.gain > decisions.CONTRADICTION:
         sentences.append(_contradiction(apart, names))
-        forbids = apart.gain > TOO_MUCH * gain
+        forbids = apart.gain > decisions.CONTRADICTION_SHARE * gain
     errors = ignorance(case, best.fit.hypothesis)
-    if errors and min(errors.values()) > KNOWS_NOTHING:
+    if errors and min(errors.values()) > decisions.KNOWS_NOTHING:
         told = ", ".join(f"{name} {value:.2g}" for name, value in errors.items())
         sentences.append(
             "this plant does not fit these logs at all: whatever is added to it, its predictions over 1 s are no better than holding "
             f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
         )
         forbids = True
-    if worse > REFUTED and not any(is_event(case.library.effects[name]) for name in weighed.fitted[0].effects):
+    if worse > decisions.REFUTED and not any(
+        is_event(case.library.effects[name]) for name in weighed.fitted[0].effects
+    ):
         named = " + ".join(weighed.fitted[0].effects)
         sentences.append(
             f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as without"
         )
         forbids = True
     furthest = float(np.max(np.abs(best.fit.hypothesis.theta), initial=0.0))
-    if furthest > OTHERS and weighed.unknown > 0.5:
+    if furthest > decisions.ANOTHER_PLANT and weighed.unknown > 0.5:
         sentences.append(
             f"these may be logs of another plant: beside every effect a parameter stays {furthest:.0f} standard deviations from what "
             "the plant file states"
@@ -73,10 +75,10 @@ def contradicting(case: Case, hypothesis: Hypothesis, names: Sequence[str]) -> t
     """Which of logs that seem to be of the plant as `hypothesis`, without a gap, contradicts the others; nothing where none does."""
     together = fit(case, hypothesis, rounds=ROUNDS)
     apart = None if together is None else contradiction(case, together)
-    if together is None or apart is None or apart.gain <= WORTH_TELLING:
+    if together is None or apart is None or apart.gain <= decisions.CONTRADICTION:
         return ()
     apart = replace(apart, gain=min(apart.gain, parted_gain(case, together)))
-    return (_contradiction(apart, names),) if apart.gain > WORTH_TELLING else ()
+    return (_contradiction(apart, names),) if apart.gain > decisions.CONTRADICTION else ()
 
 
 def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:

@@ -5,14 +5,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.decide.prior import at_its_end
-from diagnosis.decide.weighing import LEFT_NATS, UNNAMED, Weighed
+from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import seen_in_readings, unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.hypothesis.initial_state import FIRST_PROCESS_NOISE
 from diagnosis.library.effect_library import is_gust
 from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.search.retune import Retune
@@ -20,17 +20,6 @@ from diagnosis.validate.prediction import WINDOW_S
 from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
-
-LITTLE = 0.1  # share of the gap's evidence that may be left beside a hypothesis for the hold-out to overrule an unknown effect,
-NEARLY_ALL = 0.85  # and the share of the error that must then be gone there
-PARTLY = 0.6  # of the hold-out's error that what is named must be able to take away,
-FAR = 2.5  # where some output's error is still that many floors
-IDLE = 0.25  # of the hold-out's error that an effect must be able to take away for it not to be a way of the training logs alone
-HARDLY = 0.01  # and that it must surely take away then
-# Probability of an unknown effect then. Of eleven spent cases three were outside the library, eight had effects that a re-tune hides; but
-# with less than what is named has, rigs without any effect were told as a gap.
-NOT_BORNE_OUT = 0.6
-HELPS = 0.995  # of the hold-out's error that must be left at most for an effect to be added
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +42,8 @@ class Holdout:
 
     def _predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
         stated = replace(
-            nominal_hypothesis(self.case, FIRST_PROCESS_NOISE), process_noise=self.base.fit.hypothesis.process_noise
+            nominal_hypothesis(self.case, decisions.FIRST_PROCESS_NOISE),
+            process_noise=self.base.fit.hypothesis.process_noise,
         )
         variants = {"nominal": stated, "before": self.base.fit.hypothesis, "after": chosen.fit.hypothesis}
         return predict_all(self.case, self.names, variants)
@@ -74,7 +64,7 @@ def holdout_of(
     trial = Holdout(case, names, tables, retuned)
     predicted = trial.predicted(retuned)
     stated, before = (error(case, predicted, variant) for variant in ("nominal", "before"))
-    if not 0.0 < stated < HELPS * before:  # a plant that predicts no row has no error
+    if not 0.0 < stated < decisions.HELPS * before:  # a plant that predicts no row has no error
         return trial
     found = unfitted(training, retuned.fit.hypothesis.process_noise)
     if found is None:
@@ -93,10 +83,16 @@ def overruled(holdout: Holdout, weighed: Weighed, stated: FittedHypothesis, left
     if not weighed.fitted or weighed.unknown < weighed.probabilities[0]:
         return weighed
     first = weighed.fitted[0]
-    if left > LITTLE * (first.evidence - stated.evidence) or any(at_its_end(name, first) for name in first.effects):
+    if left > decisions.LITTLE_LEFT * (first.evidence - stated.evidence) or any(
+        at_its_end(name, first) for name in first.effects
+    ):
         return weighed
     gone = holdout.shrinkage(holdout.predicted(first)).fraction
-    return weighed if gone is None or gone < NEARLY_ALL else weighed.with_unknown(min(1.0 - gone, weighed.unknown))
+    return (
+        weighed
+        if gone is None or gone < decisions.NEARLY_ALL_GONE
+        else weighed.with_unknown(min(1.0 - gone, weighed.unknown))
+    )
 
 
 def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
@@ -113,7 +109,7 @@ def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tu
     gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else max(told.fraction_ci95[1], 0.0)
     share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
     note = f"{' + '.join(first.effects)} takes {share}: something else is missing"
-    unknown = min(1.0 - gone, UNNAMED) if far else NOT_BORNE_OUT
+    unknown = min(1.0 - gone, decisions.UNNAMED) if far else decisions.NOT_BORNE_OUT
     return weighed.with_unknown(max(unknown, weighed.unknown)), (note,)
 
 
@@ -124,7 +120,11 @@ def _idle(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage) -> bool:
     """
     if any(seen_in_readings(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
         return False
-    return told.fraction_ci95 is not None and told.fraction_ci95[0] <= HARDLY and told.fraction_ci95[1] < IDLE
+    return (
+        told.fraction_ci95 is not None
+        and told.fraction_ci95[0] <= decisions.HARDLY
+        and told.fraction_ci95[1] < decisions.IDLE
+    )
 
 
 def _leaves_most(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage, left: float) -> bool:
@@ -136,9 +136,11 @@ def _leaves_most(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage, le
     if any(name == LOST_FRAMES or is_gust(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
         return False
     floor = _floor(holdout.case, fitted, told)
-    floor = floor if left > LEFT_NATS else _in_air(holdout.case, fitted, floor)
+    floor = floor if left > decisions.LEFT_NATS else _in_air(holdout.case, fitted, floor)
     far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
-    return far >= FAR and (told.fraction_ci95 is None or told.fraction_ci95[1] <= PARTLY)
+    return far >= decisions.FAR_ABOVE_FLOOR and (
+        told.fraction_ci95 is None or told.fraction_ci95[1] <= decisions.PARTLY_GONE
+    )
 
 
 def _floor(case: Case, fitted: FittedHypothesis, told: Shrinkage) -> dict[str, float]:
@@ -180,7 +182,7 @@ def worse(holdout: Holdout, weighed: Weighed) -> float:
 def helpful(holdout: Holdout, first: FittedHypothesis) -> FittedHypothesis:
     """What is to be added if it lowers the hold-out's error, else the plant without it."""
     predicted = holdout.predicted(first)
-    helps = error(holdout.case, predicted, "after") < HELPS * _without(holdout, predicted)
+    helps = error(holdout.case, predicted, "after") < decisions.HELPS * _without(holdout, predicted)
     return first if helps else holdout.base
 
 

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.detection import LEAST_LEFT, MEAN_GAIN, FormScores, gains
+from diagnosis import decisions
+from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
 from diagnosis.detect.forms import Form
 
 Array = NDArray[np.float64]
-NATS_PER_FORM = 2.0
-MOST_FORMS = 4
-SAME_PLACE = 0.3
-LIMITS, OTHER_KNEE = (".saturation", ".slew_limit"), 0.05  # a limit's knee may be rounder than the library's
+LIMITS = (".saturation", ".slew_limit")
 OWN = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
@@ -42,8 +40,8 @@ def left_beside(by_form: FormScores, effects: Sequence[str]) -> float:
 
     def weight(place: str, text: str) -> float:
         if text.startswith("limit(") and _side(place) in limited:
-            return OTHER_KNEE
-        return SAME_PLACE if _side(place) in own else 1.0
+            return decisions.OTHER_KNEE
+        return decisions.SAME_PLACE if _side(place) in own else 1.0
 
     usual = np.maximum(1.0, by_form.null_gain / MEAN_GAIN)
     alone = gains(by_form.scores) / usual
@@ -61,13 +59,13 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     """What the forms of a class take away: the best, then what the best of the others adds to it, each less the cost of choosing it."""
     scores = by_form.scores
     norm = np.diag(scores.gram)
-    chosen = [i for i in members if norm[i] > LEAST_LEFT * max(scores.raw[i], 1e-12)]
+    chosen = [i for i in members if norm[i] > decisions.LEAST_LEFT_SHARE * max(scores.raw[i], 1e-12)]
     unit = 1.0 / np.sqrt(norm[chosen])
     gram = scores.gram[np.ix_(chosen, chosen)] * np.outer(unit, unit)
     score = scores.score[chosen] * unit
     usual = np.maximum(1.0, by_form.null_gain[chosen] / MEAN_GAIN)
-    cost, total = NATS_PER_FORM + float(np.log(len(members))), 0.0
-    for _ in range(min(MOST_FORMS, len(chosen))):
+    cost, total = decisions.NATS_PER_FORM + float(np.log(len(members))), 0.0
+    for _ in range(min(decisions.MOST_FORMS, len(chosen))):
         left = np.diag(gram)
         gains = np.where(left > OWN, 0.5 * score**2 / np.maximum(left, OWN), 0.0) / usual
         best = int(np.argmax(gains))

@@ -6,23 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import seen_in_readings
 
 Array = NDArray[np.float64]
-# Set on development cases of the sealed benchmark's generator (seed 21): nats below which two hypotheses are alike, and what a form a
-# little off the truth may cost, which grows with the whole gain; what each further effect must overcome; and what a right effect of
-# the library may leave to forms, in nats and as a share of its gain, beyond which an unknown effect becomes likelier by a power.
-ALIKE, OFF_FORM, OFF_POWER, OFF_SHARE, FURTHER = 10.0, 1.0, 0.35, 4e-4, 2.5
-LEFT_NATS, LEFT_SHARE, LEFT_POWER, UNKNOWN = 20.0, 0.15, 3.0, 1.7
-FARTHEST = 3e4  # nats beyond which a gap only says that the nominal plant had lost its way
-RETUNE_COST = 10.0
-UNNAMED = 0.95  # probability of an unknown effect where what would be named is refuted
-# Of 445 first answers that stated 0.8 and more on the 900 cases of seeds 900008, 900010 and 900011, 0.91 came true: a further effect
-# too small to see, or one outside the library that looks like one in it, is always possible.
-CONFIDENCE_CAP = 0.91
-SPREAD = 3.0  # standard deviations of a parameter that cost no more than their prior
 KEPT = 12
 
 
@@ -73,14 +62,20 @@ def weigh(
     best = first.evidence
     whole = max(best - nominal.evidence, 0.0)
     formed = max(best - _read_off(named, first, nominal).evidence, 0.0)
-    scale = ALIKE + OFF_FORM * formed**OFF_POWER + OFF_SHARE * min(formed, FARTHEST)
-    scores = np.array([(entry.evidence - best) / scale - FURTHER * (len(entry.effects) - 1) for entry in named])
+    scale = (
+        decisions.ALIKE
+        + decisions.OFF_FORM * formed**decisions.OFF_POWER
+        + decisions.OFF_SHARE * min(formed, decisions.FARTHEST_GAIN)
+    )
+    scores = np.array(
+        [(entry.evidence - best) / scale - decisions.FURTHER * (len(entry.effects) - 1) for entry in named]
+    )
     scores += [prior_odds(entry, frictionless, steps) for entry in named]
     prior_chi_squared = np.array([_beyond_spread(entry) for entry in named])
     scores -= prior_chi_squared - prior_chi_squared.min()
-    expected = LEFT_NATS + LEFT_SHARE * whole
-    unknown = LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - UNKNOWN
-    other = -np.inf if retune is None else (retune - RETUNE_COST - best) / scale
+    expected = decisions.LEFT_NATS + decisions.LEFT_SHARE * whole
+    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - decisions.UNKNOWN
+    other = -np.inf if retune is None else (retune - decisions.RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
     weights = capped(weights)
@@ -105,24 +100,24 @@ def capped(weights: Array) -> Array:
     if known <= 0.0:
         return weights
     return np.append(
-        weights[:-1] * (CONFIDENCE_CAP + (1.0 - CONFIDENCE_CAP) * unknown / known),
-        CONFIDENCE_CAP * unknown + (1.0 - CONFIDENCE_CAP) * known,
+        weights[:-1] * (decisions.CONFIDENCE_CAP + (1.0 - decisions.CONFIDENCE_CAP) * unknown / known),
+        decisions.CONFIDENCE_CAP * unknown + (1.0 - decisions.CONFIDENCE_CAP) * known,
     )
 
 
 def _nameless(nominal: FittedHypothesis, left: float, retune: float | None) -> Weighed:
     """Where no effect was worth a fit: other parameters alone, or what no candidate explains."""
     if retune is None:
-        return Weighed((), (), 1.0, 0.0, ALIKE)
-    other = (retune - RETUNE_COST - nominal.evidence) / ALIKE
-    unknown = LEFT_POWER * float(np.log(max(left, 1.0) / LEFT_NATS)) - UNKNOWN
+        return Weighed((), (), 1.0, 0.0, decisions.ALIKE)
+    other = (retune - decisions.RETUNE_COST - nominal.evidence) / decisions.ALIKE
+    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / decisions.LEFT_NATS)) - decisions.UNKNOWN
     alone = float(1.0 / (1.0 + np.exp(np.clip(unknown - other, -500.0, 500.0))))
-    return Weighed((), (), 1.0 - alone, alone, ALIKE)
+    return Weighed((), (), 1.0 - alone, alone, decisions.ALIKE)
 
 
 def _beyond_spread(entry: FittedHypothesis) -> float:
     """Nats that a hypothesis pays for the plant's parameters beyond their spread: no form that is a little off makes these cheaper."""
-    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - SPREAD, 0.0)
+    beyond = np.maximum(np.abs(entry.fit.hypothesis.theta) - decisions.FREE_SPREAD, 0.0)
     return 0.5 * float(beyond @ beyond)
 
 

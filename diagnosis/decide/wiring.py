@@ -7,17 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case, Flight
 from diagnosis.hypothesis.initial_state import start_of
 from jobs.thread_map import thread_map
 from records.errors import BadInput
-
-LOOKED_AT_S = 20.0  # of each log
-STRAINED = 6.0  # standard deviations that some parameter must have left its statement by
-RESTLESS = -1.3  # or the log10 of an axis' process noise, for columns to be doubted
-LEAST_GAIN = 200.0  # nats by which another reading of the columns must be likelier
 
 
 @dataclass(frozen=True)
@@ -54,7 +50,7 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its
     parameters where they are stated."""
     short = case.with_flights(
-        [replace(flight, filter_input=beginning(flight.filter_input, LOOKED_AT_S)) for flight in case.flights]
+        [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
     usual = _fitted(short, fitted)
     slips = list(wirings(case))
@@ -64,12 +60,15 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = fit.log_posterior - usual.log_posterior
-    return (best, gain) if gain > LEAST_GAIN and not _is_strained(fit) else None
+    return (best, gain) if gain > decisions.WIRING_GAIN and not _is_strained(fit) else None
 
 
 def _is_strained(fit: Fit) -> bool:
     hypothesis = fit.hypothesis
-    return bool(np.max(np.abs(hypothesis.theta), initial=0.0) > STRAINED or np.max(hypothesis.process_noise) > RESTLESS)
+    return bool(
+        np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
+        or np.max(hypothesis.process_noise) > decisions.WIRING_NOISE
+    )
 
 
 def _fitted(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:

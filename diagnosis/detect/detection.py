@@ -9,6 +9,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.forms import Form, forms
 from diagnosis.detect.instants import target_of
 from diagnosis.detect.linearisation import Linearisation, Scores
@@ -21,10 +22,6 @@ from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
-ALLOWED = 10.0  # nats that friction and stops a little other than the model's may gain
-TOLERATED = 1.0  # standard deviations that laws a little other than the model's may move a parameter
-LEAST_TOLD = 0.05  # of a number's stated variance, that logs must take away for it to have moved for a reason
-LEAST_LEFT = 1e-4  # share of a signature that the plant's coefficients must leave for it to count
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +69,10 @@ def detect(
     prior_tail = chi_squared_tail(
         numbers, prior_chi_squared(case, linearisation.fit.hypothesis, linearisation.fit.free)
     )
-    p = min(1.0, 3.0 * min(tail.probability(largest - ALLOWED), prior_tail, moved_tail(case, linearisation.fit)))
+    p = min(
+        1.0,
+        3.0 * min(tail.probability(largest - decisions.ALLOWED_GAIN), prior_tail, moved_tail(case, linearisation.fit)),
+    )
     return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)))
 
 
@@ -102,7 +102,7 @@ def chi_squared_tail(count: int, value: float) -> float:
 
 
 def moved_tail(case: Case, found: Fit) -> float:
-    """The chance that the number that left what is stated furthest went so far, of all that are stated, less TOLERATED deviations.
+    """The chance that the number that left what is stated furthest went so far, of all that are stated, less TOLERATED_MOVE deviations.
 
     A number that logs tell exactly moves by one standard deviation of its stated spread, one of which they tell nothing does not move.
     """
@@ -112,14 +112,17 @@ def moved_tail(case: Case, found: Fit) -> float:
         *(len(case.free) + k for k, entry in enumerate(found.free) if entry.stated is not None),
     ]
     known = np.diag(np.linalg.pinv(found.information))[stated]
-    furthest = float(np.max(np.abs(moved) / np.sqrt(np.maximum(1.0 - known, LEAST_TOLD)), initial=0.0)) - TOLERATED
+    furthest = (
+        float(np.max(np.abs(moved) / np.sqrt(np.maximum(1.0 - known, decisions.LEAST_TOLD_SHARE)), initial=0.0))
+        - decisions.TOLERATED_MOVE
+    )
     return min(1.0, len(moved) * float(mpmath.erfc(furthest / np.sqrt(2.0))))
 
 
 def gains(scores: Scores) -> Array:
     """Gain of the log likelihood by each column alone (k,); 0 where the plant's coefficients imitate it."""
     norm = np.diag(scores.gram)
-    counts = norm > LEAST_LEFT * np.maximum(scores.raw, 1e-12)
+    counts = norm > decisions.LEAST_LEFT_SHARE * np.maximum(scores.raw, 1e-12)
     return np.where(counts, 0.5 * scores.score**2 / np.maximum(norm, 1e-12), 0.0)
 
 
@@ -128,7 +131,7 @@ def _null_gains(linearisation: Linearisation, columns: Array, scores: Scores, dr
     share = linearisation.solve @ (linearisation.slopes.T @ columns)
     score = columns.T @ drawn - share.T @ (linearisation.slopes.T @ drawn)
     norm = np.diag(scores.gram)
-    counts = (norm > LEAST_LEFT * np.maximum(scores.raw, 1e-12))[:, None]
+    counts = (norm > decisions.LEAST_LEFT_SHARE * np.maximum(scores.raw, 1e-12))[:, None]
     return np.where(counts, 0.5 * score**2 / np.maximum(norm, 1e-12)[:, None], 0.0)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances
@@ -12,7 +13,6 @@ Array = NDArray[np.float64]
 COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike
 SMALLEST, LARGEST = 0.004, 0.12  # of the input's range
 APART = 1.004
-MOST = 3
 
 
 def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
@@ -31,7 +31,7 @@ def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
         step = float(steps[index])
         if all(max(step, other) > APART * min(step, other) for other in found):
             found.append(step)
-        if len(found) == MOST:
+        if len(found) == decisions.MOST_INPUT_STEPS:
             break
     return found
 

@@ -3,14 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
 TIMES = ("t_0", "t_1", "t_s")
-APART_S = 1.5
-MOST = 3
 
 
 def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -66,14 +65,14 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[dict[str, float]]
     found: list[dict[str, float]] = []
     for index in order[:200]:
         start, duration = float(times_s[first[index]]), float(times_s[last[index]] - times_s[first[index]])
-        if all(abs(start - other["t_0"]) > APART_S for other in found):
+        if all(abs(start - other["t_0"]) > decisions.EVENTS_APART_S for other in found):
             found.append({"t_0": start, "duration": duration})
-        if len(found) == MOST:
+        if len(found) == decisions.MOST_INSTANTS:
             break
     return found
 
 
-def _peaks(power: Array, most: int = MOST) -> list[int]:
+def _peaks(power: Array, most: int = decisions.MOST_INSTANTS) -> list[int]:
     order: list[int] = []
     for index in np.argsort(-power).tolist():
         if all(abs(index - other) > 2 for other in order):

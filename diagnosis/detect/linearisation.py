@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Filter, Pass, columns_of
 from diagnosis.fit.gauss_newton import Fit, flat_slopes, stacked
@@ -15,8 +16,6 @@ from diagnosis.hypothesis.hypothesis import filter_input_under, passes
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
-GRID_S = 0.3
-MOST_STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +147,7 @@ class Linearisation:
     def instants(self) -> Array:
         """The grid of instants of steps (k,), in s."""
         end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
-        return np.arange(0.0, end, max(GRID_S, end / MOST_STEPS))
+        return np.arange(0.0, end, max(decisions.EVENT_GRID_S, end / decisions.MOST_EVENT_STEPS))
 
 
 def _of_one(values: Disturbances) -> Disturbances:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.hypothesis import noise_of
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
-COUNT = 48
 SEED = 20
 
 
@@ -36,7 +36,7 @@ def tail_of(largest: Array) -> Tail:
     return Tail(float(np.mean(largest)) - 0.5772 * scale, scale)
 
 
-def replicas(linearisation: Linearisation, count: int = COUNT) -> Array:
+def replicas(linearisation: Linearisation, count: int = decisions.REPLICAS) -> Array:
     """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
     rng = np.random.default_rng(SEED)
     flights = range(len(linearisation.filter_inputs))

@@ -7,6 +7,7 @@ from itertools import chain, product
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.input_steps import likely_steps
 from diagnosis.detect.instants import instants, is_event
 from diagnosis.detect.linearisation import Linearisation, Scores
@@ -21,12 +22,8 @@ from jobs.thread_map import thread_map
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
-MOST_STARTS = 8
 SMALL = 0.05
-# Of the largest input, at which a limit may lie; beyond it the corner alone is reached.
-PEAK_SHARES = (0.6, 0.75, 0.87, 0.96, 1.05, 1.2)
 FRICTIONS = ("coulomb", "load_friction", "friction_asymmetry")
-FARTHEST = 30.0  # of a size's reference that a score test may propose
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +71,9 @@ def shape_starts(effect: Effect) -> list[dict[str, float]]:
     """Values of an effect's shapes to start from, its sizes left out."""
     shapes = [parameter for parameter in effect.parameters if not parameter.is_size]
     choices = [p.starts or (p.reference,) for p in shapes]
-    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][:MOST_STARTS]
+    return [dict(zip((p.symbol for p in shapes), chosen, strict=True)) for chosen in product(*choices)][
+        : decisions.MOST_STARTS
+    ]
 
 
 def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -145,7 +144,7 @@ def _score_tests(case: Case, values: Mapping[str, Values], scores: Scores, units
             continue
         parameter, unit = case.library.effects[name].size, units[index]
         score = float(scores.score[index] / norm[index])
-        size = float(np.clip(score / norm[index], -FARTHEST, FARTHEST))
+        size = float(np.clip(score / norm[index], -decisions.FARTHEST_SIZE, decisions.FARTHEST_SIZE))
         value = float(np.clip((parameter.zero or 0.0) + size * unit, parameter.lower, parameter.upper))
         size = (value - (parameter.zero or 0.0)) / unit
         gain = float(size * norm[index] * (score - 0.5 * size * norm[index]))
@@ -194,7 +193,7 @@ def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[flo
     if effect.kind == "saturation":
         column = library.bound.model.inputs.index(library.bound.model.places.inputs[effect.place].variable)
         peak = max(float(np.max(np.abs(flight.filter_input.u[:, column]))) for flight in case.flights)
-        return [share * peak for share in PEAK_SHARES if peak > 0.0]
+        return [share * peak for share in decisions.PEAK_SHARES if peak > 0.0]
     if effect.kind != "quantization":
         return list(effect.size.starts) or [effect.size.reference]
     sensor = library.bound.model.places.sensors.get(effect.place)

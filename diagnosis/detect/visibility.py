@@ -4,16 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.hypothesis.case import Case
-
-SEEN = 4.0  # score that an effect needs to be seen
-BLIND = 0.6  # share of the library unseen at its reference sizes with which data cannot tell
 
 
 def cannot_tell(case: Case, score_tests: Sequence[ScoreTest]) -> bool:
     """Whether most of the library would go unseen in these data even at its reference sizes."""
-    return _share_hidden(case, score_tests) > BLIND
+    return _share_hidden(case, score_tests) > decisions.BLIND_SHARE
 
 
 def judged(case: Case, score_tests: Sequence[ScoreTest]) -> list[str]:
@@ -28,7 +26,10 @@ def judged(case: Case, score_tests: Sequence[ScoreTest]) -> list[str]:
 def hidden(case: Case, score_tests: Sequence[ScoreTest]) -> dict[str, float]:
     """By effect that would go unseen at its reference size: how many times that it could be; inf where it left no trace at all."""
     power = {entry.effect: entry.power for entry in score_tests}
-    found = {name: SEEN / max(power[name], 1e-9) if name in power else np.inf for name in judged(case, score_tests)}
+    found = {
+        name: decisions.SEEN_SCORE / max(power[name], 1e-9) if name in power else np.inf
+        for name in judged(case, score_tests)
+    }
     return {name: ratio for name, ratio in found.items() if ratio > 1.0}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.instants import target_of
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step
@@ -16,10 +17,6 @@ from sim.effect import Effect, EffectParameter
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
 APART_RAD_S = 0.3
-COUNTS, APART = 48, 0.12  # numbers of waves that are tried, and how far apart those chosen are, as a share
-MOST = 3
-NEAR_PERIODS = 3.0  # by which frequencies differ over a whole log for one not to be drawn to the other
-ITS_OWN, MOST_PARTS = 0.3, 5  # share of the motion that repeats with a frequency, or with a second to fifth of it
 
 
 def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
@@ -43,12 +40,17 @@ def _foreign(linearisation: Linearisation, speed: int, rates: Sequence[float]) -
     """Frequencies that are not the motion's own, nor so near to one that a fit would end there."""
     end = max(float(filter_input.t_s[-1] - filter_input.t_s[0]) for filter_input in linearisation.filter_inputs)
     own = [rate for rate in rates if _repeats(linearisation, speed, rate)]
-    return tuple(rate for rate in rates if all(abs(rate - other) > NEAR_PERIODS * 2.0 * np.pi / end for other in own))
+    return tuple(
+        rate for rate in rates if all(abs(rate - other) > decisions.NEAR_PERIODS * 2.0 * np.pi / end for other in own)
+    )
 
 
 def _repeats(linearisation: Linearisation, speed: int, rate: float) -> bool:
     """Whether the motion itself repeats with a frequency or with a whole part of it: what repeats alike is then rather the motion's own."""
-    return max(_share(linearisation, speed, rate / part) for part in range(1, MOST_PARTS + 1)) > ITS_OWN
+    return (
+        max(_share(linearisation, speed, rate / part) for part in range(1, decisions.MOST_PARTS + 1))
+        > decisions.OWN_MOTION_SHARE
+    )
 
 
 def _share(linearisation: Linearisation, state: int, rate: float) -> float:
@@ -71,11 +73,13 @@ def _likely_counts(linearisation: Linearisation, target: int, waves: EffectParam
     way = _way(linearisation, target)
     if way is None:
         return ()
-    fitted = np.geomspace(waves.lower, waves.upper, COUNTS)
+    fitted = np.geomspace(waves.lower, waves.upper, decisions.MOST_WAVES)
     scores = linearisation.scores_by(_sines(linearisation, target, way, fitted), target)
-    pairs = np.arange(2 * COUNTS).reshape(2, COUNTS).T
+    pairs = np.arange(2 * decisions.MOST_WAVES).reshape(2, decisions.MOST_WAVES).T
     own, along = scores.gram[pairs[:, :, None], pairs[:, None, :]], scores.score[pairs]
-    return tuple(float(np.exp(value)) for value in _best(np.log(fitted), _pair_gains(own, along), APART))
+    return tuple(
+        float(np.exp(value)) for value in _best(np.log(fitted), _pair_gains(own, along), decisions.WAVES_APART)
+    )
 
 
 def _sines(linearisation: Linearisation, target: int, way: int, waves: Array) -> list[Disturbances]:
@@ -127,7 +131,7 @@ def _best(fitted: Array, gains: Array, apart: float) -> tuple[float, ...]:
     for index in np.argsort(-gains).tolist():
         if all(abs(fitted[index] - other) > apart for other in chosen):
             chosen.append(float(fitted[index]))
-        if len(chosen) == MOST:
+        if len(chosen) == decisions.MOST_SINES:
             break
     return tuple(chosen)
 

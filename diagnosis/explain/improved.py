@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit.gauss_newton import GRID_SD, SCATTERS, Fit, seen_in_readings
+from diagnosis import decisions
+from diagnosis.fit.gauss_newton import SCATTERS, Fit, seen_in_readings
 from diagnosis.fit.jitter import jitter_sd, scatters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
@@ -69,7 +70,7 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
     spread = deviations(fit)[len(fit.hypothesis.theta) :]
     sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
     sd |= {
-        (name, s): GRID_SD * v
+        (name, s): decisions.GRID_SD * v
         for name, of in fit.hypothesis.effects.items()
         if seen_in_readings(name)
         for s, v in of.items()

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed, alike
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.detect.visibility import cannot_tell, hidden, judged
@@ -12,8 +13,6 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
 from diagnosis.library.effect_library import is_gust
 
-FAR = 3.0  # standard deviations beyond which a parameter is worth a sentence
-IMITATED = 0.995
 HIDDEN = "effects of the library would go unseen in these logs"
 UNSEEN = "too little excitation to see"
 UNFOLLOWED = "not looked for, as no filter knows where a rotor stands in its turn"
@@ -48,13 +47,13 @@ def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[str]:
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     theta = chosen.fit.hypothesis.theta
     p = coefficients(case, case.library.plain, chosen.fit.hypothesis.with_effects({}))  # what cannot be negative is not
-    for index in moved_parameters(case, theta, FAR):
+    for index in moved_parameters(case, theta, decisions.MOVED_FAR):
         place = int(case.free[index])
         yield (
             f"parameter {names[place]} is {theta[index]:+.1f} standard deviations from its stated value: "
             f"{p[place]:.4g} instead of {case.library.bound.p[place]:.4g}"
         )
-    for entry in moved_effects(chosen.fit, FAR):
+    for entry in moved_effects(chosen.fit, decisions.MOVED_FAR):
         symbol, stated = entry.parameter.symbol, entry.stated or 0.0
         sd = case.stated_sd[entry.effect][symbol]
         value = chosen.fit.hypothesis.effects[entry.effect][symbol]
@@ -79,7 +78,9 @@ def _twins(case: Case, weighed: Weighed | None) -> Iterator[str]:
 
 def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[str]:
     hidden = sorted(
-        entry.effect for entry in score_tests if entry.absorbed > IMITATED and entry.effect not in chosen.effects
+        entry.effect
+        for entry in score_tests
+        if entry.absorbed > decisions.IMITATED and entry.effect not in chosen.effects
     )
     if hidden:
         kinds = [f"{place} {', '.join(name.split('.')[1] for name in names)}" for place, names in _by_place(hidden)]
@@ -89,7 +90,7 @@ def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Ite
 def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[str]:
     """How large effects could be without being seen: a sentence for each place, the largest in units of its reference size first."""
     unseen = hidden(case, score_tests)
-    imitated = {entry.effect for entry in score_tests if entry.absorbed > IMITATED}
+    imitated = {entry.effect for entry in score_tests if entry.absorbed > decisions.IMITATED}
     if cannot_tell(case, score_tests):
         whole = len(judged(case, score_tests))
         yield f"{len(unseen)} of {whole} {HIDDEN} at the size that they may well have"

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.detect.detection import LEAST_LEFT, MEAN_GAIN, FormScores
+from diagnosis import decisions
+from diagnosis.detect.detection import MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.explain.curve import target_of
@@ -87,7 +88,10 @@ def _members(by_form: FormScores, place: str, chosen: Sequence[int]) -> list[int
     def may(index: int, form: Form) -> bool:
         alike = not chosen or form.target == by_form.forms[chosen[0]].target
         return (
-            form.place == place and alike and norm[index] > LEAST_LEFT * max(raw[index], 1e-12) and index not in chosen
+            form.place == place
+            and alike
+            and norm[index] > decisions.LEAST_LEFT_SHARE * max(raw[index], 1e-12)
+            and index not in chosen
         )
 
     return [index for index, form in enumerate(by_form.forms) if may(index, form)]

@@ -3,14 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
+
 Array = NDArray[np.float64]
-ONE_COUNT = 1.5  # counts, and rows: what is beyond is no single count, or has rows missing
-SLOW = 0.5  # counts from row to row; of faster motion an edge tells no more than the count
-UNDONE_ROWS, UNDONE = (
-    3,
-    0.05,
-)  # a count so short that ends as it began is noise's, and so large a share of all changes tells of it
-TURNED = 2.0  # how much faster than on average over a count an output passes the edge at which it came and goes
 
 
 def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array]:
@@ -22,20 +17,20 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
 
     v that of the parabola through this edge and those passed before and after, T the shorter of the times since and until.
 
-    Noise makes counts change to and fro beside an edge, so that none of them tells when it was passed: where more than UNDONE of all
+    Noise makes counts change to and fro beside an edge, so that none of them tells when it was passed: where more than UNDONE_SHARE of all
     changes are undone within UNDONE_ROWS, readings stay what they were.
     """
     seen = np.flatnonzero(np.isfinite(y))
     moved = np.diff(y[seen])
     after = np.flatnonzero(moved) + 1
-    if step <= 0.0 or len(after) < 2 or _undone(after, np.sign(moved[after - 1])) > UNDONE:
+    if step <= 0.0 or len(after) < 2 or _undone(after, np.sign(moved[after - 1])) > decisions.UNDONE_SHARE:
         return y, r
     rows, before = seen[after], seen[after - 1]
     edge, moved = 0.5 * (y[rows] + y[before]), moved[after - 1]
     h, lasts = t_s[rows] - t_s[before], np.diff(t_s[rows])
     travel = step * h / _shorter(lasts, np.sign(moved))
-    one_row = h < ONE_COUNT * float(np.median(np.diff(t_s[seen])))
-    sharp = (np.abs(moved) < ONE_COUNT * step) & one_row & (travel < SLOW * step)
+    one_row = h < decisions.ONE_COUNT * float(np.median(np.diff(t_s[seen])))
+    sharp = (np.abs(moved) < decisions.ONE_COUNT * step) & one_row & (travel < decisions.SLOW_COUNTS * step)
     forward = np.clip(_speed(lasts, np.diff(edge)) * h * np.sign(moved), 0.0, travel)
     found_y, found_r = y.copy(), r.copy()
     found_y[rows[sharp]] = (edge + 0.5 * forward * np.sign(moved))[sharp]
@@ -45,12 +40,12 @@ def sharpened(t_s: Array, y: Array, r: Array, step: float) -> tuple[Array, Array
 
 def _undone(after: NDArray[np.int64], signs: Array) -> float:
     """Which share of the changes at rows `after` (k,) go back within UNDONE_ROWS."""
-    return float(np.mean((np.diff(after) <= UNDONE_ROWS) & (signs[1:] != signs[:-1])))
+    return float(np.mean((np.diff(after) <= decisions.UNDONE_ROWS) & (signs[1:] != signs[:-1])))
 
 
 def _shorter(lasts: Array, signs: Array) -> Array:
     """The shorter of the times (k,) beside each change, `lasts` (k - 1,) between them; a count left where it was entered lasts less."""
-    lasts = np.where(signs[1:] != signs[:-1], lasts / TURNED, lasts)
+    lasts = np.where(signs[1:] != signs[:-1], lasts / decisions.TURNED, lasts)
     return np.asarray(np.minimum(np.append(np.inf, lasts), np.append(lasts, np.inf)))
 
 

@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.edges import sharpened
 from records.log import RunLog
 from records.plant import Plant
 from sim.paths.path import Held, InputStage, pass_inputs
 
 Array = NDArray[np.float64]
-BEYOND_USUAL = 3.0
-CLEARLY = 2.0
-MISSING = 1.5  # times the usual step from row to row
 AT_ONCE_S = 1e-7  # instants closer to one another are one
-MERELY_ROUNDED = 1.01  # times the variance of rounding: no noise that would carry readings over an edge and back
 # What stands for none: of a reading, and of what is known at an instant.
 READINGS = {"y": np.nan, "r": 1.0, "read": np.nan, "standing": 1.0, "usual": 0.0, "place": -1}
 AT_INSTANTS = {"row": -1, "lost": 0.0, "loss_power": 0.0, "untold_s": 0.0}
@@ -72,7 +69,7 @@ def filter_input_of(
     y, r = read.copy(), np.where(np.isfinite(single), standing * single, 1.0)
     for place, name in enumerate(outputs):
         step = plant.sensors.get(name, 0.0)
-        if single[place] < MERELY_ROUNDED * step**2 / 12.0:
+        if single[place] < decisions.MERELY_ROUNDED * step**2 / 12.0:
             y[:, place], r[:, place] = sharpened(log.t_s, read[:, place], r[:, place], step)
     return FilterInput(
         log.t_s,
@@ -96,7 +93,7 @@ def _untold(t_s: Array) -> Array:
     """How long a command is unknown behind each row (n,): rows that are missing had commands of their own."""
     step = np.append(np.diff(t_s), 0.0)
     usual = float(np.median(step[:-1])) if len(step) > 1 else 0.0
-    return np.where(step > MISSING * usual, step - usual, 0.0)
+    return np.where(step > decisions.MISSING_STEP * usual, step - usual, 0.0)
 
 
 def _standing(y: Array) -> Array:
@@ -122,10 +119,10 @@ def _variance(y: Array, step: float, stated: float) -> float:
     """
     second = np.abs(np.diff(y[np.isfinite(y)], 2))
     usual = max(1.4826 * float(np.median(second)), step) if second.size else 0.0
-    seen = float(np.mean(np.minimum(second, BEYOND_USUAL * usual) ** 2)) / 6.0 if second.size else 0.0
+    seen = float(np.mean(np.minimum(second, decisions.CLIPPED_CHANGE * usual) ** 2)) / 6.0 if second.size else 0.0
     if not step:
         return max(stated + _finest(y) ** 2 / 12.0, usual**2 / 6.0, 1e-18)
-    return min(seen, 100.0 * stated) if seen > CLEARLY * stated else stated
+    return min(seen, 100.0 * stated) if seen > decisions.CLEAR_SCATTER * stated else stated
 
 
 def _finest(y: Array) -> float:

@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit.gauss_newton import WIDE, Fit, from_zero
+from diagnosis import decisions
+from diagnosis.fit.gauss_newton import Fit, from_zero
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.effect_library import is_gust
 
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 WAVE_COST = 5.0  # nats for the choice of a sine's waves among some hundred
 GUST_COST = 10.0  # nats for a gust's size and time, which the fit does not count among its numbers
-SHAPE_COST = 2.0  # nats for a free shape, as if it were known to a seventh of its range
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,11 +24,11 @@ class FittedHypothesis:
 
 
 def evidence(found: Fit) -> float:
-    """Log evidence by Laplace's method, with theta normal, sizes WIDE times their reference, shapes known to a factor."""
+    """Log evidence by Laplace's method, with theta normal, sizes SIZE_SD times their reference, shapes known to a factor."""
     size = len(found.hypothesis.theta)
     sign, volume = np.linalg.slogdet(found.information)
     new = [(row, from_zero(entry.parameter)) for row, entry in enumerate(found.free, size) if entry.stated is None]
-    prior = sum(-np.log(WIDE) if is_size else -SHAPE_COST for _, is_size in new)
+    prior = sum(-np.log(decisions.SIZE_SD) if is_size else -decisions.SHAPE_COST for _, is_size in new)
     shapes = [row for row, is_size in new if not is_size]
     prior -= WAVE_COST * sum(entry.parameter.symbol in ("waves", "rate") for entry in found.free)
     prior -= STEPS_COST * sum(name.endswith("_input.quantization") for name in found.hypothesis.effects)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
@@ -19,9 +20,7 @@ DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 SCATTERS = "jitter"  # the symbol of a number that makes readings less sure (jitter.py)
-GRID_SD = 3e-4  # of a sensor's coarse step, as a share: a range of a thousand counts holds its grid to a count
 OUT_OF_REACH = 1e3  # references
-WIDE = 20.0  # sd of an effect's size before the data, in its reference
 
 
 @dataclass(frozen=True)
@@ -109,7 +108,9 @@ def likelihood_of(case: Case, hypothesis: Hypothesis) -> float:
 def log_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float:
     """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [
-        (hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0)) / entry.scale / WIDE
+        (hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0))
+        / entry.scale
+        / decisions.SIZE_SD
         for entry in free
         if from_zero(entry.parameter) and entry.stated is None
     ]
@@ -224,8 +225,8 @@ def _add_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free], informa
             pull[row] += (value - entry.stated) / entry.scale
             continue
         size = value - (entry.parameter.zero or 0.0)
-        information[row, row] += 1.0 / WIDE**2 if from_zero(entry.parameter) else 1e-6
-        pull[row] += size / entry.scale / WIDE**2 if from_zero(entry.parameter) else 0.0
+        information[row, row] += 1.0 / decisions.SIZE_SD**2 if from_zero(entry.parameter) else 1e-6
+        pull[row] += size / entry.scale / decisions.SIZE_SD**2 if from_zero(entry.parameter) else 0.0
 
 
 def _add_differences(

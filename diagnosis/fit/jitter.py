@@ -13,18 +13,15 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.fit.gauss_newton import SCATTERS, likelihood
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.library.sensor_effects import rates
 from jobs.thread_map import thread_map
 
-SHARES = (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45)  # of the delay
 FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
-LEAST = 5.0  # nats: scatter that explains less is left out
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
-SURE = 5.0  # standard errors, as fourth differences share readings: three if they did not
-LEAST_READINGS = 30  # faster ones than a step a row
 SHARED = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
 Array = NDArray[np.float64]
@@ -47,17 +44,17 @@ def most_shown_s(case: Case, output: str) -> float:
     place = case.library.outputs.index(output)
     found = [_roughness(flight.filter_input.t_s, flight.filter_input.read[:, place], step) for flight in case.flights]
     square, rate = np.concatenate(found, axis=1)
-    if len(rate) < LEAST_READINGS:
+    if len(rate) < decisions.LEAST_FAST_READINGS:
         return 0.0
     fast = rate >= np.median(rate)
     if fast.all():
         return 0.0
     more = float(np.mean(square[fast]) - np.mean(square[~fast]))
     error = float(np.hypot(*(np.std(square[half]) / np.sqrt(np.sum(half)) for half in (fast, ~fast))))
-    if more <= SURE * error:
+    if more <= decisions.SURE_ROUGHNESS * error:
         return 0.0
     faster = float(np.mean(rate[fast] ** 2) - np.mean(rate[~fast] ** 2))
-    return float(np.sqrt(SHARED * (more + SURE * error) / faster))
+    return float(np.sqrt(SHARED * (more + decisions.SURE_ROUGHNESS * error) / faster))
 
 
 def scatters(case: Case, name: str) -> bool:
@@ -72,7 +69,7 @@ def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
     the likelihood falls by less than that.
     """
     tau_s, jitter_s = (hypothesis.effects[name][symbol] for symbol in ("tau", SCATTERS))
-    reach = 0.2 * jitter_s if jitter_s > 0.0 else SHARES[0] * tau_s
+    reach = 0.2 * jitter_s if jitter_s > 0.0 else decisions.JITTER_SHARES[0] * tau_s
     found = _tried(case, hypothesis, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
     lost = found[jitter_s] - 0.5 * (found[max(jitter_s - reach, 0.0)] + found[jitter_s + reach])
     lost = lost if jitter_s > 0.0 else 2.0 * lost
@@ -94,12 +91,15 @@ def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
     if most_s == 0.0:
         return _with(hypothesis, name, 0.0)
     coarse = _tried(
-        case, hypothesis, name, (0.0, *(share * tau_s for share in SHARES if share * tau_s < most_s), most_s)
+        case,
+        hypothesis,
+        name,
+        (0.0, *(share * tau_s for share in decisions.JITTER_SHARES if share * tau_s < most_s), most_s),
     )
     best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
     found = coarse | _tried(case, hypothesis, name, [share * best for share in FINELY])
     best = max(found, key=lambda jitter_s: found[jitter_s])
-    return _with(hypothesis, name, best if found[best] > found[0.0] + LEAST else 0.0)
+    return _with(hypothesis, name, best if found[best] > found[0.0] + decisions.LEAST_JITTER_GAIN else 0.0)
 
 
 def _tried(case: Case, hypothesis: Hypothesis, name: str, values_s: Iterable[float]) -> dict[float, float]:

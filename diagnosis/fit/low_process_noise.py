@@ -9,12 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import process_noise_of
 from diagnosis.hypothesis.case import Case
 
-FARTHEST = 2.0  # decades that the process noise is lowered at most
-LEAST = 0.3  # and at least, for a second look to be worth its time
 FIRST_STEP = 0.6
 
 
@@ -22,8 +21,8 @@ def with_low_process_noise(case: Case, found: Fit) -> Fit | None:
     """The fit anew under low process noise; None where the air is calm already or the plant cannot follow its logs then."""
     process_noise = found.hypothesis.process_noise.copy()
     for place, level in enumerate(_lowest(case)):
-        process_noise[place] = min(process_noise[place], max(level, process_noise[place] - FARTHEST))
-    if np.max(found.hypothesis.process_noise - process_noise, initial=0.0) < LEAST:
+        process_noise[place] = min(process_noise[place], max(level, process_noise[place] - decisions.LOWEST_NOISE))
+    if np.max(found.hypothesis.process_noise - process_noise, initial=0.0) < decisions.LEAST_LOWERED:
         return None
     return fit(case, replace(found.hypothesis, process_noise=process_noise), rounds=4)
 

@@ -8,6 +8,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, filter_input_of
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.library.effect_library import EffectLibrary
@@ -16,7 +17,6 @@ from sim.bind import BoundPlant
 from sim.effect import Values
 
 Array = NDArray[np.float64]
-UNTOLD_S, UNTOLD_SHARE = 1.0, 0.1  # of a log, or that share of a short one, in which the filter finds its state
 LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of their stated deviations
 
 
@@ -143,7 +143,7 @@ def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:
 def _found_its_state(filter_input: FilterInput) -> FilterInput:
     """The filter input whose first readings do not count: until the filter knows the speeds, its innovations tell of its own start."""
     since = filter_input.t_s - filter_input.t_s[0]
-    untold = since < min(UNTOLD_S, UNTOLD_SHARE * since[-1])
+    untold = since < min(decisions.UNTOLD_S, decisions.UNTOLD_SHARE * since[-1])
     place, usual = filter_input.place.copy(), filter_input.usual.copy()
     place[untold], usual[untold] = -1, 0.0
     return replace(filter_input, place=place, usual=usual)

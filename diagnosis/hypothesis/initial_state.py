@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, beginning
 from diagnosis.filter.kalman import Noise
 from diagnosis.library.effect_library import EffectLibrary
@@ -12,12 +13,6 @@ from diagnosis.library.effect_library import EffectLibrary
 Array = NDArray[np.float64]
 START_S = 0.1
 RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
-FIRST_PROCESS_NOISE = -1.5  # before any log was seen
-START_ANGLE = 0.1  # how far an output may be from its first reading, which may be late or off
-START_SPEED = 1.0  # how far from rest a speed may be at the start, per s, in units of the output
-START_SHARE = 0.6  # how far from where it is begun another state may be, as a share of its rest under the first inputs
-REST_SHARES = (0.0, 0.5)  # of that rest, from which such a state is begun too: logs often start before the rotors do,
-JUDGED_S = 3.0  # and so long what is read tells
 RUB_S = 0.02  # how long friction about rest is in doubt
 
 
@@ -25,11 +20,11 @@ def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[st
     """Where a flight starts and its variances (states,): angles as first read, speeds as they then change, other states at rest under
     the first inputs, or short of it where the plant then follows the first readings better."""
     x0, p0, unread = _first_guess(library, filter_input)
-    early = beginning(filter_input, JUDGED_S)
+    early = beginning(filter_input, decisions.JUDGED_START_S)
     early = replace(early, place=np.where(np.isfinite(early.y), np.arange(early.rows)[:, None], -1))
     value = _likelihood(library, early, x0, p0, locked)
     for index in unread:
-        for share in REST_SHARES:
+        for share in decisions.REST_SHARES:
             other = x0.copy()
             other[index] = share * unread[index]
             fitted = _likelihood(library, early, other, p0, locked)
@@ -50,7 +45,7 @@ def _first_guess(library: EffectLibrary, filter_input: FilterInput) -> tuple[Arr
         if str(expression) not in library.states or not good.any():
             continue
         index = library.states.index(str(expression))
-        x0[index], p0[index] = y[good][0], START_ANGLE**2
+        x0[index], p0[index] = y[good][0], decisions.START_ANGLE**2
         slope = np.polyfit(filter_input.t_s[early][good], y[good], 1)[0] if good.sum() > 2 else 0.0
         positions[str(expression)] = (name, float(slope))
     speeds = {str(axis.velocity): str(axis.position) for axis in model.axes}
@@ -61,10 +56,10 @@ def _first_guess(library: EffectLibrary, filter_input: FilterInput) -> tuple[Arr
             continue
         if state in speeds:
             x0[index] = positions.get(speeds[state], ("", 0.0))[1]
-            p0[index] = START_SPEED**2
+            p0[index] = decisions.START_SPEED**2
         else:
             x0[index] = unread[index] = float(rest[index])
-            p0[index] = (START_SHARE * max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)) ** 2
+            p0[index] = (decisions.START_SHARE * max(abs(rest[index]), 0.5 * float(np.max(np.abs(rest))), 1e-3)) ** 2
     return x0, p0, unread
 
 
@@ -73,7 +68,7 @@ def _likelihood(
 ) -> float:
     """How well the plant without effects follows a filter input from a start, in air as restless as before any log was seen."""
     q, none = np.zeros(len(x0)), np.zeros(len(x0))
-    q[list(library.velocities)] = 10.0 ** (2.0 * FIRST_PROCESS_NOISE)
+    q[list(library.velocities)] = 10.0 ** (2.0 * decisions.FIRST_PROCESS_NOISE)
     rub = np.full(max(1, len(library.plain.filter.axes)), RUB_S)
     noise = Noise(q, rub, p0, none, float(np.median(np.diff(filter_input.t_s))))
     run = library.plain.filter.run(

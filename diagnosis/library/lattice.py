@@ -3,31 +3,33 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
+
 Array = NDArray[np.float64]
-OCCUPIED = 0.75  # share of the counts between the extremes that a fine encoder visits at least
-COARSE = 1.5  # encoder steps that a grid's step has at least
-ENOUGH = 8  # different readings
-ON_GRID = 0.98
 ROUNDED, TINY = 0.51, 1e-3  # encoder steps that rounding leaves at most; grids of no more than a step have no twin
-WITHIN = 0.55  # encoder steps: half a one is the encoder's rounding, the rest is for what is not known of the grid's own step
 ROUGHLY, FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
 
 
 def coarse_step(y: Array, step: float) -> float | None:
     """The step of the grid that the readings y (n,) lie on where it is coarser than `step`; None where it is not."""
     values = np.unique(np.round(y[np.isfinite(y)] / step)) * step
-    if step <= 0.0 or len(values) < ENOUGH:
+    if step <= 0.0 or len(values) < decisions.LEAST_VALUES:
         return None
     span = float(np.ptp(values))
-    if len(values) > OCCUPIED * (span / step + 1.0):
+    if len(values) > decisions.OCCUPIED_SHARE * (span / step + 1.0):
         return None
     near = _nearest(values, float(np.median(np.diff(values))) * (1.0 + ROUGHLY * AROUND))[0]
     twin = near / max(near / step - 1.0, TINY)  # meets the same counts, but for rounding
-    fine = [_nearest(values, grid * (1.0 + FINELY * AROUND)) for grid in (near, twin) if grid > COARSE * step]
+    fine = [
+        _nearest(values, grid * (1.0 + FINELY * AROUND)) for grid in (near, twin) if grid > decisions.COARSE_STEP * step
+    ]
     if not fine:
         return None
     best = max((grid for grid, miss in fine if miss <= ROUNDED * step), default=min(fine, key=lambda one: one[1])[0])
-    lies = on_grid(values, best, step) >= ON_GRID and on_grid(_counts(values, step), best, step) <= OCCUPIED
+    lies = (
+        on_grid(values, best, step) >= decisions.ON_GRID_SHARE
+        and on_grid(_counts(values, step), best, step) <= decisions.OCCUPIED_SHARE
+    )
     return best if lies else None
 
 
@@ -39,17 +41,17 @@ def _nearest(values: Array, grids: Array) -> tuple[float, float]:
 
 def on_grid(values: Array, grid: float, step: float) -> float:
     """Share of the values that lie on a grid's points, as an encoder rounds them."""
-    return float(np.mean(np.abs(values - grid * np.round(values / grid)) <= WITHIN * step))
+    return float(np.mean(np.abs(values - grid * np.round(values / grid)) <= decisions.WITHIN_STEPS * step))
 
 
 def grid_evidence(y: Array, grid: float, step: float) -> float:
     """Log likelihood that readings gain from lying on a grid instead of anywhere: for each change of the reading -ln of the share of the
     encoder's counts that lie on it. That share is counted: a grid of 5/3 steps, say, is near every count, and tells nothing."""
     values = y[np.isfinite(y)]
-    if grid <= COARSE * step or len(values) < 2:
+    if grid <= decisions.COARSE_STEP * step or len(values) < 2:
         return 0.0
     changes = values[1:][np.diff(values) != 0.0]
-    if len(changes) == 0 or on_grid(changes, grid, step) < ON_GRID:
+    if len(changes) == 0 or on_grid(changes, grid, step) < decisions.ON_GRID_SHARE:
         return 0.0
     return float(-len(changes) * np.log(on_grid(_counts(changes, step), grid, step)))
 

@@ -6,6 +6,7 @@ from itertools import chain
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
@@ -13,22 +14,9 @@ from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.library.input_effects import LOST_FRAMES
-from diagnosis.search.exchange import FURTHER_GAIN, exchange, fit_twins
+from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
 from jobs.thread_map import thread_map
-
-SINGLES, PARTNERS, BEAM = 7, 3, (3, 2)
-LOW_NOISE_SINGLES = 4  # from looks under low process noise, and as many from those under the air as it seems
-WORTH_A_PLACE = 0.1  # of the best look under low process noise
-CLOSE, CLOSE_SHARE = 60.0, 0.05  # nats, and share of the gap, within which another pair is worth a third effect
-LEAST_GAIN = 4.0  # of the log likelihood at a score test
-LEAST_SHARE = 0.01  # of the best score test
-WORTH = 14
-SETTLED = 5
-ONCE_MORE = 3  # of the best fits, those that went far
-CERTAIN, LIKELY = 3.5, 1.5  # standard deviations
-MISSED = 15.0  # nats
-WORTH_REFINING = 0.2  # of the best first fit's gain
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,11 +68,14 @@ def alone(
     worth = _worth(score_tests)
     found = {} if lossy is None else {frozenset((LOST_FRAMES,)): as_fitted(case, lossy)}
     low_noise = with_low_process_noise(case, nominal)
-    jobs = _promising(nominal, score_tests, False)[:SINGLES]
+    jobs = _promising(nominal, score_tests, False)[: decisions.SINGLES]
     if low_noise is not None:
         low_noise_score_tests = score_effects(case, linearised(case, low_noise), names)
         worth |= _worth(low_noise_score_tests)
-        jobs = [*_first_of_each(_promising(low_noise, low_noise_score_tests, True)), *jobs[:LOW_NOISE_SINGLES]]
+        jobs = [
+            *_first_of_each(_promising(low_noise, low_noise_score_tests, True)),
+            *jobs[: decisions.LOW_NOISE_SINGLES],
+        ]
     _fit_all(case, jobs, found, first)
     fit_twins(case, found)
     return Alone(found, first, frozenset(worth), linearisation, tuple(score_tests))
@@ -93,7 +84,7 @@ def alone(
 def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     """Fit pairs and triples of `names` that grow from the single effects."""
     found, first, worth = dict(begun.found), begun.nominal, begun.worth
-    for beam in BEAM:
+    for beam in decisions.BEAM:
         size = max((len(chosen) for chosen in found), default=0)
         best = beam_of([entry for entry in found.values() if len(entry.effects) == size], first, beam)
         grown = _grown(case, best, names, worth)
@@ -108,7 +99,7 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
 
 def _worth(score_tests: Sequence[ScoreTest]) -> set[str]:
     """Effects that are worth a costly look beside others."""
-    return {entry.effect for entry in score_tests[:WORTH] if entry.gain > LEAST_GAIN}
+    return {entry.effect for entry in score_tests[: decisions.COSTLY_EFFECTS] if entry.gain > decisions.LEAST_GAIN}
 
 
 def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count: int) -> list[FittedHypothesis]:
@@ -121,24 +112,26 @@ def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count
     likeliest = max(ranked, key=lambda entry: entry.fit.log_likelihood, default=None)
     if likeliest is None:
         return []
-    near = ranked[0].evidence - max(CLOSE, CLOSE_SHARE * (ranked[0].evidence - nominal.evidence))
+    near = ranked[0].evidence - max(
+        decisions.CLOSE_PAIR, decisions.CLOSE_PAIR_SHARE * (ranked[0].evidence - nominal.evidence)
+    )
     kept = [entry for entry in ranked[:count] if len(entry.effects) == 1 or entry.evidence > near]
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
 def _promising(start: Fit, score_tests: Sequence[ScoreTest], low_noise: bool) -> list[Job]:
     """Effects worth a fit from `start`, best first."""
-    least = max(LEAST_GAIN, LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
+    least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
     return [Job(start, entry, low_noise) for entry in score_tests if entry.gain > least]
 
 
 def _first_of_each(jobs: Sequence[Job]) -> list[Job]:
     """The first CALM_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
     better than the one effect of an axis that is there."""
-    kept = list(jobs[:LOW_NOISE_SINGLES])
+    kept = list(jobs[: decisions.LOW_NOISE_SINGLES])
     places = {_place(job) for job in kept}
-    for job in jobs[LOW_NOISE_SINGLES:]:
-        if _place(job) not in places and job.score_test.gain > WORTH_A_PLACE * jobs[0].score_test.gain:
+    for job in jobs[decisions.LOW_NOISE_SINGLES :]:
+        if _place(job) not in places and job.score_test.gain > decisions.WORTH_A_PLACE * jobs[0].score_test.gain:
             places.add(_place(job))
             kept.append(job)
     return kept
@@ -151,7 +144,7 @@ def _place(job: Job) -> str:
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     """Once more the best of all, until effect and process noise agree: a fit not yet at its end would lose to one with an idle effect."""
     best = sorted((entry for entry in found.values() if _certain(entry, found)), key=lambda entry: -entry.evidence)
-    for entry in thread_map(lambda fitted: refined(case, fitted), best[:SETTLED]):
+    for entry in thread_map(lambda fitted: refined(case, fitted), best[: decisions.SETTLED_FITS]):
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
 
@@ -162,7 +155,7 @@ def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypo
     for name, certainty in certainties(fitted.fit).items():
         without = found.get(frozenset(fitted.effects) - {name})
         missed = 0.0 if without is None else fitted.evidence - without.evidence
-        if certainty < CERTAIN and (certainty < LIKELY or missed < MISSED):
+        if certainty < decisions.CERTAIN and (certainty < decisions.LIKELY or missed < decisions.MISSED):
             return False
     return True
 
@@ -202,13 +195,15 @@ def _grown(case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], w
         return []
     low_noise = thread_map(lambda fitted: with_low_process_noise(case, fitted.fit), best)
     starts = [air or fitted.fit for air, fitted in zip(low_noise, best, strict=True)]
-    counts = [PARTNERS] * len(best)
+    counts: list[int] = [decisions.PARTNERS] * len(best)
     if low_noise[0] is not None:
         low_noise, starts, counts = [*low_noise, None], [*starts, best[0].fit], [*counts, 1]
 
     def partners(start: Fit, air: Fit | None, count: int) -> list[Job]:
         score_tests = score_effects(case, linearised(case, start), names, worth)
-        return [Job(start, entry, air is not None) for entry in score_tests if entry.gain > FURTHER_GAIN][:count]
+        return [Job(start, entry, air is not None) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN][
+            :count
+        ]
 
     jobs = thread_map(partners, starts, low_noise, counts)
     of_the_first = [*jobs[0], *chain.from_iterable(jobs[len(best) :])]
@@ -234,9 +229,9 @@ def _fit_all(
     if not begun:
         return False
     best, first = max(entry.evidence for entry in begun), known.evidence
-    good = [entry for entry in begun if entry.evidence - first >= WORTH_REFINING * (best - first)]
+    good = [entry for entry in begun if entry.evidence - first >= decisions.WORTH_REFINING * (best - first)]
     ends = [entry for entry in thread_map(lambda fitted: refined(case, fitted), good) if entry]
     done = sorted(ends, key=lambda entry: -entry.evidence)
-    done[:ONCE_MORE] = thread_map(lambda entry: once_more(case, entry), done[:ONCE_MORE])
+    done[: decisions.ONCE_MORE] = thread_map(lambda entry: once_more(case, entry), done[: decisions.ONCE_MORE])
     found.update({frozenset(entry.effects): entry for entry in (*begun, *done)})
     return True

@@ -4,6 +4,7 @@ from collections.abc import Set
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.evidence import FittedHypothesis
@@ -11,10 +12,6 @@ from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.fitting import Job, at_its_place, keep_better, refined
 from jobs.thread_map import thread_map
-
-FURTHER_GAIN = 10.0  # nats that a further effect must promise
-NEAR_BEST = 30.0  # nats that a first fit may be short of the best to be fitted to its end
-INSTEAD, NEARLY = 3, 0.03  # effects tried in the place of another, and the share of its gain that they must promise
 
 
 def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: Set[str]) -> None:
@@ -25,7 +22,7 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
     """
     best = max(found.values(), key=lambda entry: entry.evidence)
     fewer = max((entry.evidence for entry in found.values() if len(entry.effects) < len(best.effects)), default=-np.inf)
-    while len(best.effects) > 1 and best.evidence > fewer + FURTHER_GAIN:
+    while len(best.effects) > 1 and best.evidence > fewer + decisions.FURTHER_GAIN:
         better = _exchanged(case, best, found, worth)
         if better is None:
             return
@@ -60,7 +57,7 @@ def _exchanged(
     fitted = [entry for entry in thread_map(lambda job: at_its_place(case, job), jobs) if entry]
     keep_better(found, fitted)
     first = max(fitted, key=lambda entry: entry.evidence, default=None)
-    if first is None or first.evidence < best.evidence - NEAR_BEST:
+    if first is None or first.evidence < best.evidence - decisions.NEAR_BEST:
         return None
     end = refined(case, first)
     return end if end is not None and end.evidence > best.evidence else None
@@ -73,5 +70,5 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
     if start is None:
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
-    least = max(FURTHER_GAIN, NEARLY * (fitted.fit.log_likelihood - start.log_likelihood))
-    return [Job(start, entry, True) for entry in score_tests if entry.gain > least][:INSTEAD]
+    least = max(decisions.FURTHER_GAIN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
+    return [Job(start, entry, True) for entry in score_tests if entry.gain > least][: decisions.INSTEAD]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.score_tests import ScoreTest, holding
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero, likelihood
@@ -14,13 +15,9 @@ from diagnosis.fit.low_process_noise import with_own_process_noise
 from diagnosis.fit.process_noise import process_noise_of, with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
-from diagnosis.hypothesis.initial_state import FIRST_PROCESS_NOISE
 
 Array = NDArray[np.float64]
-ASTRAY = 2.0  # mean square of the parameters' steps, in standard deviations, beyond which a fit also starts from none
-FAR = 1.0  # the same for a fit that was refined
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
-LEAST_SLIP = 1.5  # counts
 POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
 FINELY = (1e-3, 2e-4, 4e-5)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
 LEVELS = np.geomspace(
@@ -50,7 +47,7 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
     astray = start if found is None else found.hypothesis
-    if astray.theta @ astray.theta > ASTRAY * len(astray.theta):
+    if astray.theta @ astray.theta > decisions.ASTRAY_FIRST * len(astray.theta):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)
@@ -83,9 +80,9 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     leads back from further off.
     """
     hypothesis = fitted.fit.hypothesis
-    if hypothesis.theta @ hypothesis.theta < FAR * len(hypothesis.theta):
+    if hypothesis.theta @ hypothesis.theta < decisions.ASTRAY_REFINED * len(hypothesis.theta):
         return fitted
-    restless = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, FIRST_PROCESS_NOISE))
+    restless = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE))
     starts = [_from_stated(case, begun) for begun in (hypothesis, restless)]
     ends = [refined(case, as_fitted(case, start)) for start in starts if start is not None]
     return max((fitted, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
@@ -139,7 +136,7 @@ def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:
 
 def _from_stated(case: Case, start: Hypothesis) -> Fit | None:
     """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
-    low_noise = np.minimum(start.process_noise, FIRST_PROCESS_NOISE)
+    low_noise = np.minimum(start.process_noise, decisions.FIRST_PROCESS_NOISE)
     found = fit(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise), rounds=4)
     return None if found is None else with_own_process_noise(case, found)
 
@@ -156,7 +153,7 @@ def _whole_counts(case: Case, found: Fit) -> bool:
     for name, values in found.hypothesis.effects.items():
         if name.endswith(".count_slip"):
             sensor = library.bound.model.places.sensors[name.split(".")[0]].output
-            if abs(values["jump"]) < LEAST_SLIP * library.bound.plant.sensors[sensor]:
+            if abs(values["jump"]) < decisions.LEAST_SLIP * library.bound.plant.sensors[sensor]:
                 return False
     return True
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit, likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
@@ -16,9 +17,6 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map
 
-TIMES_S = (0.15, 0.5, 1.5, 5.0)
-SHARES = (0.003, 0.01, 0.03, 0.1)  # of the axis' usual torque
-LOWER_NOISE = 0.7  # decades by which the process noise is lower where a gust takes its place
 FACTORS = (2.0, 1.4, 1.15)  # by which size and time are then tried apart
 ROUNDS = 4
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
@@ -53,9 +51,9 @@ def _with(hypothesis: Hypothesis, name: str, numbers: Mapping[str, float]) -> Hy
 def _gust(case: Case, nominal: FittedHypothesis, axis: str) -> FittedHypothesis | None:
     name, hypothesis = f"{axis}.gust", nominal.fit.hypothesis
     process_noise = hypothesis.process_noise.copy()
-    process_noise[[entry.name for entry in case.library.bound.model.axes].index(axis)] -= LOWER_NOISE
+    process_noise[[entry.name for entry in case.library.bound.model.axes].index(axis)] -= decisions.GUST_LOWERS_NOISE
     size = case.library.bound.model.places.axes[axis].torque_size
-    starts = [{"sigma": share * size, "T": T} for T in TIMES_S for share in SHARES]
+    starts = [{"sigma": share * size, "T": T} for T in decisions.GUST_TIMES_S for share in decisions.GUST_SHARES]
     low_noise = replace(hypothesis, process_noise=process_noise)
     start = _likeliest(case, [low_noise.with_effects({**hypothesis.effects, name: values}) for values in starts])
     for factor in FACTORS:

@@ -22,6 +22,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.fit.gauss_newton import Fit, fit, unfitted
@@ -34,14 +35,11 @@ from sim.bind import evaluated
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
-NEAR = range(-2, 4)  # rows about one behind which others are missing
 APART = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 12, 0.1
 LITTLE = 0.005  # of what losses gain, below which another round is not worth its time
 ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
-FAR = 1.0  # mean square of the parameters' steps, in standard deviations, beyond which losses are looked for from the stated ones too
-WORTH = 10.0  # nats below which no frame counts as lost
 OPENING = Lock()
 
 
@@ -55,11 +53,11 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
         return case, None
     answers = _all_answers(case, linearisation)
     alone = _with_ratios(case, linearisation, answers, 0)
-    if evidence(alone, likely_share(alone)) < WORTH:
+    if evidence(alone, likely_share(alone)) < decisions.LEAST_LOSS_GAIN:
         return alone, None
     found, fitted = _settled(case, linearisation, answers)
     theta = linearisation.fit.hypothesis.theta
-    if fitted is not None and theta @ theta > FAR * len(theta):
+    if fitted is not None and theta @ theta > decisions.ASTRAY_LOSSES * len(theta):
         found, fitted = _likelier((found, fitted), _from_stated(case, linearisation))
     return found, fitted
 
@@ -67,12 +65,12 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
 def _settled(case: Case, linearisation: Linearisation, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
     """What the innovations say of every frame, found again with what was found supposed until nothing is gained."""
     found, fitted = _fitted(case, linearisation, answers)
-    if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + WORTH:
+    if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + decisions.LEAST_LOSS_GAIN:
         return found, None
     for _ in range(ROUNDS):
         refined_noise = linearised(found, fitted)
         again, better = _fitted(found, refined_noise, _all_answers(found, refined_noise))
-        if better is None or better.log_posterior < fitted.log_posterior + WORTH:
+        if better is None or better.log_posterior < fitted.log_posterior + decisions.LEAST_LOSS_GAIN:
             break
         more = better.log_posterior - fitted.log_posterior
         found, fitted = again, better
@@ -102,7 +100,7 @@ def _fitted(case: Case, linearisation: Linearisation, answers: Sequence[Array]) 
     """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
     found = _with_ratios(case, linearisation, answers, SWEEPS)
     share = likely_share(found)
-    if evidence(found, share) < WORTH:
+    if evidence(found, share) < decisions.LEAST_LOSS_GAIN:
         return found, None
     hypothesis = linearisation.fit.hypothesis
     start = hypothesis.with_effects({**hypothesis.effects, LOST_FRAMES: {"p": share}})
@@ -186,8 +184,9 @@ def _hypothesis(filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
 def _judged(filter_input: FilterInput) -> NDArray[np.uint8]:
     """Whether each frame can be judged (rows,): not about rows that the log lacks, as nobody knows what was commanded there."""
     judged = np.ones(filter_input.rows, dtype=np.uint8)
+    before, behind = decisions.ABOUT_MISSING_ROWS
     for row in np.flatnonzero(filter_input.untold_s):
-        judged[max(row + NEAR.start, 0) : row + NEAR.stop] = 0
+        judged[max(row + before, 0) : row + behind] = 0
     return judged
 
 

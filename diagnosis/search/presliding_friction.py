@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from diagnosis import decisions
 from diagnosis.detect.score_tests import FRICTIONS
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
@@ -11,16 +12,13 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.effect import Effect, Values
 
-FITTED = 2  # of those that promise most
 FOLD = 2.0  # from one size that is tried to the next
-LEAST = 20.0  # nats by which an axis must explain more when it creeps or gives,
-WORTH = 80.0  # and all together: rigs that creep gained 110 to 765, sealed flights whose friction is a bed of stiff bristles 63 at most
 
 
 def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> Case:
     """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first; else the same.
 
-    They must then be WORTH and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
+    They must then be YIELDING_GAIN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
     for it.
     """
@@ -29,8 +27,8 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
         ((fitted.evidence + gained, fitted, hypothesis) for fitted, hypothesis, gained in asked if gained > 0.0),
         key=lambda entry: -entry[0],
     )
-    best, yields = found[0].evidence + WORTH + further, dict[str, Values]()
-    for _, fitted, hypothesis in promising[:FITTED]:
+    best, yields = found[0].evidence + decisions.YIELDING_GAIN + further, dict[str, Values]()
+    for _, fitted, hypothesis in promising[: decisions.YIELDING_FITTED]:
         ended = fit(case, hypothesis, rounds=4)
         if ended is not None and evidence(ended) > best:
             best = evidence(ended)
@@ -46,7 +44,7 @@ def needed(case: Case, best: FittedHypothesis) -> bool:
     """Whether a hypothesis found where axes yield is worth as much more as that must be, than the same under `case`, where they do not."""
     kept = {name: v for name, v in best.fit.hypothesis.effects.items() if name in case.stated or name in best.effects}
     found = fit(case, with_process_noise(case, best.fit.hypothesis.with_effects(kept)), rounds=4)
-    return found is None or best.evidence > evidence(found) + WORTH
+    return found is None or best.evidence > evidence(found) + decisions.YIELDING_GAIN
 
 
 def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
@@ -56,7 +54,7 @@ def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
         ways = [_likeliest(case, hypothesis, effect, value) for effect in _unstated(case, found.hypothesis, axis)]
         if ways:
             fitted, reached = max(ways, key=lambda way: way[1])
-            if reached > value + LEAST:
+            if reached > value + decisions.LEAST_YIELDING_GAIN:
                 hypothesis, value = fitted, reached
     return hypothesis, value - found.log_likelihood
 

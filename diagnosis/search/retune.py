@@ -7,6 +7,7 @@ import numpy as np
 import sympy
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
@@ -14,16 +15,11 @@ from diagnosis.fit.process_noise import process_noise_of
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
-WIDER = 8.0
-FAR = 4.0  # standard deviations
-PULLED = 2.5  # by which the fit within the spread must have moved something
-NATS_PER_PARAMETER = 4.0
-MOST = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Retune:
-    """The fit where the spreads of what had moved are taken WIDER times as wide, its parameters that left them, and its evidence."""
+    """The fit where the spreads of what had moved are taken RETUNE_WIDER times as wide, its parameters that left them, and its evidence."""
 
     fitted: FittedHypothesis
     parameters: tuple[str, ...]
@@ -36,12 +32,12 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
 
     Only what the fit within the spread had moved is set free: each spread that is taken wider costs evidence.
     """
-    moved = moved_parameters(case, nominal.hypothesis.theta, PULLED)[:MOST]
-    own = {entry.effect for entry in moved_effects(nominal, PULLED)}
+    moved = moved_parameters(case, nominal.hypothesis.theta, decisions.RETUNE_PULLED)[: decisions.RETUNE_MOST]
+    own = {entry.effect for entry in moved_effects(nominal, decisions.RETUNE_PULLED)}
     if not moved and not own:
         return None
     factor = np.ones(len(case.free))
-    factor[moved] = WIDER
+    factor[moved] = decisions.RETUNE_WIDER
     wider = _wider(case, factor, own)
     start = replace(nominal.hypothesis, theta=nominal.hypothesis.theta / factor)
     found = fit(wider, start, rounds=6)
@@ -51,22 +47,22 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     if found is None:
         return None
     stated = _as_stated(found, factor, own)
-    far = [index for index in moved_parameters(case, stated.hypothesis.theta, FAR) if index in moved]
-    numbers = [entry for entry in moved_effects(stated, FAR) if entry.effect in own]
-    if not 0 < len(far) + len(numbers) <= MOST:
+    far = [index for index in moved_parameters(case, stated.hypothesis.theta, decisions.RETUNE_FAR) if index in moved]
+    numbers = [entry for entry in moved_effects(stated, decisions.RETUNE_FAR) if entry.effect in own]
+    if not 0 < len(far) + len(numbers) <= decisions.RETUNE_MOST:
         return None
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     parameters = tuple(names[int(case.free[index])] for index in far)
     places = [place for name in parameters for place in places_of(case, name)]
     places += [entry.effect.split(".")[0] for entry in numbers]
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
-    score = evidence(found) - NATS_PER_PARAMETER * len(told)
+    score = evidence(found) - decisions.RETUNE_NATS * len(told)
     return Retune(FittedHypothesis((), stated, evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
 
 
 def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
     """The fit of a wider case counted in the stated standard deviations."""
-    numbers = np.array([WIDER if entry.effect in own else 1.0 for entry in found.free])
+    numbers = np.array([decisions.RETUNE_WIDER if entry.effect in own else 1.0 for entry in found.free])
     units = np.append(factor, numbers)
     free = [replace(entry, scale=entry.scale / unit) for entry, unit in zip(found.free, numbers, strict=True)]
     return replace(
@@ -79,11 +75,12 @@ def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:
 
 
 def _wider(case: Case, factor: Array, own: Collection[str]) -> Case:
-    """The case with the coefficients' spreads times `factor` (free,), and those of the effects in `own` WIDER times as wide."""
+    """The case with the coefficients' spreads times `factor` (free,), and those of the effects in `own` RETUNE_WIDER times as wide."""
     sd = case.library.bound.sd.copy()
     sd[case.free] *= factor
     stated_sd = {
-        name: {s: WIDER * v if name in own else v for s, v in of.items()} for name, of in case.stated_sd.items()
+        name: {s: decisions.RETUNE_WIDER * v if name in own else v for s, v in of.items()}
+        for name, of in case.stated_sd.items()
     }
     return replace(case, library=replace(case.library, bound=replace(case.library.bound, sd=sd)), stated_sd=stated_sd)
 

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.hypothesis.case import Case, Flight
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.prediction import predictions, windows
 
 Array = NDArray[np.float64]
-MOVES = 5.0  # times its sensor's floor that an output must move within a window to count
 
 
 def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
@@ -23,7 +23,7 @@ def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     for place, name in enumerate(outputs):
         floor = case.flights[0].filter_input.single[case.library.outputs.index(name)]
         known = np.isfinite(own[:, place])
-        if known.any() and (change := float(np.mean(still[known, place]))) > MOVES**2 * floor:
+        if known.any() and (change := float(np.mean(still[known, place]))) > decisions.MOVES_FLOORS**2 * floor:
             found[name] = float(np.sqrt(np.mean(own[known, place]) / change))
     return found
 

@@ -7,11 +7,12 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
+from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import nominal_fit
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.hypothesis.case import UNTOLD_S, Case, make_case
+from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.search.lost_frames import drives
@@ -23,7 +24,7 @@ from sim.simulate import Noise, simulate
 from tests.diagnosis.conftest import Fly
 from toolchain.host import CText, build_shared, c_text, load_shared
 
-TOLD = round(UNTOLD_S / 0.01)  # the first row that counts
+TOLD = round(decisions.UNTOLD_S / 0.01)  # the first row that counts
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,14 @@ from threading import Barrier
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import nominal_fit
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import lost_frames
-from diagnosis.search.lost_frames import APART, SWEEPS, WORTH, _ratios, evidence, likely_share, with_losses
+from diagnosis.search.lost_frames import APART, SWEEPS, _ratios, evidence, likely_share, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform
@@ -57,7 +58,7 @@ def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
 def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> None:
     case, fitted = losses(plant, fly(41))
     assert fitted is None
-    assert evidence(case, likely_share(case)) < WORTH
+    assert evidence(case, likely_share(case)) < decisions.LEAST_LOSS_GAIN
 
 
 def test_a_loop_that_is_late_loses_no_frames(plant: BoundPlant, fly: Fly) -> None:

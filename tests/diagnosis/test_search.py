@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
@@ -16,7 +17,7 @@ from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import LEAST_GAIN, Search, certainties
+from diagnosis.search.beam import Search, certainties
 from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, once_more, refined, rough
 from sim.added_effects import library
@@ -99,7 +100,7 @@ def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: F
     assert 6.8 < max(np.max(flight.filter_input.u[:, 0]) for flight in case.flights) < 0.9 * 8.5
     score_tests = score_effects(case, linearised(case, nominal_fit(case)), case.library.candidates)
     gains = {entry.effect: entry.gain for entry in score_tests}
-    assert gains["main_input.saturation"] > LEAST_GAIN
+    assert gains["main_input.saturation"] > decisions.LEAST_GAIN
 
 
 def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: BoundPlant, fly: Fly) -> None:

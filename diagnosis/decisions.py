@@ -1,0 +1,411 @@
+"""Every constant that decides something in a diagnosis: value, unit, reason, and the data that set it.
+
+What only bounds an iteration, spaces a grid or scales a number stands where it is used. `table()` lists all of these.
+"""
+
+from collections.abc import Iterator
+
+from records.deciding import Count, Counts, Decides, Limit, Limits
+
+DEVELOPMENT = "development cases of the sealed generator, seeds 21 and 22"
+DEVELOPMENT_21 = "160 development cases, seed 21"
+
+
+# Readings (filter, library)
+CLIPPED_CHANGE = Limit(
+    3.0,
+    "usual changes",
+    "second differences of readings are clipped there: the edge of a step is no noise",
+    DEVELOPMENT,
+)
+CLEAR_SCATTER = Limit(
+    2.0,
+    "stated variances",
+    "measured scatter counts as noise only where it is clearly above what the sensor states: rounding alone is none",
+    DEVELOPMENT,
+)
+MISSING_STEP = Limit(
+    1.5, "usual steps", "a longer step has rows missing, and the commands within it are not known", DEVELOPMENT
+)
+MERELY_ROUNDED = Limit(
+    1.01,
+    "variances of rounding",
+    "with more noise a reading is carried over an edge and back, and the edge tells nothing",
+)
+ONE_COUNT = Limit(
+    1.5, "counts, rows", "a larger change is no single count, a longer step has rows missing", "quiet development cases"
+)
+SLOW_COUNTS = Limit(
+    0.5, "counts per row", "of faster motion an edge tells no more than the count", "quiet development cases"
+)
+UNDONE_ROWS = Count(3, "rows", "a count that ends as it began within so few rows is noise's", "quiet development cases")
+UNDONE_SHARE = Limit(
+    0.05, "share of changes", "where more of all changes are undone, edges are not used", "quiet development cases"
+)
+TURNED = Limit(
+    2.0,
+    "factor",
+    "at a turning point an edge is passed faster than on average over the count",
+    "quiet development cases",
+)
+OCCUPIED_SHARE = Limit(
+    0.75, "share of counts", "a fine encoder visits so many of the counts between its extremes", DEVELOPMENT
+)
+COARSE_STEP = Limit(1.5, "encoder steps", "a coarser grid's step has at least so many", DEVELOPMENT)
+LEAST_VALUES = Count(8, "different readings", "fewer show no grid")
+ON_GRID_SHARE = Limit(0.98, "share of readings", "so many lie on a grid that is there", DEVELOPMENT)
+WITHIN_STEPS = Limit(
+    0.55, "encoder steps", "half is the encoder's rounding, the rest is what is not known of the grid's own step"
+)
+
+# Where a log begins (hypothesis)
+UNTOLD_S = Limit(
+    1.0,
+    "s",
+    "the first second finds the filter's state and does not count: without it logs without any effect gave a "
+    "push at their start",
+    DEVELOPMENT,
+)
+UNTOLD_SHARE = Limit(0.1, "share of the log", "the same of a short one", DEVELOPMENT)
+FIRST_PROCESS_NOISE = Limit(
+    -1.5, "log10 rad/s per sqrt(s)", "from which every fit of the process noise starts, before any log was seen"
+)
+START_ANGLE = Limit(0.1, "output units", "the first reading may be late or off by so much", DEVELOPMENT)
+START_SPEED = Limit(1.0, "output units per s", "a run may start so far from rest", DEVELOPMENT)
+START_SHARE = Limit(
+    0.6, "share of the rest", "another state may start so far from its rest under the first inputs", DEVELOPMENT
+)
+REST_SHARES = Limits(
+    (0.0, 0.5),
+    "shares of the rest",
+    "logs often start before the rotors do, or at full speed; a log begun at full speed gave a gap in still air",
+    "after seed 900010",
+)
+JUDGED_START_S = Limit(3.0, "s", "so long readings tell which start it was")
+
+# Priors of numbers (fit)
+GRID_SD = Limit(
+    3e-4, "share of the step", "a range of a thousand counts holds a coarse grid's step to a count", DEVELOPMENT
+)
+SIZE_SD = Limit(
+    20.0, "references", "standard deviation of an effect's size before the data: an effect costs ln 20 nats"
+)
+SHAPE_COST = Limit(2.0, "nats", "a free shape, as if it were known to a seventh of its range")
+JITTER_SHARES = Limits(
+    (0.03, 0.06, 0.1, 0.15, 0.22, 0.32, 0.45),
+    "shares of the delay",
+    "scatter that is tried",
+    "seed 31 of the second rig; AeroShield",
+)
+LEAST_JITTER_GAIN = Limit(
+    5.0, "nats", "scatter that explains less is left out", "seed 31 of the second rig; AeroShield"
+)
+SURE_ROUGHNESS = Limit(
+    5.0,
+    "standard errors",
+    "fourth differences share readings; three if they did not",
+    "AeroShield, whose readings are as smooth in fast motion as in slow",
+)
+LEAST_FAST_READINGS = Count(30, "readings", "fewer that are faster than a step a row show no scatter")
+LOWEST_NOISE = Limit(2.0, "decades", "the process noise is lowered by no more for a second score test", DEVELOPMENT)
+LEAST_LOWERED = Limit(
+    0.3, "decades", "a second score test under noise lowered by less is not worth its time", DEVELOPMENT
+)
+
+# Is there a gap (detect)
+ALARM = Limit(0.01, "probability", "the contract's level of a false alarm", "the contract")
+PLAIN_TO_SEE = Limit(
+    40.0,
+    "nats",
+    "a smaller gain is a gap only with a hypothesis that explains it: evidence of x nats has a chance of "
+    "exp(-x) without a gap",
+    DEVELOPMENT_21,
+)
+ALLOWED_GAIN = Limit(10.0, "nats", "friction and stops a little other than the model's may gain so much", DEVELOPMENT)
+TOLERATED_MOVE = Limit(
+    1.0,
+    "standard deviations",
+    "laws a little other than the model's may move a parameter so far",
+    "spent cases of seeds 900008 to 900011",
+)
+LEAST_TOLD_SHARE = Limit(
+    0.05,
+    "share of the stated variance",
+    "logs that take away less say nothing of a number, so it cannot have moved for a reason",
+    "spent cases of seeds 900008 to 900011",
+)
+LEAST_LEFT_SHARE = Limit(
+    1e-4, "share of a signature", "one that the plant's coefficients imitate but for this has no score", DEVELOPMENT
+)
+REPLICAS = Count(48, "replicas", "two moments of a Gumbel law need no more", DEVELOPMENT)
+SEEN_SCORE = Limit(4.0, "standard deviations", "an effect at its reference size with a smaller score would go unseen")
+BLIND_SHARE = Limit(0.6, "share of the library", "with more of it unseen the data cannot tell")
+EVENT_GRID_S = Limit(0.3, "s", "spacing of the steps in time that are scored", DEVELOPMENT)
+MOST_EVENT_STEPS = Count(200, "steps", "no more for long logs: time", DEVELOPMENT)
+EVENTS_APART_S = Limit(1.5, "s", "instants that are closer are one")
+MOST_INSTANTS = Count(3, "instants", "starts of an event that are tried")
+NEAR_PERIODS = Limit(
+    3.0, "periods", "a frequency nearer to the motion's own, over a whole log, would be drawn to it", "EMPS"
+)
+OWN_MOTION_SHARE = Limit(
+    0.3,
+    "share of the motion",
+    "no sine in time begins where so much of the motion repeats with its frequency: half the carriage's "
+    "period explained its friction's offset better than the offset does",
+    "EMPS",
+)
+MOST_PARTS = Count(5, "parts of a period", "or with a second to fifth of it", "EMPS")
+MOST_WAVES = Count(48, "waves a turn", "that are tried", "seed 900014")
+WAVES_APART = Limit(0.12, "share", "waves that are closer are one", "seed 900014")
+MOST_SINES = Count(3, "starts", "of a sine that are tried")
+MOST_INPUT_STEPS = Count(3, "starts", "of an input's steps that are tried")
+MOST_STARTS = Count(8, "starts", "of an effect's shapes that are scored")
+PEAK_SHARES = Limits(
+    (0.6, 0.75, 0.87, 0.96, 1.05, 1.2),
+    "shares of the largest input",
+    "at which a limit may lie; beyond it the rounded corner alone is reached",
+    "the last: seeds 900010 and 900011",
+)
+FARTHEST_SIZE = Limit(30.0, "references", "a score test proposes no larger size")
+
+# What is fitted (search)
+SINGLES = Count(7, "effects", "single effects that are fitted: time", DEVELOPMENT)
+PARTNERS = Count(3, "effects", "further effects that are fitted beside each of the best: time", DEVELOPMENT)
+BEAM = Counts((3, 2), "hypotheses", "of each size that are worth a further effect: time", DEVELOPMENT)
+LOW_NOISE_SINGLES = Count(
+    4,
+    "effects",
+    "fitted from score tests under low process noise, and as many from those under the noise as it seems",
+    DEVELOPMENT,
+)
+WORTH_A_PLACE = Limit(
+    0.1,
+    "share of the best score test",
+    "a sensor's whole family looks well where an axis has a spring, so each further place has its best fitted "
+    "from here",
+    "pairs and triples of seeds 900006 and 900007",
+)
+CLOSE_PAIR = Limit(60.0, "nats", "another pair is worth a third effect within", DEVELOPMENT)
+CLOSE_PAIR_SHARE = Limit(0.05, "share of the gap", "the same of a large gap", DEVELOPMENT)
+LEAST_GAIN = Limit(4.0, "nats", "a score test below is not worth a fit")
+LEAST_SHARE = Limit(0.01, "share of the best score test", "nor is one below this")
+COSTLY_EFFECTS = Count(14, "effects", "worth a costly score test beside others", DEVELOPMENT)
+SETTLED_FITS = Count(
+    5, "hypotheses", "fitted once more to their end: one not at its end loses to one with an idle effect", DEVELOPMENT
+)
+ONCE_MORE = Count(
+    3, "hypotheses", "of the best that went far and begin once more from the plant as stated", "seeds 900006 and 900007"
+)
+CERTAIN = Limit(3.5, "standard deviations", "an effect's size from zero, for it to be there", DEVELOPMENT)
+LIKELY = Limit(
+    1.5,
+    "standard deviations",
+    "or this, where all is far less likely without it: beside an axis that sticks readings alone make the spread",
+    "the Quanser arm",
+)
+MISSED = Limit(15.0, "nats", "far less likely", "the Quanser arm; seeds 900006 and 900007")
+WORTH_REFINING = Limit(
+    0.2, "share of the best first fit's gain", "first fits below are not fitted to their end: time", DEVELOPMENT
+)
+FURTHER_GAIN = Limit(10.0, "nats", "a further effect must promise so much", DEVELOPMENT)
+NEAR_BEST = Limit(
+    30.0,
+    "nats",
+    "a first fit so far short of the best is not fitted to its end",
+    "pairs and triples of seeds 900006 and 900007",
+)
+INSTEAD = Count(3, "effects", "tried in the place of another", "pairs and triples of seeds 900006 and 900007")
+NEARLY_AS_GOOD = Limit(
+    0.03, "share of its gain", "that they must promise", "pairs and triples of seeds 900006 and 900007"
+)
+ASTRAY_FIRST = Limit(
+    2.0,
+    "mean square standard deviations",
+    "a first fit whose parameters went further begins once more from the plant as stated",
+    DEVELOPMENT,
+)
+ASTRAY_REFINED = Limit(1.0, "mean square standard deviations", "the same of a refined fit", "seeds 900006 and 900007")
+LEAST_SLIP = Limit(1.5, "counts", "a smaller slip of a sensor is rounding", DEVELOPMENT)
+YIELDING_FITTED = Count(2, "hypotheses", "beside which axes that yield are fitted")
+LEAST_YIELDING_GAIN = Limit(
+    20.0,
+    "nats",
+    "an axis must explain so much more when it creeps or gives",
+    "seventeen cases of the second rig and of seed 900011",
+)
+YIELDING_GAIN = Limit(
+    80.0,
+    "nats",
+    "and all together: rigs that creep gained 110 to 765, flights whose friction is a bed of stiff bristles 63 at most",
+    "seventeen cases of the second rig and of seed 900011",
+)
+YIELDING_ASKED = Count(4, "hypotheses", "beside which axes may yield", "seeds 900010 and 900011")
+YIELDING_EARLY_SHARE = Limit(
+    0.2,
+    "share of the best single effect's gain",
+    "asked early, yielding axes must explain so much besides: 0.02 at EMPS, whose friction is dry, 1 and more "
+    "where rigs yield",
+    "EMPS; seed 31 of the second rig",
+)
+ABOUT_MISSING_ROWS = Limits(
+    tuple(range(-2, 4)), "rows", "about a missing row readings tell nothing of lost commands", DEVELOPMENT
+)
+ASTRAY_LOSSES = Limit(
+    1.0, "mean square standard deviations", "beyond it losses are sought from the stated parameters too", "seed 900011"
+)
+LEAST_LOSS_GAIN = Limit(10.0, "nats", "no frame counts as lost below", DEVELOPMENT)
+GUST_TIMES_S = Limits(
+    (0.15, 0.5, 1.5, 5.0),
+    "s",
+    "correlation times of a gust that are begun from",
+    "twelve rigs with gusts of 0.3 to 3 s",
+)
+GUST_SHARES = Limits(
+    (0.003, 0.01, 0.03, 0.1),
+    "shares of the axis' usual torque",
+    "sizes of a gust that are begun from",
+    "twelve rigs with gusts of 0.3 to 3 s",
+)
+GUST_LOWERS_NOISE = Limit(
+    0.7, "decades", "the process noise is lower where a gust takes its place", "twelve rigs with gusts of 0.3 to 3 s"
+)
+GUST_EXPLAINS = Limit(
+    1.5,
+    "times the best name's gain",
+    "a gust follows any readings, so it must explain half as much again: beside dry friction that is there a "
+    "gust is a little likelier",
+    "EMPS; 128 cases of seed 900017",
+)
+WELL_EXPLAINED = Limit(
+    0.85, "probability", "from a likelier name on gusts are not asked", "seed 900016 and 128 cases of seed 900017"
+)
+RETUNE_WIDER = Limit(8.0, "factor", "by which the spreads of what had moved are taken wider")
+RETUNE_FAR = Limit(4.0, "standard deviations", "a parameter that went further is told as beyond its spread")
+RETUNE_PULLED = Limit(
+    2.5, "standard deviations", "by which the fit within the spread must have moved something", DEVELOPMENT
+)
+RETUNE_NATS = Limit(4.0, "nats", "that each parameter beyond its spread costs")
+RETUNE_MOST = Count(4, "parameters", "more are no re-tune")
+
+# How probable (decide)
+ALIKE = Limit(10.0, "nats", "two hypotheses closer than this are alike, however small the gap", DEVELOPMENT_21)
+OFF_FORM = Limit(
+    1.0, "nats", "what a form a little off the truth may cost grows as OFF_FORM gain^OFF_POWER", DEVELOPMENT_21
+)
+OFF_POWER = Limit(0.35, "1", "see OFF_FORM", DEVELOPMENT_21)
+OFF_SHARE = Limit(4e-4, "share of the gain", "and as this share of it", DEVELOPMENT_21)
+FURTHER = Limit(2.5, "scales", "what each further effect must overcome", DEVELOPMENT_21)
+LEFT_NATS = Limit(20.0, "nats", "a right effect of the library may leave so much to forms", DEVELOPMENT_21)
+LEFT_SHARE = Limit(0.15, "share of the gain", "and this share of what it explains", DEVELOPMENT_21)
+LEFT_POWER = Limit(3.0, "1", "beyond that an unknown effect becomes likelier by this power", DEVELOPMENT_21)
+UNKNOWN = Limit(1.7, "scales", "log odds against an unknown effect where exactly as much is left", DEVELOPMENT_21)
+FARTHEST_GAIN = Limit(3e4, "nats", "a larger gain only says that the nominal plant had lost its way", DEVELOPMENT)
+RETUNE_COST = Limit(10.0, "nats", "of parameters beyond their spread beside effects")
+UNNAMED = Limit(0.95, "probability", "of an unknown effect where what would be named is refuted")
+CONFIDENCE_CAP = Limit(
+    0.91,
+    "probability",
+    "no name is surer: of 445 first answers that stated 0.8 and more 0.91 came true, as a further effect too "
+    "small to see is always possible",
+    "900 cases of seeds 900008, 900010 and 900011",
+)
+FREE_SPREAD = Limit(3.0, "standard deviations", "a parameter within costs no more than its prior", DEVELOPMENT)
+NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
+MOST_FORMS = Count(4, "forms", "of one class")
+SAME_PLACE = Limit(
+    0.3, "factor", "a form at a hypothesis' own place is rather its own form, a little other", DEVELOPMENT
+)
+OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
+
+# What other logs say (decide)
+LITTLE_LEFT = Limit(
+    0.1,
+    "share of the gap's evidence",
+    "the hold-out overrules an unknown effect where no more is left beside the best name: real rigs always "
+    "leave a little",
+    "real rigs; development cases of the sealed generator, seeds 21 and 22",
+)
+NEARLY_ALL_GONE = Limit(
+    0.85,
+    "share of the removable error",
+    "and so much is gone there",
+    "real rigs; development cases of the sealed generator, seeds 21 and 22",
+)
+PARTLY_GONE = Limit(
+    0.6,
+    "share of the removable error",
+    "a name whose upper 97.5 % lies below leaves something missing",
+    "seed 25; what seeds 900008 and 900009 had shown",
+)
+FAR_ABOVE_FLOOR = Limit(
+    2.5,
+    "floors",
+    "where some output's error is still so far above what the sensor leaves",
+    "seed 25; what seeds 900008 and 900009 had shown",
+)
+IDLE = Limit(
+    0.25,
+    "share of the removable error",
+    "a name whose upper 97.5 % lies below may be a way of the training logs alone",
+    "seed 900014; seed 51 of the second rig",
+)
+HARDLY = Limit(
+    0.01,
+    "share of the removable error",
+    "where its lower 2.5 % lies below this",
+    "seed 900014; seed 51 of the second rig",
+)
+NOT_BORNE_OUT = Limit(
+    0.6,
+    "probability",
+    "of an unknown effect then: three of eleven such cases were outside the library, eight had effects that a "
+    "re-tune hides; with less, rigs without any effect were a gap",
+    "eleven spent cases",
+)
+HELPS = Limit(
+    0.995,
+    "ratio of mean squares",
+    "an effect or a re-tune is added only where the hold-out's error falls by half a percent",
+)
+CONTRADICTION = Limit(
+    150.0,
+    "nats",
+    "logs of one rig were seen to gain up to 85 by numbers of their own, logs of two rigs 250 to 1200",
+    "ten development cases; seed 900001",
+)
+CONTRADICTION_SHARE = Limit(
+    0.15, "share of the gap", "where logs contradict each other by more, no single cause is named", DEVELOPMENT
+)
+KNOWS_NOTHING = Limit(
+    0.9,
+    "ratio of errors",
+    "predictions no better than holding the last reading are of another plant's logs",
+    "logs of other rigs, shuffled rows",
+)
+ANOTHER_PLANT = Limit(
+    8.0, "standard deviations", "a parameter so far off beside every effect is another plant's", "logs of other rigs"
+)
+REFUTED = Limit(
+    1.4, "ratio of mean squares", "a name with which the hold-out's error is so much larger is refuted", DEVELOPMENT
+)
+MOVES_FLOORS = Limit(5.0, "floors", "windows in which an output moves less do not count")
+WIRING_S = Limit(20.0, "s", "of each log: time")
+WIRING_DEVIATIONS = Limit(
+    6.0,
+    "standard deviations",
+    "columns are doubted only where a parameter left its statement by so much",
+    "honest and rewired logs",
+)
+WIRING_NOISE = Limit(-1.3, "log10 rad/s per sqrt(s)", "or the process noise is so high", "honest and rewired logs")
+WIRING_GAIN = Limit(
+    200.0, "nats", "another reading of the columns must be likelier by so much", "honest and rewired logs"
+)
+
+# What is told beside it (explain)
+MOVED_FAR = Limit(3.0, "standard deviations", "a parameter further from its stated value is worth a sentence")
+IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters imitate, for a sentence")
+
+
+def table() -> Iterator[tuple[str, Decides]]:
+    """Name and constant of each, in the order of the rooms."""
+    return ((name, value) for name, value in globals().items() if isinstance(value, Decides))
