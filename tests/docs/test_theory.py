@@ -2,6 +2,7 @@
 
 import re
 
+from tests.docs.readme import README, shown
 from tests.test_project import ROOT
 
 PAGE = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
@@ -26,3 +27,15 @@ def test_no_number_is_given_twice() -> None:
 def test_sections_are_numbered_in_order() -> None:
     numbers = [int(number) for number in re.findall(r"^## (\d+)\.", PAGE, flags=re.MULTILINE)]
     assert numbers == list(range(1, len(numbers) + 1))
+
+
+def test_the_default_table_s_figures_are_those_of_a_run() -> None:
+    """README.md shows what a run prints, and tests/docs/test_readme.py holds that."""
+    table = PAGE.partition("**What the default table holds**")[2].partition("\nThe same controllers")[0]
+    rows = [line for line in table.splitlines() if line.startswith(("| slowest", "| Ms", "| gain", "| both"))]
+    printed = set(re.findall(r"-?\d+(?:\.\d+)?", shown(README.read_text(encoding="utf-8"))))
+    assert len(rows) == 4
+    assert (
+        set(re.findall(r"(?<!\w)-?\d+(?:\.\d+)?", " ".join(row.partition("|")[2].partition("|")[2] for row in rows)))
+        <= printed
+    )
