@@ -15,13 +15,14 @@ from toolchain.host import CText, Source
 from toolchain.target import TARGET_FLAGS, build_image
 
 FIRMWARE_DIR = Path(__file__).resolve().parents[2] / "firmware"
-LINKER_SCRIPT = FIRMWARE_DIR / "board" / "link.ld"
+BOARD_DIRS = (FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / "stm32g071")
+LINKER_SCRIPT = BOARD_DIRS[1] / "link.ld"
 # Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
 SOFT_ARITHMETIC = re.compile(
     r"__aeabi_(?:[fd](?!iv0)\w+|c[fd]\w+|[iul]+2[fd]|[a-z]*div[a-z]*)|__u?(?:div|mod|divmod)[sdt]i[34]"
     r"|__(?:add|sub|mul|div|neg|eq|ne|lt|le|gt|ge|un)[sd]f[23]|__(?:fix|float)\w+|__(?:extend|trunc)\w+"
 )
-INCLUDE_DIRS = (FIRMWARE_DIR / "control", FIRMWARE_DIR / "board")
+INCLUDE_DIRS = (FIRMWARE_DIR / "control", *BOARD_DIRS)
 
 
 @dataclass(frozen=True)
@@ -85,4 +86,4 @@ def control_sources() -> list[Path]:
 
 def board_sources() -> list[Path]:
     """The board layer and `main`, in a fixed order."""
-    return sorted((FIRMWARE_DIR / "board").glob("*.c"))
+    return sorted((path for folder in BOARD_DIRS for path in folder.glob("*.c")), key=lambda path: path.name)

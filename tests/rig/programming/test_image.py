@@ -13,7 +13,7 @@ from tests.firmware.box import stand_in_law
 from toolchain.host import CText
 from toolchain.target import build_image
 
-BOARD = FIRMWARE_DIR / "board"
+BOARD = FIRMWARE_DIR / "board" / "stm32g071"
 HEADER = (BOARD / "stm32g071.h").read_text()
 STACK_RESERVE_BYTES = 4096
 FLASH_START, RAM_END = 0x08000000, 0x20008000
