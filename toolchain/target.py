@@ -1,4 +1,4 @@
-"""C for the microcontroller: zig as compiler and linker for ARMv6-M, kept by the hash of everything that went into it."""
+"""C for a microcontroller: zig as compiler and linker for its core, kept by the hash of everything that went into it."""
 
 import importlib.util
 import os
@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from records.board import STM32G071
 from toolchain.cache import CACHE_DIR, is_whole
 from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_version
 
-_MACHINE = ("-target", "thumb-freestanding-eabi", "-mcpu=cortex_m0plus")
+_TARGET = "thumb-freestanding-eabi"
 
 # As on the host, no contraction and no relaxed arithmetic: the law must give the same bits on both.
 TARGET_FLAGS = (
@@ -46,34 +47,39 @@ def build_image(
     *,
     include_dirs: Sequence[Path] = (),
     flags: Sequence[str] = TARGET_FLAGS,
+    core: str = STM32G071.core,
 ) -> Path:
-    """Compile and link `sources` for the Cortex-M0+ and return the path of the ELF; the same content is built once only.
+    """Compile and link `sources` for `core` (zig's name of it) and return the path of the ELF; the same content is built once only.
 
     Sources that are headers only as text count as content and are found by `#include`. Raises BadInput with file and line when
     compiler or linker refuse, which includes an image that does not fit the memories of `linker_script`.
     """
-    key = content_digest([*sources, linker_script], include_dirs, [*flags, *LINK_FLAGS])
+    key = content_digest([*sources, linker_script], include_dirs, [core, *flags, *LINK_FLAGS])
     image = CACHE_DIR / "target" / f"{name}-{key}.elf"
     if is_whole(image):
         return image
-    objects = [*compile_objects(sources, include_dirs=include_dirs, flags=flags), runtime_library()]
+    objects = [*compile_objects(sources, include_dirs=include_dirs, flags=flags, core=core), runtime_library(core)]
     with tempfile.TemporaryDirectory(dir=image.parent) as work:
         built = Path(work) / "out.elf"
         run_zig(
-            ["cc", *_MACHINE, *LINK_FLAGS, "-T", str(linker_script), *map(str, objects), "-o", str(built)],
+            ["cc", *_machine(core), *LINK_FLAGS, "-T", str(linker_script), *map(str, objects), "-o", str(built)],
             f"linking {name}",
         )
         built.replace(image)
     return image
 
 
-def runtime_library() -> Path:
-    """Soft float and what else a Cortex-M0+ lacks (compiler-rt), built from the zig wheel's own sources.
+def _machine(core: str) -> list[str]:
+    return ["-target", _TARGET, f"-mcpu={core}"]
+
+
+def runtime_library(core: str = STM32G071.core) -> Path:
+    """Soft float and what else the core lacks (compiler-rt), built from the zig wheel's own sources.
 
     The library that zig would link by itself carries a megabyte of debug information with this computer's paths; the one built
     for size is no slower than that built for speed (1.4 % faster over the law's self-test).
     """
-    library = CACHE_DIR / "target" / f"compiler_rt-{zig_version()}.a"
+    library = CACHE_DIR / "target" / f"compiler_rt-{core}-{zig_version()}.a"
     if is_whole(library):
         return library
     library.parent.mkdir(parents=True, exist_ok=True)
@@ -81,7 +87,7 @@ def runtime_library() -> Path:
     with tempfile.TemporaryDirectory(dir=library.parent) as work:
         built = Path(work) / "libcompiler_rt.a"
         options = ["-OReleaseSmall", "-fstrip", "-fno-unwind-tables", "-ffunction-sections", "-fdata-sections"]
-        machine = ["-target", "thumb-freestanding-eabi", "-mcpu", "cortex_m0plus"]
+        machine = ["-target", _TARGET, "-mcpu", core]
         run_zig(["build-lib", *options, *machine, str(source), f"-femit-bin={built}"], "compiler-rt")
         built.replace(library)
     return library
@@ -93,9 +99,13 @@ def _zig_folder() -> Path:
 
 
 def compile_objects(
-    sources: Sequence[Source], *, include_dirs: Sequence[Path] = (), flags: Sequence[str] = TARGET_FLAGS
+    sources: Sequence[Source],
+    *,
+    include_dirs: Sequence[Path] = (),
+    flags: Sequence[str] = TARGET_FLAGS,
+    core: str = STM32G071.core,
 ) -> list[Path]:
-    """Compile each C source of `sources` for the Cortex-M0+, side by side; returns the object files in the same order."""
+    """Compile each C source of `sources` for `core`, side by side; returns the object files in the same order."""
     folder = CACHE_DIR / "target" / "objects"
     folder.mkdir(parents=True, exist_ok=True)
     headers = [source for source in sources if not source.name.endswith(".c")]
@@ -103,7 +113,8 @@ def compile_objects(
     with tempfile.TemporaryDirectory(dir=folder) as work, ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         for header in headers:
             as_file(header, Path(work))
-        return list(pool.map(lambda unit: _compile(unit, headers, Path(work), include_dirs, flags), units))
+        options = [*_machine(core), *flags]
+        return list(pool.map(lambda unit: _compile(unit, headers, Path(work), include_dirs, options), units))
 
 
 def _compile(
@@ -117,7 +128,7 @@ def _compile(
     built = work / f"{path.stem}-{key}.o"
     includes = [f"-I{folder}" for folder in (*include_dirs, work)]
     run_zig(
-        ["cc", *_MACHINE, *flags, *_portable_paths(unit, path, work), *includes, "-c", str(path), "-o", str(built)],
+        ["cc", *flags, *_portable_paths(unit, path, work), *includes, "-c", str(path), "-o", str(built)],
         unit.name,
     )
     built.replace(kept)

@@ -1,9 +1,6 @@
 /*
- * The board: STM32G071, two quadrature encoders, two PWM outputs with direction, one serial line.
- *
- *     PA0 PA1   elevation encoder (TIM2)      PA8  PB0   main motor PWM (TIM1 CH1), direction
- *     PA6 PA7   azimuth encoder (TIM3)        PA9  PB1   tail motor PWM (TIM1 CH2), direction
- *     PA2 PA3   serial line (USART2)
+ * What each chip's folder gives to the main loop: two quadrature encoders, two PWM outputs with direction, one serial line.
+ * A folder has one file for each part below, its linker script, and its wiring in wiring.h.
  */
 #ifndef BOARD_H
 #define BOARD_H
@@ -14,10 +11,8 @@
 
 #include "path.h"
 
-#define BOARD_CLOCK_HZ 64000000u
-
 /* clock.c */
-void clock_start(void);       /* 64 MHz from HSI16 and PLL */
+void clock_start(void);       /* to BOARD_CLOCK_HZ */
 void cycle_counter_start(void);
 uint32_t cycle_counter(void); /* core cycles, modulo 2^24, counting up */
 uint32_t cycles_between(uint32_t start, uint32_t end);

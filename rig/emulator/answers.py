@@ -5,19 +5,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from records.board import STM32G071, Board
 from records.errors import BadInput
 from rig.emulator.stops import Stop
 
 
 @dataclass(frozen=True)
 class BoardConfig:
-    """How the board is set up: serial speed of the host's end, what ends a run, the chip's unique id."""
+    """How the board is set up: which chip, serial speed of the host's end, what ends a run, the chip's unique id."""
 
     host_baud: int = 921_600
     stop_on_fault: bool = True
     stop_on_reset: bool = False
     check_stack_limit: bool = True
     unique_id: tuple[int, int, int] = (0x00470031, 0x3037470A, 0x20363542)
+    chip: Board = STM32G071
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
-from rig.emulator import calls
-from rig.emulator.answers import BoardConfig, CallResult, CallsResult, Gpio, Pwm, ReceivedByte, Reset, no_memory
+from rig.emulator.answers import (
+    BoardConfig,
+    CallResult,
+    CallsResult,
+    Gpio,
+    Pwm,
+    ReceivedByte,
+    Reset,
+    StoppedError,
+    no_memory,
+)
+from rig.emulator.calls import Caller
 from rig.emulator.coverage import LineCounts, lines_executed
-from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SMALLEST_BYTES, SRAM_BYTES, Image, as_image
+from rig.emulator.image import SMALLEST_BYTES, Image, as_image
 from rig.emulator.native import library
 from rig.emulator.stops import Stop, StopKind
 
@@ -32,16 +42,16 @@ class EmulatedBoard:
 
     def __init__(self, elf: bytes | Path | Image, config: BoardConfig | None = None) -> None:
         self.config = config or BoardConfig()
-        self._ffi, self._lib = library()
+        self._ffi, self._lib = library(self.config.chip)
         self._finalizer: Callable[[], object] = lambda: None
         self.load(elf)
 
     def load(self, elf: bytes | Path | Image) -> None:
         """Put another image into flash and power the board up afresh; raises BadInput for what is no image."""
-        self.image = as_image(elf)
         config = self.config
+        self.image = as_image(elf, config.chip)
         self._finalizer()
-        machine = self._lib.emulator_create(self.image.flash, FLASH_BYTES, list(config.unique_id))
+        machine = self._lib.emulator_create(self.image.flash, len(self.image.flash), list(config.unique_id))
         self._finalizer = weakref.finalize(self, self._lib.emulator_destroy, machine)
         self._machine = machine
         limit = self.image.symbols.get("_stack_limit") if config.check_stack_limit else None
@@ -69,10 +79,11 @@ class EmulatedBoard:
 
     def start_from_boot_loader(self, address: int) -> None:
         """Reset, and start the program whose vectors stand at `address` as the boot loader's GO does; raises BadInput outside flash."""
-        if address % 256 or not FLASH_BASE <= address < FLASH_BASE + FLASH_BYTES:
+        flash = self.config.chip.flash
+        if address % 256 or not flash.start <= address < flash.end:
             raise no_memory(address, SMALLEST_BYTES)
         self.reset()
-        self._lib.emulator_boot_loader_leaves(self._machine, address - FLASH_BASE)
+        self._lib.emulator_boot_loader_leaves(self._machine, address - flash.start)
 
     # --- time ---
 
@@ -231,7 +242,8 @@ class EmulatedBoard:
 
     def execution_counts(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
         """Executions per halfword of flash and of SRAM."""
-        flash, sram = np.zeros(FLASH_BYTES // 2, np.uint64), np.zeros(SRAM_BYTES // 2, np.uint64)
+        sizes = (self.config.chip.flash.size_bytes, self.config.chip.ram.size_bytes)
+        flash, sram = (np.zeros(size // 2, np.uint64) for size in sizes)
         cast = self._ffi.cast
         self._lib.emulator_execution_counts(
             self._machine, cast("uint64_t *", flash.ctypes.data), cast("uint64_t *", sram.ctypes.data)
@@ -284,8 +296,13 @@ class EmulatedBoard:
         return (self.image.ram_end + 7) & ~7
 
     def call(self, name: str, *arguments: int, max_cycles: int = 64_000_000) -> CallResult:
-        """Run one function to its return with interrupts off and peripherals halted (AAPCS: up to 4 words in r0-r3)."""
-        return calls.call(self, self._machine, name, arguments, max_cycles)
+        """Run one function to its return with interrupts off and peripherals halted (AAPCS: up to 4 words in r0-r3).
+
+        Raises StoppedError when it faults or has not returned after `max_cycles`.
+        """
+        kind, result = self._caller.call(self.symbol(name)[0], arguments, max_cycles)
+        self._demand_return(kind)
+        return result
 
     def call_many(
         self,
@@ -296,5 +313,19 @@ class EmulatedBoard:
         steps: int,
         max_cycles: int = 64_000_000,
     ) -> CallsResult:
-        """Call a function `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched."""
-        return calls.call_many(self, self._machine, name, arguments, inputs, outputs, steps, max_cycles)
+        """Call a function `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched.
+
+        Raises StoppedError at the first step that does not return.
+        """
+        address = self.symbol(name)[0]
+        kind, result = self._caller.call_many(address, arguments, inputs, outputs, steps, max_cycles)
+        self._demand_return(kind if steps else StopKind.RETURNED)
+        return result
+
+    @property
+    def _caller(self) -> Caller:
+        return Caller((self._ffi, self._lib), self._machine, self.config.chip)
+
+    def _demand_return(self, kind: int) -> None:
+        if kind != StopKind.RETURNED:
+            raise StoppedError(self.last_stop)

@@ -5,17 +5,17 @@ import bisect
 import numpy as np
 from numpy.typing import NDArray
 
-from rig.emulator.image import FLASH_BASE, FLASH_BYTES, Image
+from rig.emulator.image import Image
 
 LineCounts = dict[str, dict[tuple[str, int], int]]
 
 
 def lines_executed(image: Image, flash_counts: NDArray[np.uint64]) -> LineCounts:
     """Largest execution count among the instructions of each line, by function; a line never reached has 0."""
-    starts = [row.address for row in image.lines]
+    starts, flash = [row.address for row in image.lines], image.chip.flash
     result: LineCounts = {}
     for function in image.functions:
-        if not FLASH_BASE <= function.address < FLASH_BASE + FLASH_BYTES or not function.size:
+        if not flash.start <= function.address < flash.end or not function.size:
             continue
         first = bisect.bisect_left(starts, function.address)
         last = bisect.bisect_left(starts, function.address + function.size)
@@ -25,7 +25,7 @@ def lines_executed(image: Image, flash_counts: NDArray[np.uint64]) -> LineCounts
             end = min(starts[at + 1] if at + 1 < len(starts) else row.address + 2, function.address + function.size)
             if row.line == 0 or end <= row.address:
                 continue
-            span = flash_counts[(row.address - FLASH_BASE) // 2 : (end - FLASH_BASE) // 2]
+            span = flash_counts[(row.address - flash.start) // 2 : (end - flash.start) // 2]
             key = (row.file, row.line)
             counts[key] = max(counts.get(key, 0), int(span.max(initial=0)))
     return result

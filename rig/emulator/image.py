@@ -10,13 +10,10 @@ from elftools.common.exceptions import ELFError
 from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
+from records.board import STM32G071, Board
 from records.errors import BadInput
 from toolchain.elf import open_elf
 
-FLASH_BASE = 0x08000000
-FLASH_BYTES = 0x20000
-SRAM_BASE = 0x20000000
-SRAM_BYTES = 0x8000
 SMALLEST_BYTES = 8  # initial stack pointer and reset vector
 
 
@@ -40,35 +37,35 @@ class SourceLine:
 
 
 class Image:
-    """A linked ARM ELF file; `elf` is its bytes, `where` names it in messages.
+    """A linked ARM ELF file for `chip`; `elf` is its bytes, `where` names it in messages.
 
     Raises BadInput when it is not an ARM ELF, is truncated, or has no content in flash.
     """
 
-    def __init__(self, elf: bytes, where: str) -> None:
-        self.where = where
+    def __init__(self, elf: bytes, where: str, chip: Board = STM32G071) -> None:
+        self.where, self.chip = where, chip
         self._elf: ELFFile | None = open_elf(elf, where)
         try:
-            self.flash = _flash_content(self._elf, where)
+            self.flash = _flash_content(self._elf, where, chip)
             self._table = self._elf.get_section_by_name(".symtab")
         except ELFError as error:
-            raise _not_an_image(where, f"a damaged file ({error})") from error
+            raise _not_an_image(where, f"a damaged file ({error})", chip) from error
 
     @classmethod
-    def from_flash(cls, content: bytes, where: str) -> "Image":
+    def from_flash(cls, content: bytes, where: str, chip: Board = STM32G071) -> "Image":
         """What a programmer has left in the flash: content without names, lines or sections."""
         image = cls.__new__(cls)
-        image.where, image._elf, image._table = where, None, None
-        image.flash = content.ljust(FLASH_BYTES, b"\xff")
+        image.where, image.chip, image._elf, image._table = where, chip, None, None
+        image.flash = content.ljust(chip.flash.size_bytes, b"\xff")
         return image
 
     @classmethod
-    def from_file(cls, path: Path) -> "Image":
+    def from_file(cls, path: Path, chip: Board = STM32G071) -> "Image":
         """Read the image at `path`; raises BadInput when there is none."""
         try:
-            return cls(path.read_bytes(), str(path))
+            return cls(path.read_bytes(), str(path), chip)
         except OSError as error:
-            raise _not_an_image(str(path), error.strerror or str(error)) from error
+            raise _not_an_image(str(path), error.strerror or str(error), chip) from error
 
     @cached_property
     def symbols(self) -> dict[str, Symbol]:
@@ -93,9 +90,9 @@ class Image:
         ends = [
             s["sh_addr"] + s["sh_size"]
             for s in (self._elf.iter_sections() if self._elf else ())
-            if s["sh_flags"] & 2 and s["sh_addr"] >= SRAM_BASE
+            if s["sh_flags"] & 2 and s["sh_addr"] >= self.chip.ram.start
         ]
-        return max([SRAM_BASE, *ends])
+        return max([self.chip.ram.start, *ends])
 
     def function_at(self, address: int) -> Symbol | None:
         """The function that holds `address`."""
@@ -134,26 +131,26 @@ class Image:
                 yield SourceLine(state.address, name, 0 if state.end_sequence else state.line)
 
 
-def as_image(source: "bytes | Path | Image") -> Image:
+def as_image(source: "bytes | Path | Image", chip: Board) -> Image:
     """The image in these bytes, in this file, or itself; raises BadInput for what is no image."""
     if isinstance(source, Image):
         return source
-    return Image(source, "image in memory") if isinstance(source, bytes) else Image.from_file(source)
+    return Image(source, "image in memory", chip) if isinstance(source, bytes) else Image.from_file(source, chip)
 
 
-def _flash_content(elf: ELFFile, where: str) -> bytes:
-    content = bytearray(b"\xff" * FLASH_BYTES)
+def _flash_content(elf: ELFFile, where: str, chip: Board) -> bytes:
+    content = bytearray(b"\xff" * chip.flash.size_bytes)
     loaded = 0
     for segment in elf.iter_segments("PT_LOAD"):
-        start, data = segment["p_paddr"] - FLASH_BASE, segment.data()
+        start, data = segment["p_paddr"] - chip.flash.start, segment.data()
         if len(data) != segment["p_filesz"]:
-            raise _not_an_image(where, "a truncated file")
-        if not data or not 0 <= start <= FLASH_BYTES - len(data):
+            raise _not_an_image(where, "a truncated file", chip)
+        if not data or not 0 <= start <= chip.flash.size_bytes - len(data):
             continue
         content[start : start + len(data)] = data
         loaded += len(data)
     if loaded < SMALLEST_BYTES:
-        raise _not_an_image(where, "no content in flash")
+        raise _not_an_image(where, "no content in flash", chip)
     return bytes(content)
 
 
@@ -172,7 +169,6 @@ def _named(table: SymbolTableSection) -> Iterator[Symbol]:
             )
 
 
-def _not_an_image(where: str, got: str) -> BadInput:
-    return BadInput(
-        "firmware image", where, got, "a 32-bit ARM ELF linked for flash at 0x08000000", "build it with `twinlaw build`"
-    )
+def _not_an_image(where: str, got: str, chip: Board) -> BadInput:
+    expected = f"a 32-bit ARM ELF linked for flash at 0x{chip.flash.start:08x}"
+    return BadInput("firmware image", where, got, expected, "build it with `twinlaw build`")

@@ -14,8 +14,6 @@ from rig.link.replies import Health, Telemetry, state_name
 from sim.runs.stepped import SteppedPlant
 
 UNKNOWN = (math.nan, math.nan)
-ELEVATION_TIMER, AZIMUTH_TIMER = 2, 3
-MAIN_DIRECTION_PIN, TAIL_DIRECTION_PIN = 0, 1
 OLD_FRAMES = 1000  # telemetry from before an ARM, at most
 
 
@@ -51,8 +49,11 @@ class EmulatedRig:
         """Advance the plant with the voltages that the pins give now."""
         self._plant.advance(self._voltages(self._board), self._plant.t_s + period_s)
         counts = self._counts()
-        self._board.set_encoder(ELEVATION_TIMER, counts[0] - self._origin[0])
-        self._board.set_encoder(AZIMUTH_TIMER, counts[1] - self._origin[1])
+        chip = self._board.config.chip
+        for encoder, now, first in zip(
+            (chip.elevation_encoder, chip.azimuth_encoder), counts, self._origin, strict=True
+        ):
+            self._board.set_encoder(encoder.timer, now - first)
 
     @property
     def _board(self) -> EmulatedBoard:
@@ -64,10 +65,11 @@ class EmulatedRig:
         return psi, phi
 
     def _voltages(self, board: EmulatedBoard) -> Angles:
-        pwm, port = board.pwm(), board.gpio("B")
+        pwm, chip = board.pwm(), board.config.chip
         if not pwm.enabled:
             return 0.0, 0.0
-        signs = [-1.0 if port.drives(pin) else 1.0 for pin in (MAIN_DIRECTION_PIN, TAIL_DIRECTION_PIN)]
+        pins = (chip.main_motor.direction, chip.tail_motor.direction)
+        signs = [-1.0 if board.gpio(pin.port).drives(pin.number) else 1.0 for pin in pins]
         scale = FULL_SCALE_V / pwm.period_ticks
         return signs[0] * pwm.main_ticks * scale, signs[1] * pwm.tail_ticks * scale
 

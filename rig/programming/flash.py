@@ -8,21 +8,19 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from records.board import STM32G071, Board
 from records.errors import BadInput, VerificationFailed
 
-FLASH_START, FLASH_BYTES = 0x08000000, 0x20000
-RAM_START, RAM_BYTES = 0x20000000, 0x9000
-CHIP_IDS = {0x460: "STM32G071"}  # RM0444 40.10.1, the same for the STM32G081
 _PSEUDO_TERMINALS = "/dev/pts/"
-_STARTED = f"Starting execution at address 0x{FLASH_START:08x}... done"
+_STARTED = "Starting execution at address 0x{:08x}... done"
 _COMPLAINT = re.compile(r"error|fail|nack|can't|cannot|unknown|unsupported|timeout", re.IGNORECASE)
 _MOST_LINES = 3
 _FLASH_AGAIN = "the chip may hold a part of the image: leave the motors without supply and flash again"
 
 
-def openocd_command(elf: Path, *, board: str = "board/st_nucleo_g0.cfg") -> list[str]:
+def openocd_command(elf: Path, board: Board = STM32G071) -> list[str]:
     """Program, verify and start `elf` through an ST-LINK."""
-    return ["openocd", "-f", board, "-c", f"program {{{elf}}} verify reset exit"]
+    return ["openocd", "-f", board.openocd_config, "-c", f"program {{{elf}}} verify reset exit"]
 
 
 def identify_command(port: str) -> list[str]:
@@ -30,9 +28,9 @@ def identify_command(port: str) -> list[str]:
     return ["stm32flash", "-m", line_mode(port), port]
 
 
-def boot_loader_command(binary: Path, port: str) -> list[str]:
+def boot_loader_command(binary: Path, port: str, board: Board = STM32G071) -> list[str]:
     """Write, verify and start `binary` through the serial boot loader."""
-    return ["stm32flash", "-m", line_mode(port), "-w", str(binary), "-v", "-g", f"0x{FLASH_START:08x}", port]
+    return ["stm32flash", "-m", line_mode(port), "-w", str(binary), "-v", "-g", f"0x{board.flash.start:08x}", port]
 
 
 def line_mode(port: str) -> str:
@@ -40,12 +38,12 @@ def line_mode(port: str) -> str:
     return "8n1" if str(Path(port).resolve()).startswith(_PSEUDO_TERMINALS) else "8e1"
 
 
-def flash_through_st_link(elf: Path) -> None:
+def flash_through_st_link(elf: Path, board: Board = STM32G071) -> None:
     """Program, verify and start through an ST-LINK.
 
     Raises BadInput when the tool or the ST-LINK is not there, VerificationFailed when programming had begun and failed.
     """
-    command = openocd_command(elf)
+    command = openocd_command(elf, board)
     with _interrupted(_FLASH_AGAIN):
         done = _run(command)
     if done.returncode == 0:
@@ -60,13 +58,13 @@ def flash_through_st_link(elf: Path) -> None:
     )
 
 
-def flash_through_boot_loader(binary: Path, port: str) -> None:
+def flash_through_boot_loader(binary: Path, port: str, board: Board = STM32G071) -> None:
     """Ask which chip answers, then write, verify and start.
 
     Raises BadInput when the tool or the boot loader is not there or the chip is another one, before anything is erased;
     VerificationFailed when writing had begun and failed.
     """
-    _demand_image(binary)
+    _demand_image(binary, board)
     with _interrupted("nothing was written"):
         asked = _run(identify_command(port))
     if asked.returncode != 0:
@@ -77,36 +75,37 @@ def flash_through_boot_loader(binary: Path, port: str) -> None:
             "how the chip starts its boot loader is in docs/hardware.md",
         )
     chip_id = re.search(r"Device ID\s*:\s*0x([0-9a-fA-F]+)", asked.stdout)
-    if chip_id is None or int(chip_id[1], 16) not in CHIP_IDS:
+    if chip_id is None or int(chip_id[1], 16) != board.boot_loader_id:
         raise BadInput(
             what="chip",
             where=port,
             got=f"device id 0x{chip_id[1]}" if chip_id else "no device id",
-            expected=" or ".join(f"0x{code:04x} ({name})" for code, name in CHIP_IDS.items()),
+            expected=f"0x{board.boot_loader_id:04x} ({board.chip})",
             remedy="nothing was written; give the port of the right board as --port",
         )
     with _interrupted(_FLASH_AGAIN):
-        written = _run(boot_loader_command(binary, port))
+        written = _run(boot_loader_command(binary, port, board))
     if written.returncode != 0:
         raise _not_programmed(port, written)
-    if _STARTED not in written.stdout:  # of a refused start the tool tells, but does not fail
+    if _STARTED.format(board.flash.start) not in written.stdout:  # of a refused start the tool tells, but does not fail
         got, expected = _complaint(written), "the image started"
         raise VerificationFailed(
             f"{port}: start: got {got}, expected {expected}; it is written and verified: reset the board by hand"
         )
 
 
-def _demand_image(binary: Path) -> None:
+def _demand_image(binary: Path, board: Board) -> None:
     """Raise BadInput for what this chip could not start: the vectors of a Cortex-M stand first, within its memories."""
     content = binary.read_bytes()
     stack, start = struct.unpack("<II", content[:8].ljust(8, b"\xff"))
-    fits = len(content) <= FLASH_BYTES and RAM_START < stack <= RAM_START + RAM_BYTES
-    if not (fits and start & 1 and FLASH_START <= start < FLASH_START + len(content)):
+    flash, ram = board.flash, board.ram
+    fits = len(content) <= flash.size_bytes and ram.start < stack <= ram.start + board.largest_ram_bytes
+    if not (fits and start & 1 and flash.start <= start < flash.start + len(content)):
         raise BadInput(
             what="firmware image",
             where=str(binary),
             got=f"{len(content)} bytes that begin with {content[:8].hex(' ') or 'nothing'}",
-            expected=f"an image of {FLASH_BYTES} bytes at most that begins with its stack and its start",
+            expected=f"an image of {flash.size_bytes} bytes at most that begins with its stack and its start",
             remedy="build it with `twinlaw build` or `twinlaw run`",
         )
 

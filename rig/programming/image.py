@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from codegen.protocol_source import protocol_source
+from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.files import write_atomic
 from records.protocol import PROTOCOL
@@ -15,14 +16,11 @@ from toolchain.host import CText, Source
 from toolchain.target import TARGET_FLAGS, build_image
 
 FIRMWARE_DIR = Path(__file__).resolve().parents[2] / "firmware"
-BOARD_DIRS = (FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / "stm32g071")
-LINKER_SCRIPT = BOARD_DIRS[1] / "link.ld"
 # Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
 SOFT_ARITHMETIC = re.compile(
     r"__aeabi_(?:[fd](?!iv0)\w+|c[fd]\w+|[iul]+2[fd]|[a-z]*div[a-z]*)|__u?(?:div|mod|divmod)[sdt]i[34]"
     r"|__(?:add|sub|mul|div|neg|eq|ne|lt|le|gt|ge|un)[sd]f[23]|__(?:fix|float)\w+|__(?:extend|trunc)\w+"
 )
-INCLUDE_DIRS = (FIRMWARE_DIR / "control", *BOARD_DIRS)
 
 
 @dataclass(frozen=True)
@@ -36,9 +34,9 @@ class FirmwareImage:
 
 
 def build_firmware(
-    generated: Mapping[str, str], out_dir: Path | None = None, *, optimisation: str = "-O2"
+    generated: Mapping[str, str], out_dir: Path | None = None, *, optimisation: str = "-O2", board: Board = STM32G071
 ) -> FirmwareImage:
-    """Build the firmware around the `generated` law (file name -> text: law.h, law.c and what they include).
+    """Build the firmware of `board` around the `generated` law (file name -> text: law.h, law.c and what they include).
 
     With `out_dir` it leaves firmware.elf and firmware.bin there. The same texts give the same bytes. Raises BadInput with file
     and line when the compiler refuses, or when flash, RAM or the stack's reserve are exceeded.
@@ -46,11 +44,14 @@ def build_firmware(
     texts = {**generated, **protocol_source(PROTOCOL)}
     sources: list[Source] = [
         *control_sources(),
-        *board_sources(),
+        *board_sources(board),
         *(CText(name, text) for name, text in sorted(texts.items())),
     ]
     flags = (optimisation, *(flag for flag in TARGET_FLAGS if not flag.startswith("-O")))
-    elf = build_image("firmware", sources, LINKER_SCRIPT, include_dirs=INCLUDE_DIRS, flags=flags).read_bytes()
+    folders = [FIRMWARE_DIR / "control", *board_folders(board)]
+    elf = build_image(
+        "firmware", sources, linker_script(board), include_dirs=folders, flags=flags, core=board.core
+    ).read_bytes()
     image = describe_image(elf, "firmware.elf")
     if "#define LAW_ARITHMETIC_CODE 1 " in texts.get("law.h", ""):
         refuse_soft_arithmetic(image)
@@ -84,6 +85,16 @@ def control_sources() -> list[Path]:
     return sorted((FIRMWARE_DIR / "control").glob("*.c"))
 
 
-def board_sources() -> list[Path]:
-    """The board layer and `main`, in a fixed order."""
-    return sorted((path for folder in BOARD_DIRS for path in folder.glob("*.c")), key=lambda path: path.name)
+def board_sources(board: Board) -> list[Path]:
+    """`main` and the layer of the chip below it, in a fixed order."""
+    return sorted((path for folder in board_folders(board) for path in folder.glob("*.c")), key=lambda path: path.name)
+
+
+def board_folders(board: Board) -> list[Path]:
+    """Where the C is that any board has, and that of this chip."""
+    return [FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / board.folder]
+
+
+def linker_script(board: Board) -> Path:
+    """The chip's memories as the linker knows them."""
+    return FIRMWARE_DIR / "board" / board.folder / "link.ld"

@@ -3,10 +3,10 @@
 import pytest
 
 from codegen.law import generate_law
+from records.board import STM32G071
 from records.protocol import PROTOCOL
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.image import FLASH_BASE
 from rig.programming.image import build_firmware
 from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
 from tests.firmware.desk import MODES, STATES, Desk
@@ -37,7 +37,7 @@ def desk(stand_in) -> Desk:
 
 def test_it_comes_up_at_64_MHz_with_every_output_off(desk):
     pwm = desk.board.pwm()
-    assert desk.board.clock_hz == 64_000_000
+    assert desk.board.clock_hz == STM32G071.clock_hz
     assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks, pwm.period_ticks) == (False, 0, 0, 3200)
     assert [desk.board.gpio("B").drives(pin) for pin in (0, 1)] == [False, False]
     assert [desk.board.gpio("A").mode >> 2 * pin & 3 for pin in (0, 1, 2, 3, 6, 7, 8, 9)] == [2] * 8
@@ -45,10 +45,10 @@ def test_it_comes_up_at_64_MHz_with_every_output_off(desk):
 
 def test_it_starts_from_the_serial_boot_loader_as_from_a_reset(desk):
     # The loader leaves its own vectors, system memory at address 0 and a clock of 24 MHz from the PLL.
-    desk.board.start_from_boot_loader(FLASH_BASE)
+    desk.board.start_from_boot_loader(STM32G071.flash.start)
     assert desk.board.clock_hz == 24_000_000
     desk.start()
-    assert desk.board.clock_hz == 64_000_000
+    assert desk.board.clock_hz == STM32G071.clock_hz
     desk.sequence = 0
     desk.ask("IDENTIFY")
     first = desk.ask("GET_COUNTERS").number("device_time_us")

@@ -2,10 +2,11 @@
 
 from typing import NamedTuple
 
+from records.board import STM32G071
 from verification.static_bound.thumb import LOADS, PC, SP, STORES, Instruction
 
 FLASH_LINE_BYTES = 8
-WAIT_STATES = 2  # 64 MHz, voltage range 1 (RM0444 3.3.4)
+WAIT_STATES = STM32G071.flash_wait_states
 
 
 class Cycles(NamedTuple):

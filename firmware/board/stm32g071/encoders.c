@@ -1,8 +1,6 @@
 #include "board.h"
 #include "stm32g071.h"
-
-#define AF_TIM2 2u
-#define AF_TIM3 1u
+#include "wiring.h"
 
 /* Quadrature on both inputs, four counts a line, glitches below 8 clocks ignored. The period of a counter is ARR + 1. */
 static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
@@ -18,10 +16,10 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
 void encoders_start(encoder_counts *self)
 {
     RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
-    pin_alternate(PORT_A, 0, AF_TIM2, true);
-    pin_alternate(PORT_A, 1, AF_TIM2, true);
-    pin_alternate(PORT_A, 6, AF_TIM3, true);
-    pin_alternate(PORT_A, 7, AF_TIM3, true);
+    pin_alternate(PORT_A, ELEVATION_A_PIN, ELEVATION_FUNCTION, true);
+    pin_alternate(PORT_A, ELEVATION_B_PIN, ELEVATION_FUNCTION, true);
+    pin_alternate(PORT_A, AZIMUTH_A_PIN, AZIMUTH_FUNCTION, true);
+    pin_alternate(PORT_A, AZIMUTH_B_PIN, AZIMUTH_FUNCTION, true);
     encoder_timer_start(TIM2, UINT32_MAX);
     encoder_timer_start(TIM3, UINT16_MAX);
     *self = (encoder_counts){0};

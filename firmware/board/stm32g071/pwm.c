@@ -1,11 +1,6 @@
 #include "board.h"
 #include "stm32g071.h"
-
-#define AF_TIM1 2u
-#define MAIN_PIN 8u
-#define TAIL_PIN 9u
-#define MAIN_DIRECTION_PIN 0u
-#define TAIL_DIRECTION_PIN 1u
+#include "wiring.h"
 
 _Static_assert(LAW_PWM_TICKS >= 1000 && LAW_PWM_TICKS <= 65535, "a PWM period is 1000 to 65535 ticks of 64 MHz");
 
@@ -24,8 +19,8 @@ void pwm_start(void)
     TIM1->CR1 = TIM_CR1_CEN | TIM_CR1_ARPE;
     pin_output(PORT_B, MAIN_DIRECTION_PIN);
     pin_output(PORT_B, TAIL_DIRECTION_PIN);
-    pin_alternate(PORT_A, MAIN_PIN, AF_TIM1, false);
-    pin_alternate(PORT_A, TAIL_PIN, AF_TIM1, false);
+    pin_alternate(PORT_A, MAIN_PWM_PIN, PWM_FUNCTION, false);
+    pin_alternate(PORT_A, TAIL_PWM_PIN, PWM_FUNCTION, false);
 }
 
 static uint32_t magnitude(int32_t ticks)

@@ -2,7 +2,7 @@
  * The registers of the STM32G071 that this firmware uses, and no others.
  *
  * Sections are those of the reference manual RM0444 (STM32G0x1), of PM0223 for the core. Bit names are the manual's.
- * Base addresses, interrupt numbers and memory sizes are compared with the public device description in the tests.
+ * Interrupt numbers are compared with the public device description in the tests.
  */
 #ifndef STM32G071_H
 #define STM32G071_H
@@ -11,10 +11,6 @@
 #include <stdint.h>
 
 #define BIT(n) (1u << (n))
-
-/* Memory, RM0444 2.2.2: 32 KiB of the SRAM are there whatever the parity option says. */
-#define FLASH_SIZE_BYTES (128u * 1024u)
-#define RAM_SIZE_BYTES (32u * 1024u)
 
 /* Interrupt numbers, RM0444 12.3, table of vectors. */
 #define IRQ_TIM6 17u

@@ -1,6 +1,7 @@
 #include "board.h"
 #include "interrupts.h"
 #include "stm32g071.h"
+#include "wiring.h"
 
 #define COUNTS_PER_US (BOARD_CLOCK_HZ / 1000000u)
 _Static_assert(PATH_SAMPLE_PERIOD_US <= 65536u, "the period is counted by 16 bits in microseconds");

@@ -1,8 +1,8 @@
 #include "board.h"
 #include "interrupts.h"
 #include "stm32g071.h"
+#include "wiring.h"
 
-#define AF_USART2 1u
 #define RX_ROOM 512u /* bytes; the law's step lasts 30 bytes of line time */
 #define TX_ROOM 512u
 _Static_assert((RX_ROOM & (RX_ROOM - 1u)) == 0u && (TX_ROOM & (TX_ROOM - 1u)) == 0u, "rings wrap by masking");
@@ -27,8 +27,8 @@ void USART2_Handler(void);
 void usart_start(void)
 {
     RCC->APBENR1 |= RCC_APBENR1_USART2;
-    pin_alternate(PORT_A, 2, AF_USART2, false);
-    pin_alternate(PORT_A, 3, AF_USART2, true); /* an open line reads as idle */
+    pin_alternate(PORT_A, TRANSMIT_PIN, LINE_FUNCTION, false);
+    pin_alternate(PORT_A, RECEIVE_PIN, LINE_FUNCTION, true); /* an open line reads as idle */
     USART2->BRR = (BOARD_CLOCK_HZ + PROTOCOL_BAUD_RATE / 2u) / PROTOCOL_BAUD_RATE;
     USART2->CR1 = USART_CR1_UE | USART_CR1_RE | USART_CR1_TE | USART_CR1_RXNEIE;
     interrupt_start(IRQ_USART2, PRIORITY_USART);

@@ -1,6 +1,7 @@
 /* The whole emulated STM32G071 as one structure: core, memories, peripherals, counters.
  *
  * Every function takes the machine it works on; there is no state elsewhere, so several boards live side by side.
+ * FLASH_BASE, FLASH_BYTES, SRAM_BASE and SRAM_BYTES are given by native.py, from the record of the chip.
  * Time is counted in core clock cycles (`cycle`) and, where the core clock may change underneath, in picoseconds (`_ps`). */
 #ifndef MACHINE_H
 #define MACHINE_H
@@ -10,10 +11,6 @@
 
 #include "devices.h"
 
-#define FLASH_BASE 0x08000000u
-#define FLASH_BYTES 0x20000u
-#define SRAM_BASE 0x20000000u
-#define SRAM_BYTES 0x8000u
 #define CALL_RETURN 0x0F000000u /* nothing is mapped here: a host call has returned when the pc arrives */
 #define NEVER UINT64_MAX
 #define VECTORS 48u /* 16 exceptions of the core, 32 interrupts of the chip */

@@ -11,17 +11,12 @@ from enum import IntEnum
 from functools import reduce
 from operator import xor
 
-from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SRAM_BASE, SRAM_BYTES
+from records.board import STM32G071, Board
 
 SYNCHRONISE = 0x7F
 ACK, NACK = 0x79, 0x1F
 VERSION = 0x31
-CHIP_ID = 0x460
-PAGE_BYTES = 2048
-PAGES = FLASH_BYTES // PAGE_BYTES
-WORD_BYTES = 8  # the flash is programmed by 64 bits, and only where they are erased (RM0444 3.3.8)
 ERASED = b"\xff"
-LOADER_RAM_BYTES = 0x2700  # where the loader keeps its own variables: neither read nor written
 WHOLE_FLASH = 0xFFFF
 BANKS = 0xFFF0  # from here on the number of pages is a code, of which this chip of one bank knows only the whole
 
@@ -43,13 +38,13 @@ class Command(IntEnum):
 
 @dataclass(frozen=True)
 class LoaderFaults:
-    """What a loader can be made to do wrong: which chip it says it is, commands that it refuses, when it falls silent, worn flash.
+    """What a loader can be made to do wrong: which other chip it says it is, commands that it refuses, when it falls silent, worn flash.
 
     `silent_after` bytes taken, it answers no more. Writes at `refused_address` and above are answered NACK. The bits of the byte
     at `worn_address` cannot be programmed.
     """
 
-    chip_id: int = CHIP_ID
+    chip_id: int | None = None
     refused: frozenset[Command] = frozenset()
     silent_after: int | None = None
     refused_address: int | None = None
@@ -59,10 +54,10 @@ class LoaderFaults:
 class BootLoader:
     """A chip in its boot loader: `take` bytes from the host, get the loader's answer. `go_address` is where it was sent, if it was."""
 
-    def __init__(self, faults: LoaderFaults | None = None, flash: bytes = b"") -> None:
-        self.faults = faults or LoaderFaults()
-        self.flash = bytearray(flash.ljust(FLASH_BYTES, ERASED))
-        self.sram = bytearray(SRAM_BYTES)
+    def __init__(self, faults: LoaderFaults | None = None, flash: bytes = b"", chip: Board = STM32G071) -> None:
+        self.faults, self.chip = faults or LoaderFaults(), chip
+        self.flash = bytearray(flash.ljust(chip.flash.size_bytes, ERASED))
+        self.sram = bytearray(chip.ram.size_bytes)
         self.go_address: int | None = None
         self._taken = 0
         self._answer = bytearray()
@@ -103,7 +98,8 @@ class BootLoader:
             case Command.GET_VERSION:
                 self._say(VERSION, 0, 0, ACK)
             case Command.GET_ID:
-                self._say(1, *self.faults.chip_id.to_bytes(2, "big"), ACK)
+                chip_id = self.chip.boot_loader_id if self.faults.chip_id is None else self.faults.chip_id
+                self._say(1, *chip_id.to_bytes(2, "big"), ACK)
             case Command.READ:
                 yield from self._read()
             case Command.GO:
@@ -146,16 +142,17 @@ class BootLoader:
         high = yield
         low = yield
         number = high << 8 | low
-        if PAGES <= number < BANKS:
+        if self._pages <= number < BANKS:
             self._say(NACK)
             return
         listed = yield from self._block(0 if number >= BANKS else 2 * (number + 1), begun_with=bytes([high, low]))
-        pages = None if listed is None else _pages(number, listed)
+        pages = None if listed is None else self._named(number, listed)
         if pages is None:
             self._say(NACK)
             return
         for page in pages:
-            self.flash[page * PAGE_BYTES : (page + 1) * PAGE_BYTES] = ERASED * PAGE_BYTES
+            size = self.chip.flash_page_bytes
+            self.flash[page * size : (page + 1) * size] = ERASED * size
         self._say(ACK)
 
     def _address(self) -> Generator[None, int, int | None]:
@@ -179,41 +176,45 @@ class BootLoader:
     def _say(self, *octets: int) -> None:
         self._answer += bytes(octets)
 
+    @property
+    def _pages(self) -> int:
+        return self.chip.flash.size_bytes // self.chip.flash_page_bytes
+
+    def _named(self, number: int, listed: bytes) -> range | list[int] | None:
+        """The pages that EXTENDED ERASE names; None for one that the chip has not."""
+        if number == WHOLE_FLASH:
+            return range(self._pages)
+        pages = [int.from_bytes(listed[at : at + 2], "big") for at in range(0, len(listed), 2)]
+        return pages if number < BANKS and all(page < self._pages for page in pages) else None
+
     # --- the memories ---
 
     def _memory(self, address: int, count: int) -> bytes | None:
         """The bytes there; None outside flash and that part of the RAM which the loader does not use itself."""
-        if FLASH_BASE <= address <= FLASH_BASE + FLASH_BYTES - count:
-            return bytes(self.flash[address - FLASH_BASE : address - FLASH_BASE + count])
-        if SRAM_BASE + LOADER_RAM_BYTES <= address <= SRAM_BASE + SRAM_BYTES - count:
-            return bytes(self.sram[address - SRAM_BASE : address - SRAM_BASE + count])
+        flash, ram = self.chip.flash, self.chip.ram
+        if flash.start <= address <= flash.end - count:
+            return bytes(self.flash[address - flash.start : address - flash.start + count])
+        if ram.start + self.chip.boot_loader_ram_bytes <= address <= ram.end - count:
+            return bytes(self.sram[address - ram.start : address - ram.start + count])
         return None
 
     def _program(self, address: int, data: bytes) -> None:
         """AN3155 promises no verification: what cannot be programmed stays, and it is for the host to read it back."""
-        if address >= SRAM_BASE:
-            start = address - SRAM_BASE
+        if address >= self.chip.ram.start:
+            start = address - self.chip.ram.start
             self.sram[start : start + len(data)] = data
             return
-        start = address - FLASH_BASE
-        first, last = start - start % WORD_BYTES, -(-(start + len(data)) // WORD_BYTES) * WORD_BYTES
+        start, step = address - self.chip.flash.start, self.chip.flash_write_bytes
+        first, last = start - start % step, -(-(start + len(data)) // step) * step
         wanted = bytearray(self.flash[first:last])
         wanted[start - first : start - first + len(data)] = data
-        for at in range(first, last, WORD_BYTES):
-            if self.flash[at : at + WORD_BYTES] == ERASED * WORD_BYTES:
-                self.flash[at : at + WORD_BYTES] = wanted[at - first : at - first + WORD_BYTES]
+        for at in range(first, last, step):
+            if self.flash[at : at + step] == ERASED * step:
+                self.flash[at : at + step] = wanted[at - first : at - first + step]
         worn = self.faults.worn_address
         if worn is not None:
-            self.flash[worn - FLASH_BASE] = 0xFF
+            self.flash[worn - self.chip.flash.start] = 0xFF
 
 
 def _command(code: int, complement: int) -> Command | None:
     return Command(code) if code ^ complement == 0xFF and code in {known.value for known in Command} else None
-
-
-def _pages(number: int, listed: bytes) -> range | list[int] | None:
-    """The pages that EXTENDED ERASE names; None for one that the chip has not."""
-    if number == WHOLE_FLASH:
-        return range(PAGES)
-    pages = [int.from_bytes(listed[at : at + 2], "big") for at in range(0, len(listed), 2)]
-    return pages if number < BANKS and all(page < PAGES for page in pages) else None

@@ -113,7 +113,7 @@ class PtyBootLoader(_PtyChip):
         while not self._closing.is_set() and self.loader.go_address is None:
             self._terminal.write(self.loader.take(self._terminal.read(SLICE_S)))
         if self.loader.go_address is not None:
-            board = EmulatedBoard(Image.from_flash(bytes(self.loader.flash), "flash"))
+            board = EmulatedBoard(Image.from_flash(bytes(self.loader.flash), "flash", self.loader.chip))
             with contextlib.suppress(BadInput):  # a program in RAM is not emulated: the line is silent
                 board.start_from_boot_loader(self.loader.go_address)
                 self._pace(board)

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import unicorn
 from unicorn import arm_const as arm
 
+from records.board import STM32G071
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.image import FLASH_BASE, FLASH_BYTES, SRAM_BASE, SRAM_BYTES
 from rig.emulator.stops import Stop
 
+FLASH, RAM = STM32G071.flash, STM32G071.ram
 GENERAL = [getattr(arm, f"UC_ARM_REG_R{i}") for i in range(13)] + [
     arm.UC_ARM_REG_SP,
     arm.UC_ARM_REG_LR,
@@ -35,15 +36,15 @@ class Oracle:
     def __init__(self, flash: bytes) -> None:
         self.uc = unicorn.Uc(unicorn.UC_ARCH_ARM, unicorn.UC_MODE_THUMB | unicorn.UC_MODE_MCLASS)
         self.uc.ctl_set_cpu_model(arm.UC_CPU_ARM_CORTEX_M0)
-        self.uc.mem_map(FLASH_BASE, FLASH_BYTES, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
-        self.uc.mem_map(SRAM_BASE, SRAM_BYTES)
-        self.uc.mem_map(0, FLASH_BYTES, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)  # the alias
-        self.uc.mem_write(FLASH_BASE, flash)
+        self.uc.mem_map(FLASH.start, FLASH.size_bytes, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)
+        self.uc.mem_map(RAM.start, RAM.size_bytes)
+        self.uc.mem_map(0, FLASH.size_bytes, unicorn.UC_PROT_READ | unicorn.UC_PROT_EXEC)  # the alias
+        self.uc.mem_write(FLASH.start, flash)
         self.uc.mem_write(0, flash)
 
     def sram(self) -> bytes:
         """The whole SRAM."""
-        return bytes(self.uc.mem_read(SRAM_BASE, SRAM_BYTES))
+        return bytes(self.uc.mem_read(RAM.start, RAM.size_bytes))
 
     def step(self, registers: Sequence[int], xpsr: int) -> Outcome:
         """Execute the instruction at registers[15]."""
@@ -58,8 +59,8 @@ class Oracle:
 
     def call(self, address: int, arguments: Sequence[int]) -> int:
         """r0 after a whole function."""
-        back = FLASH_BASE + FLASH_BYTES - 16
-        registers = [*arguments, *[0] * (13 - len(arguments)), SRAM_BASE + SRAM_BYTES, back | 1, address]
+        back = FLASH.end - 16
+        registers = [*arguments, *[0] * (13 - len(arguments)), RAM.end, back | 1, address]
         self.uc.reg_write_batch(list(zip(GENERAL, registers, strict=True)))
         self.uc.emu_start(address | 1, back)
         return int(self.uc.reg_read(GENERAL[0]))
@@ -78,7 +79,11 @@ def is_code(address: int) -> bool:
     """Whether instructions can be fetched there."""
     return any(
         0 <= address - base < size
-        for base, size in ((0, FLASH_BYTES), (FLASH_BASE, FLASH_BYTES), (SRAM_BASE, SRAM_BYTES))
+        for base, size in (
+            (0, FLASH.size_bytes),
+            (FLASH.start, FLASH.size_bytes),
+            (RAM.start, RAM.size_bytes),
+        )
     )
 
 

@@ -2,12 +2,13 @@
 
 import pytest
 
+from records.board import STM32G071
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.image import FLASH_BASE
 from tests.rig.emulator.programs import powered
 from tests.rig.emulator.test_oracle import IDLE
 
-PC = FLASH_BASE + 0x1000
+FLASH, RAM = STM32G071.flash, STM32G071.ram
+PC = FLASH.start + 0x1000
 R0, R1, SP = 0x20000100, 4, 0x20007F00
 Z_SET = 0x40000000
 
@@ -56,7 +57,7 @@ def test_flash_stalls_are_taken_branches_and_data_read_from_flash(halfwords: lis
     assert board.flash_stalls == stalls
 
 
-@pytest.mark.parametrize("place", [0x20000200, FLASH_BASE + 0x2000, 0x2000], ids=["SRAM", "flash", "alias of flash"])
+@pytest.mark.parametrize("place", [0x20000200, FLASH.start + 0x2000, 0x2000], ids=["SRAM", "flash", "alias of flash"])
 def test_code_runs_everywhere_at_the_same_cost_and_a_change_of_it_takes_effect(place: int) -> None:
     board = powered("idle", IDLE)
     for value in (7, 9):  # movs r0, #value; b .

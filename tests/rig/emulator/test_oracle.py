@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from records.board import STM32G071
 from rig.emulator.answers import BoardConfig
 from rig.emulator.board import EmulatedBoard
-from rig.emulator.image import FLASH_BASE, SRAM_BASE, SRAM_BYTES
 from rig.emulator.stops import StopKind
 from tests.rig.emulator.oracle import Oracle, board_step
 from tests.rig.emulator.programs import build, powered
@@ -18,6 +18,7 @@ from tests.rig.emulator.thumb import (
     random_registers,
 )
 
+FLASH, RAM = STM32G071.flash, STM32G071.ram
 SHARDS, SLOTS, VISITS = 4, 6900, 8  # 220 800 instructions, of which some 7 % are unaligned accesses
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
 STRIDE = 8
@@ -47,7 +48,7 @@ def laid_out(rng: np.random.Generator) -> tuple[bytes, list[Instruction]]:
 
 def fresh_board(flash: bytes) -> EmulatedBoard:
     board = EmulatedBoard(build("idle", IDLE), BoardConfig(check_stack_limit=False))
-    board.write_memory(FLASH_BASE, flash)
+    board.write_memory(FLASH.start, flash)
     return board
 
 
@@ -59,16 +60,16 @@ def told(instruction: Instruction, registers: list[int], xpsr: int) -> str:
 def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicorn(shard: int) -> None:
     rng = np.random.default_rng(7100 + shard)
     flash, instructions = laid_out(rng)
-    memory = rng.bytes(SRAM_BYTES)
+    memory = rng.bytes(RAM.size_bytes)
     board, oracle = fresh_board(flash), Oracle(flash)
-    board.write_memory(SRAM_BASE, memory)
-    oracle.uc.mem_write(SRAM_BASE, memory)
+    board.write_memory(RAM.start, memory)
+    oracle.uc.mem_write(RAM.start, memory)
     executed: dict[str, int] = {}
     compared = 0
     for _ in range(VISITS):
         rows, flags = random_registers(rng, SLOTS), rng.integers(0, 16, SLOTS).tolist()
         for slot, instruction in enumerate(instructions):
-            registers, xpsr = [*rows[slot], FLASH_BASE + FIRST + STRIDE * slot], flags[slot] << 28
+            registers, xpsr = [*rows[slot], FLASH.start + FIRST + STRIDE * slot], flags[slot] << 28
             if instruction.kind == "msr":  # unicorn keeps the low bits of a stack pointer, the architecture does not
                 registers = [value & ~3 for value in registers]
             ours, stop = board_step(board, registers, xpsr)
@@ -79,7 +80,7 @@ def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicor
             theirs = oracle.step(registers, xpsr)
             assert ours == theirs, told(instruction, registers, xpsr)
             executed[instruction.kind] = executed.get(instruction.kind, 0) + (not ours.faulted)
-        assert board.read_memory(SRAM_BASE, SRAM_BYTES) == oracle.sram()
+        assert board.read_memory(RAM.start, RAM.size_bytes) == oracle.sram()
     assert compared >= 50_000
     assert set(executed) == {*CLASSES, *HIGH_CLASSES, *LONG_CLASSES}
     assert min(executed.values()) > 100, executed

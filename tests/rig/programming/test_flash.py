@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from codegen.law import generate_law
+from records.board import STM32G071
 from records.errors import BadInput, VerificationFailed
-from rig.emulator.image import FLASH_BASE, FLASH_BYTES
 from rig.emulator.ports.boot_loader import Command, LoaderFaults
 from rig.emulator.ports.pty_port import PtyBootLoader
 from rig.link.client import BoardClient, asked_identity
@@ -25,12 +25,13 @@ from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from twinlaw.command import main
 
+FLASH = STM32G071.flash
 needs_stm32flash = pytest.mark.skipif(
     shutil.which("stm32flash") is None, reason="stm32flash is not installed (Debian: apt install stm32flash)"
 )
-HALF_WAY = FLASH_BASE + 0x1000
+HALF_WAY = FLASH.start + 0x1000
 IDENTIFIED = "case $* in *-w*) ;; *) echo 'Device ID : 0x0460'; exit;; esac"  # as the tool, before it is told to write
-VECTORS = struct.pack("<II", 0x20008000, FLASH_BASE + 0x101)
+VECTORS = struct.pack("<II", 0x20008000, FLASH.start + 0x101)
 
 
 @pytest.fixture(scope="module", params=["float32", "fixed"])
@@ -96,7 +97,14 @@ def test_an_st_link_that_is_not_there_is_bad_input_and_failed_programming_is_not
 
 @pytest.mark.parametrize(
     "content",
-    [b"", VECTORS[:7], bytes(4096), VECTORS[4:] * 100, VECTORS + bytes(FLASH_BYTES), b"\x7fELF" + bytes(4096)],
+    [
+        b"",
+        VECTORS[:7],
+        bytes(4096),
+        VECTORS[4:] * 100,
+        VECTORS + bytes(FLASH.size_bytes),
+        b"\x7fELF" + bytes(4096),
+    ],
 )
 def test_what_is_no_image_for_the_chip_is_refused_before_the_port_is_opened(content, tmp_path):
     path = tmp_path / "firmware.bin"
@@ -132,7 +140,7 @@ def test_what_stm32flash_writes_boots_and_answers_with_its_tables_digest_on_the_
     with PtyBootLoader() as chip:
         flash_through_boot_loader(folder / "firmware.bin", chip.path)
         binary = (folder / "firmware.bin").read_bytes()
-        assert bytes(chip.loader.flash) == binary + b"\xff" * (FLASH_BYTES - len(binary))
+        assert bytes(chip.loader.flash) == binary + b"\xff" * (FLASH.size_bytes - len(binary))
         identity = asked_identity(chip.path)
         assert (identity.table_digest, identity.arithmetic) == (table.digest, arithmetic)
         numbers = numbers_of(table, arithmetic)
@@ -143,7 +151,7 @@ def test_what_stm32flash_writes_boots_and_answers_with_its_tables_digest_on_the_
 
 @needs_stm32flash
 def test_an_older_image_in_the_flash_is_erased_first(image):
-    with PtyBootLoader(flash=bytes(range(256)) * (FLASH_BYTES // 256)) as chip:
+    with PtyBootLoader(flash=bytes(range(256)) * (FLASH.size_bytes // 256)) as chip:
         flash_through_boot_loader(image, chip.path)
         assert chip.loader.flash[: 12 * 1024] == image.read_bytes()
 
@@ -177,7 +185,7 @@ FAILURES = [
 def test_a_loader_that_fails_gives_one_clear_line_and_its_exit_status(faults, words, status, image, capsys):
     with PtyBootLoader(faults) as chip:
         assert main(["flash", "--port", chip.path, "--out", str(image.parent)]) == status
-        written = bytes(chip.loader.flash) != b"\xff" * FLASH_BYTES
+        written = bytes(chip.loader.flash) != b"\xff" * FLASH.size_bytes
     told = capsys.readouterr()
     assert told.out == ""
     assert told.err.count("\n") == 1

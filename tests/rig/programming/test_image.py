@@ -1,22 +1,15 @@
 """The image that the board gets: reproducible, within its memories, with the vectors, sizes and names that others rely on."""
 
-import re
-from pathlib import Path
-
-import modm_devices
 import pytest
-from modm_devices.parser import DeviceParser
 
+from records.board import STM32G071
 from records.errors import BadInput
-from rig.programming.image import FIRMWARE_DIR, build_firmware, describe_image
+from rig.programming.image import FIRMWARE_DIR, build_firmware, describe_image, linker_script
 from tests.firmware.box import stand_in_law
 from toolchain.host import CText
 from toolchain.target import build_image
 
-BOARD = FIRMWARE_DIR / "board" / "stm32g071"
-HEADER = (BOARD / "stm32g071.h").read_text()
-STACK_RESERVE_BYTES = 4096
-FLASH_START, RAM_END = 0x08000000, 0x20008000
+BOARD = STM32G071
 
 
 @pytest.fixture(scope="module")
@@ -24,86 +17,30 @@ def image():
     return build_firmware(stand_in_law())
 
 
-@pytest.fixture(scope="module")
-def drivers():
-    """The public description of the STM32G071RB, driver by driver."""
-    devices = Path(modm_devices.__file__).parent / "resources" / "devices" / "stm32" / "stm32g0-71_81.xml"
-    chip = next(d for d in DeviceParser().parse(str(devices)).get_devices() if d.identifier.string == "stm32g071rbi6")
-    return {driver["name"]: driver for driver in chip.properties["driver"]}
-
-
-def define(name: str) -> int:
-    """Value of a plain #define of the register header."""
-    (text,) = re.findall(rf"#define {name} (.+?)(?: /\*|$)", HEADER, re.MULTILINE)
-    return int(eval(re.sub(r"(\d)u\b", r"\1", text)))  # products of decimal numbers only
-
-
-@pytest.mark.parametrize(("ours", "theirs"), [("IRQ_TIM6", "TIM6_DAC_LPTIM1"), ("IRQ_USART2", "USART2")])
-def test_interrupt_numbers_are_those_of_the_public_device_description(drivers, ours, theirs):
-    positions = {vector["name"]: int(vector["position"]) for vector in drivers["core"]["vector"]}
-    assert define(ours) == positions[theirs]
-    assert define("IRQ_COUNT") > max(positions.values())
-
-
-def test_memories_are_within_those_of_the_public_device_description(drivers):
-    memories = {memory["name"]: memory for memory in drivers["core"]["memory"]}
-    script = (BOARD / "link.ld").read_text()
-    assert define("FLASH_SIZE_BYTES") == int(memories["flash"]["size"])
-    assert define("RAM_SIZE_BYTES") <= int(memories["sram"]["size"])
-    assert (
-        f"ORIGIN = 0x{int(memories['flash']['start'], 16):08x}, LENGTH = {define('FLASH_SIZE_BYTES') // 1024}K"
-        in script
-    )
-    assert (
-        f"ORIGIN = 0x{int(memories['sram']['start'], 16):08x}, LENGTH = {define('RAM_SIZE_BYTES') // 1024}K" in script
-    )
-
-
-@pytest.mark.parametrize(
-    ("source", "macro", "pin", "signal"),
-    [
-        ("encoders.c", "AF_TIM2", "0", ("tim", "2", "ch1")),
-        ("encoders.c", "AF_TIM2", "1", ("tim", "2", "ch2")),
-        ("encoders.c", "AF_TIM3", "6", ("tim", "3", "ch1")),
-        ("encoders.c", "AF_TIM3", "7", ("tim", "3", "ch2")),
-        ("pwm.c", "AF_TIM1", "MAIN_PIN", ("tim", "1", "ch1")),
-        ("pwm.c", "AF_TIM1", "TAIL_PIN", ("tim", "1", "ch2")),
-        ("usart.c", "AF_USART2", "2", ("usart", "2", "tx")),
-        ("usart.c", "AF_USART2", "3", ("usart", "2", "rx")),
-    ],
-)
-def test_pins_and_alternate_functions_are_those_of_the_public_device_description(drivers, source, macro, pin, signal):
-    text = (BOARD / source).read_text()
-    assert f"pin_alternate(PORT_A, {pin}, {macro}," in text
-    number = pin if pin.isdigit() else re.findall(rf"#define {pin} (\d+)u", text)[0]
-    (function,) = re.findall(rf"#define {macro} (\d+)u", text)
-    (port_pin,) = (gpio for gpio in drivers["gpio"]["gpio"] if (gpio["port"], gpio["pin"]) == ("a", number))
-    offered = {(s["driver"], s.get("instance"), s["name"]): s.get("af") for s in port_pin["signal"]}
-    assert offered[signal] == function
-
-
 def test_the_first_words_are_the_stack_and_the_reset_vector(image):
-    words = [int.from_bytes(image.binary[at : at + 4], "little") for at in range(0, 4 * 48, 4)]
-    assert words[0] == image.symbols["_stack_top"].address == RAM_END
+    vectors = 16 + BOARD.interrupt_count
+    words = [int.from_bytes(image.binary[at : at + 4], "little") for at in range(0, 4 * vectors, 4)]
+    assert words[0] == image.symbols["_stack_top"].address == BOARD.ram.end
     assert words[1] == image.symbols["Reset_Handler"].address | 1
-    assert words[16 + define("IRQ_TIM6")] == image.symbols["TIM6_Handler"].address | 1
-    assert words[16 + define("IRQ_USART2")] == image.symbols["USART2_Handler"].address | 1
+    handlers = {16 + number: f"{name}_Handler" for name, number in BOARD.interrupts.items()}
+    assert {number: words[number] for number in handlers} == {
+        number: image.symbols[name].address | 1 for number, name in handlers.items()
+    }
     fault = image.symbols["Fault_Handler"].address | 1
-    others = set(range(2, 48)) - {16 + define("IRQ_TIM6"), 16 + define("IRQ_USART2")}
-    assert {words[number] for number in others} == {fault}
+    assert {words[number] for number in set(range(2, vectors)) - set(handlers)} == {fault}
 
 
 def test_names_that_others_rely_on_are_in_the_image(image):
     names = {"law_step", "law_reset", "law_self_test", "LAW_TABLE_DIGEST", "_stack_top", "_stack_limit"}
     assert names <= set(image.symbols)
-    assert image.symbols["_stack_top"].address - image.symbols["_stack_limit"].address == STACK_RESERVE_BYTES
+    assert image.symbols["_stack_top"].address - image.symbols["_stack_limit"].address == BOARD.stack_reserve_bytes
 
 
 def test_sizes_add_up_to_the_binary(image):
     sizes = image.sizes
     assert sizes.flash_bytes <= len(image.binary) <= sizes.flash_bytes + 8  # alignment between sections
-    assert sizes.ram_bytes + STACK_RESERVE_BYTES <= 32 * 1024
-    at = image.symbols["LAW_TABLE_DIGEST"].address - FLASH_START
+    assert sizes.ram_bytes + BOARD.stack_reserve_bytes <= BOARD.ram.size_bytes
+    at = image.symbols["LAW_TABLE_DIGEST"].address - BOARD.flash.start
     assert image.binary[at : at + 32] == bytes(range(1, 33))
 
 
@@ -122,7 +59,7 @@ def test_no_place_of_this_computer_is_in_the_image(image):
 
 def link_of(text: str) -> bytes:
     start = "void Reset_Handler(void);\nvoid Reset_Handler(void) { (void)use[0]; }\n"
-    return build_image("limits", [CText("big.c", text + start)], BOARD / "link.ld").read_bytes()
+    return build_image("limits", [CText("big.c", text + start)], linker_script(BOARD)).read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from records.board import STM32G071
 from twinlaw.pages.compare.comparison import Compared, spread_of
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
@@ -21,7 +22,7 @@ COST_HEADING: Row = (
 MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
 SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
 EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
-CYCLES_OF_A_SAMPLE = 640_000  # 10 ms at 64 MHz
+CYCLES_OF_A_SAMPLE = STM32G071.clock_hz // 100  # 10 ms
 
 
 def cost_rows(rows: Sequence[Compared]) -> list[Row]:

@@ -1,5 +1,6 @@
 """What was checked as rows of text: a verification, a board's validation, and the memory that an image takes."""
 
+from records.board import STM32G071, Board
 from records.validation import Validation
 from records.verification import Verification
 from toolchain.elf import ImageSizes
@@ -9,8 +10,9 @@ Row = tuple[str, ...]
 _OUTCOMES = {"proved": "proved", "failed": "FAILS", "skipped": "skipped"}
 
 
-def size_rows(sizes: ImageSizes, flash_limit_bytes: int = 128 * 1024, ram_limit_bytes: int = 32 * 1024) -> list[Row]:
+def size_rows(sizes: ImageSizes, board: Board = STM32G071) -> list[Row]:
     """Flash and RAM of an image against the chip's."""
+    flash_limit_bytes, ram_limit_bytes = board.flash.size_bytes, board.ram.size_bytes
     return [
         ("flash", str(sizes.flash_bytes), f"{flash_limit_bytes} ({100 * sizes.flash_bytes / flash_limit_bytes:.1f} %)"),
         (

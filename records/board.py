@@ -1,0 +1,139 @@
+"""The boards that the firmware runs on: every number of a chip, and which pin does what, once.
+
+Whoever computes takes them from here. The C and the linker script state some of them as text, as one who reads them expects; a test
+holds each of those, and those of the pages, against the record.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Memory:
+    """A stretch of the chip's address space."""
+
+    start: int
+    size_bytes: int
+
+    @property
+    def end(self) -> int:
+        """First address behind it."""
+        return self.start + self.size_bytes
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A pin by port and number; `function` is the number of its alternate function, None for a plain output."""
+
+    port: str
+    number: int
+    function: int | None = None
+
+    def __str__(self) -> str:
+        return f"P{self.port}{self.number}"
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """A quadrature encoder on both inputs of a timer that counts modulo 2^bits."""
+
+    timer: int
+    bits: int
+    a: Pin
+    b: Pin
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor's driver: PWM from a timer's channel, and a direction that is high for negative inputs."""
+
+    timer: int
+    channel: int
+    pwm: Pin
+    direction: Pin
+
+
+@dataclass(frozen=True)
+class SerialLine:
+    """The line to the host, and the number of its interrupt."""
+
+    usart: int
+    interrupt: int
+    transmit: Pin
+    receive: Pin
+
+
+@dataclass(frozen=True)
+class Tick:
+    """The timer that gives the control tick, and the number of its interrupt."""
+
+    timer: int
+    interrupt: int
+
+
+@dataclass(frozen=True)
+class Board:
+    """One chip and its wiring; its C is in `firmware/board/FOLDER/`.
+
+    `core` is the compiler's name of the core. The flash is erased by pages and written by `flash_write_bytes`, where it is erased. An
+    option bit gives the RAM `largest_ram_bytes`; the link leaves `stack_reserve_bytes` of it to the stack. The chip's serial boot loader
+    answers `boot_loader_id` to GET ID and keeps the first `boot_loader_ram_bytes` for itself. OpenOCD finds the board by `openocd_config`.
+    """
+
+    chip: str
+    folder: str
+    core: str
+    flash: Memory
+    flash_page_bytes: int
+    flash_write_bytes: int
+    flash_wait_states: int
+    ram: Memory
+    largest_ram_bytes: int
+    stack_reserve_bytes: int
+    oscillator_hz: int
+    clock_hz: int
+    interrupt_count: int
+    elevation_encoder: Encoder
+    azimuth_encoder: Encoder
+    main_motor: Motor
+    tail_motor: Motor
+    line: SerialLine
+    tick: Tick
+    boot_loader_id: int
+    boot_loader_ram_bytes: int
+    openocd_config: str
+
+    @property
+    def interrupts(self) -> dict[str, int]:
+        """Numbers of the interrupts in use, by peripheral."""
+        return {f"TIM{self.tick.timer}": self.tick.interrupt, f"USART{self.line.usart}": self.line.interrupt}
+
+
+# RM0444 by section: memories 2.2.2, flash pages 3.3.1, wait states 3.3.4, writing by 64 bits 3.3.8, clocks 5.2, vectors 12.3, device id
+# 40.10.1 (that of the STM32G081 too). 32 KiB of the RAM are there whatever the parity option says. The loader's RAM: AN2606.
+STM32G071 = Board(
+    chip="STM32G071",
+    folder="stm32g071",
+    core="cortex_m0plus",
+    flash=Memory(0x08000000, 128 * 1024),
+    flash_page_bytes=2048,
+    flash_write_bytes=8,
+    flash_wait_states=2,
+    ram=Memory(0x20000000, 32 * 1024),
+    largest_ram_bytes=36 * 1024,
+    stack_reserve_bytes=4 * 1024,
+    oscillator_hz=16_000_000,
+    clock_hz=64_000_000,
+    interrupt_count=32,
+    elevation_encoder=Encoder(timer=2, bits=32, a=Pin("A", 0, 2), b=Pin("A", 1, 2)),
+    azimuth_encoder=Encoder(timer=3, bits=16, a=Pin("A", 6, 1), b=Pin("A", 7, 1)),
+    main_motor=Motor(timer=1, channel=1, pwm=Pin("A", 8, 2), direction=Pin("B", 0)),
+    tail_motor=Motor(timer=1, channel=2, pwm=Pin("A", 9, 2), direction=Pin("B", 1)),
+    line=SerialLine(usart=2, interrupt=28, transmit=Pin("A", 2, 1), receive=Pin("A", 3, 1)),
+    tick=Tick(timer=6, interrupt=17),
+    boot_loader_id=0x460,
+    boot_loader_ram_bytes=0x2700,
+    openocd_config="board/st_nucleo_g0.cfg",
+)
+
+BOARDS: Mapping[str, Board] = {board.chip: board for board in (STM32G071,)}
