@@ -138,10 +138,10 @@ def _compile(
 def _portable_paths(unit: Source, path: Path, work: Path) -> list[str]:
     """Debug information without the place of the checkout, so that every checkout builds the same bytes.
 
-    zig names what lies below the current folder relative to it, so each place has two names.
+    zig names what lies below the current folder relative to it, and its own folder without links, so a place has several names.
     """
     places = [(Path(__file__).resolve().parent.parent, "."), (_zig_folder(), "zig"), (work, "generated")]
     if not isinstance(unit, CText):
         places.append((path.parent, path.parent.name))
-    maps = [f"-ffile-prefix-map={name}={alias}" for place, alias in places for name in (place, os.path.relpath(place))]
-    return ["-fdebug-compilation-dir=.", *maps]
+    names = [(name, alias) for place, alias in places for name in (place, place.resolve(), os.path.relpath(place))]
+    return ["-fdebug-compilation-dir=.", *(f"-ffile-prefix-map={name}={alias}" for name, alias in names)]
