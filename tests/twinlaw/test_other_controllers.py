@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rig.test_flash import needs_stm32flash
+from tests.rig.programming.test_flash import needs_stm32flash
 from tests.test_project import ROOT
 from twinlaw.command import main
 
