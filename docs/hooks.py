@@ -9,6 +9,7 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
+from diagnosis.decisions import table
 from twinlaw.verbs import VERBS, build_parser
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -16,7 +17,12 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def on_files(files: Files, config: Any) -> Files:
     """Add the pages that are made."""
-    pages = {"index.md": first_page(), "reference/verbs.md": verbs_page(), "reference/rooms.md": rooms_page()}
+    pages = {
+        "index.md": first_page(),
+        "reference/verbs.md": verbs_page(),
+        "reference/rooms.md": rooms_page(),
+        "reference/decisions.md": decisions_page(),
+    }
     packages = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["root_packages"]
     pages |= {f"reference/{name}.md": f"# {name}\n\n::: {name}\n" for name in packages if name != "twinlaw"}
     for path, text in pages.items():
@@ -65,3 +71,15 @@ def rooms_page() -> str:
     return "\n".join(
         ["# The rooms\n", "What goes into each folder and what comes out.\n", "| folder | |", "|---|---|", *rows]
     )
+
+
+def decisions_page() -> str:
+    """Every constant that decides something in a diagnosis."""
+    rows = [f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |" for name, value in table()]
+    head = ["| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]
+    told = "From `diagnosis/decisions.py`, in the order of the path of a diagnosis.\n"
+    return "\n".join(["# The constants that decide\n", told, *head, *rows])
+
+
+def _shown(value: object) -> str:
+    return ", ".join(f"{one:g}" for one in value) if isinstance(value, tuple) else f"{value:g}"

@@ -31,6 +31,7 @@ def test_every_page_and_every_package_has_one_place() -> None:
         "index.md",
         "reference/verbs.md",
         "reference/rooms.md",
+        "reference/decisions.md",
         *(f"reference/{name}.md" for name in packages if name != "twinlaw"),
     }
     assert sorted(PLACES) == sorted(pages | made)
