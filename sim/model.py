@@ -38,9 +38,10 @@ class ParameterSpec:
 class Axis:
     """One mechanical degree of freedom with dry friction and hard stops.
 
-    inertia * d(velocity)/dt = torque - coulomb * sgn(velocity), where at rest the friction takes any value within +-coulomb;
+    d(velocity)/dt is `acceleration` of its torque, `friction` and inertia; at rest the friction takes any value within +-coulomb.
     `coulomb` may depend on the friction's direction (Model.friction_signs). `lower` and `upper` are the stops of `position`, hit
-    without rebound; None where there is none. A rotor with dry friction is an axis without a position.
+    without rebound; None where there is none. A rotor with dry friction is an axis without a position. All are SI: N m and kg m^2 of a
+    turning axis, N and kg of a sliding one.
     """
 
     name: str
@@ -51,6 +52,15 @@ class Axis:
     coulomb: sympy.Expr
     lower: sympy.Expr | None
     upper: sympy.Expr | None
+
+    def friction(self, sign: sympy.Expr) -> sympy.Expr:
+        """What dry friction in the direction `sign` (+-1, or 0 to leave it out) takes from the torque: coulomb * sign."""
+        return sympy.sympify(self.coulomb) * sign
+
+
+def acceleration(torque: Any, friction: Any, inverse_inertia: Any) -> Any:
+    """d(velocity)/dt = (torque - friction) / inertia of an axis in motion, over whatever has these operators: SymPy or C text."""
+    return (torque - friction) * inverse_inertia
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +110,7 @@ class Model:
         """dx/dt as a column (states,) in the order of `states`, with the friction directions as symbols."""
         rates = dict(self.rates)
         for axis, sign in zip(self.axes, self.friction_signs, strict=True):
-            rates[axis.velocity] = (axis.torque - axis.coulomb * sign) / axis.inertia
+            rates[axis.velocity] = acceleration(axis.torque, axis.friction(sign), 1 / sympy.sympify(axis.inertia))
         return sympy.Matrix([rates[state] for state in self.states])
 
 

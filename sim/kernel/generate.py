@@ -2,15 +2,29 @@
 
 import itertools
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy
 
-from sim.model import TIME, Model
+from sim.model import TIME, Model, acceleration
 from sim.symbolic.assignments import Constants, assignments, constant_lines, entries
 from sim.symbolic.slopes import jacobian, symbols_of
 
 _ARGUMENTS = "num t_s, const num *x, const num *u, const num *c"
+
+
+@dataclass(frozen=True)
+class _Operand:
+    """A C expression: a law over numbers, given these, writes itself down, operation by operation."""
+
+    text: str
+
+    def __sub__(self, other: "_Operand") -> "_Operand":
+        return _Operand(f"({self.text} - {other.text})")
+
+    def __mul__(self, other: "_Operand") -> "_Operand":
+        return _Operand(f"{self.text}*{other.text}")
 
 
 def model_header(model: Model) -> str:
@@ -111,14 +125,15 @@ def _rates(model: Model, constants: Constants) -> str:
             f"torque[{place}]": axis.torque,
             f"up[{place}]": coulomb.xreplace({sign: sympy.Integer(1)}).subs(at_rest),
             f"down[{place}]": coulomb.xreplace({sign: sympy.Integer(-1)}).subs(at_rest),
-            f"friction_{place}": coulomb * sign,
+            f"friction_{place}": axis.friction(sign),
             f"inverse_inertia_{place}": 1 / axis.inertia,
         }
     declared = [f"num friction_{place}, inverse_inertia_{place};" for place in range(len(model.axes))]
     lines = [*_locals(model), *declared, *assignments(targets, constants)]
     for place, axis in enumerate(model.axes):
         row = model.states.index(axis.velocity)
-        lines.append(f"dx[{row}] = move[{place}]*((torque[{place}] - friction_{place})*inverse_inertia_{place});")
+        parts = (f"torque[{place}]", f"friction_{place}", f"inverse_inertia_{place}")
+        lines.append(f"dx[{row}] = move[{place}]*({acceleration(*map(_Operand, parts)).text});")
     head = f"MODEL_CODE void model_rates({_ARGUMENTS}, const num *sign, const num *move,"
     return _function(f"{head} num *dx, num *torque, num *up, num *down)", lines)
 
@@ -126,7 +141,7 @@ def _rates(model: Model, constants: Constants) -> str:
 def _friction(model: Model, constants: Constants) -> str:
     """What the dry friction of each axis takes from its acceleration."""
     targets = {
-        f"level[{place}]": sympy.sympify(axis.coulomb) * sign / axis.inertia
+        f"level[{place}]": axis.friction(sign) / axis.inertia
         for place, (axis, sign) in enumerate(zip(model.axes, model.friction_signs, strict=True))
     }
     head = f"MODEL_CODE void model_friction({_ARGUMENTS}, const num *sign, num *level)"
