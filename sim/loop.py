@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from records.errors import VerificationFailed
 from records.live import LiveRow
@@ -15,6 +16,8 @@ from sim.columns import log_columns, reference_name
 from sim.manoeuvres import Manoeuvre
 from sim.runs.stepped import SteppedPlant
 from sim.simulate import simulate
+
+Array = NDArray[np.float64]
 
 
 class Controller(Protocol):
@@ -68,34 +71,32 @@ def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, 
     return closed_loop_log(bound, manoeuvre, runs.u, runs.y, table.digest)
 
 
-def closed_loop_log(
-    bound: BoundPlant, manoeuvre: Manoeuvre, u: np.ndarray, y: np.ndarray, table_digest: str | None
-) -> RunLog:
+def closed_loop_log(bound: BoundPlant, manoeuvre: Manoeuvre, u: Array, y: Array, table_digest: str | None) -> RunLog:
     """The run log of a flight: inputs u (n, inputs), measured outputs y (n, outputs), and the references."""
-    references = zip(bound.model.outputs, manoeuvre.reference_rad.T, strict=True)
-    return RunLog(
-        columns=log_columns(bound.model),
-        sample_period_s=float(np.ptp(manoeuvre.t_s)) / (manoeuvre.t_s.size - 1),
-        loop="closed",
-        t_s=manoeuvre.t_s,
-        u=u,
-        y=y,
-        extra={reference_name(output): values for output, values in references},
-        table_digest=table_digest,
-    )
+    period_s = float(np.ptp(manoeuvre.t_s)) / (manoeuvre.t_s.size - 1)
+    return _log(bound, period_s, manoeuvre.t_s, manoeuvre.reference_rad, u, y, table_digest)
 
 
 def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | None) -> RunLog:
     """The run log of a flight that was watched, its time counted from the first of `rows`, of which there are two at least."""
     t_s = np.array([row.t_s for row in rows])
-    references = zip(bound.model.outputs, np.array([row.reference for row in rows]).T, strict=True)
+    period_s = float(np.median(np.diff(t_s)))
+    reference, u, y = (np.array([getattr(row, name) for row in rows]) for name in ("reference", "u", "y"))
+    return _log(bound, period_s, t_s - t_s[0], reference, u, y, table_digest)
+
+
+def _log(
+    bound: BoundPlant, period_s: float, t_s: Array, reference: Array, u: Array, y: Array, table_digest: str | None
+) -> RunLog:
+    """A run log of the closed loop with its references (n, outputs)."""
+    references = zip(bound.model.outputs, reference.T, strict=True)
     return RunLog(
         columns=log_columns(bound.model),
-        sample_period_s=float(np.median(np.diff(t_s))),
+        sample_period_s=period_s,
         loop="closed",
-        t_s=t_s - t_s[0],
-        u=np.array([row.u for row in rows]),
-        y=np.array([row.y for row in rows]),
+        t_s=t_s,
+        u=u,
+        y=y,
         extra={reference_name(output): values for output, values in references},
         table_digest=table_digest,
     )
