@@ -34,6 +34,11 @@ class BoundPlant:
     input_path: tuple[InputStage, ...] = ()
     output_path: tuple[OutputStage, ...] = ()
 
+    @property
+    def encoder_steps(self) -> tuple[float, ...]:
+        """The sensors' resolutions (outputs,) in the order of the model's outputs, each in its output's unit; 0 where there is none."""
+        return tuple(self.plant.sensors[output] for output in self.model.outputs)
+
     def parameter(self, name: str) -> float:
         """The value of a parameter that is one number."""
         return self.plant.parameters[name].values[0]

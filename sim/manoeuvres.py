@@ -53,10 +53,8 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 
     It starts as a rig does: rotors still, the arm on its lower stop, azimuth at 0.
     """
-    steps_rad = [bound.plant.sensors[output] for output in bound.model.outputs]
-    legs = [
-        on_encoder_steps(axis, step) for axis, step in zip((FLIGHT_ELEVATION, FLIGHT_AZIMUTH), steps_rad, strict=True)
-    ]
+    axes = zip((FLIGHT_ELEVATION, FLIGHT_AZIMUTH), bound.encoder_steps, strict=True)
+    legs = [on_encoder_steps(axis, step_rad) for axis, step_rad in axes]
     return manoeuvre("flight", at_rest(bound), FLIGHT_S, sample_period_s, legs)
 
 

@@ -11,7 +11,7 @@ from diagnosis import decisions
 from diagnosis.filter.edges import sharpened
 from records.log import RunLog
 from records.plant import Plant
-from sim.paths.path import Held, InputStage, pass_inputs
+from sim.paths.path import Held, InputStage, passed
 
 Array = NDArray[np.float64]
 AT_ONCE_S = 1e-7  # instants closer to one another are one
@@ -143,7 +143,7 @@ def with_inputs(filter_input: FilterInput, stages: Sequence[InputStage]) -> Filt
     if not stages:
         return filter_input
     edges = np.append(filter_input.t_s, 2.0 * filter_input.t_s[-1] - filter_input.t_s[-2])
-    held, _ = pass_inputs(stages, Held(edges, filter_input.u))
+    held, _ = passed(stages, Held(edges, filter_input.u))
     return spread(filter_input, held.edges_s[:-1], held.values)
 
 

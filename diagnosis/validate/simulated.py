@@ -14,7 +14,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
 from sim.composition.build import paths_with
 from sim.effect import Values
-from sim.paths.path import Held, OutputStage, Trace, pass_inputs, pass_output
+from sim.paths.path import Held, OutputStage, Trace, passed
 from sim.plants import MODELS
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ class Flown:
             self._y = self._behind(np.array([until_s]))
             return
         command = Held(np.array([self.t_s, until_s]), np.asarray(u, dtype=float)[np.newaxis])
-        held, self._input_memory = pass_inputs(self._on_input, command, self._input_memory)
+        held, self._input_memory = passed(self._on_input, command, self._input_memory)
         for value, end_s in zip(held.values, held.edges_s[1:].tolist(), strict=True):
             self._hold(value, end_s)
         self._y = self._behind(np.array([until_s]))
@@ -116,7 +116,7 @@ class Flown:
         return y
 
     def _passed(self, stages: list[OutputStage], trace: Trace, memory: Any) -> tuple[float, Any]:
-        behind, kept = pass_output(stages, trace, memory)
+        behind, kept = passed(stages, trace, memory)
         return float(behind.y[-1]), kept
 
     def _make_request(self, p: Array, locked: tuple[str, ...]) -> None:

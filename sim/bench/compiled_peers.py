@@ -13,7 +13,9 @@ from toolchain.host import FAST_FLAGS, CText, build_shared
 
 def _measured(task: Task, floor: Callable[[Any], Any], x: Any) -> list[Any]:
     """What the encoders read."""
-    return [floor(x[row] / step + 0.5) * step for row, step in zip(task.output_rows, task.resolution, strict=True)]
+    return [
+        floor(x[row] / step + 0.5) * step for row, step in zip(task.output_rows, task.bound.encoder_steps, strict=True)
+    ]
 
 
 def _moved(x: Any, k: Any, h_s: float) -> list[Any]:

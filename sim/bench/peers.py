@@ -43,11 +43,6 @@ class Task:
         return [self.bound.model.states.index(output) for output in self.bound.model.outputs.values()]
 
     @property
-    def resolution(self) -> list[float]:
-        """Encoder step of each output."""
-        return [self.bound.plant.sensors[output] for output in self.bound.model.outputs]
-
-    @property
     def period_s(self) -> float:
         """Time from sample to sample."""
         return float(self.piece.t_s[1] - self.piece.t_s[0])
@@ -93,7 +88,7 @@ def scalar_rates(bound: BoundPlant) -> Rates:
 
 def _sampled(task: Task, hold: Callable[[Any, Any, float], Any]) -> Work:
     """A loop over the samples in Python; `hold` advances x under constant u by a time."""
-    rows, steps = task.output_rows, task.resolution
+    rows, steps = task.output_rows, task.bound.encoder_steps
     references, times = task.piece.reference_rad.tolist(), task.piece.t_s.tolist()
 
     def measured(x: Any) -> list[float]:
@@ -153,7 +148,7 @@ def _python_control(task: Task) -> Work:
     import control
 
     hold, model, piece = rk4_hold(scalar_rates(task.bound)), task.bound.model, task.piece
-    rows, steps = task.output_rows, np.array(task.resolution)
+    rows, steps = task.output_rows, np.array(task.bound.encoder_steps)
     inputs, outputs = [str(variable) for variable in model.inputs], list(model.outputs)
     references = [f"{output}_wanted" for output in outputs]
 

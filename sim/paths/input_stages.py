@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths.path import SAME_INSTANT_S, Array, Held, played, uniform
+from sim.paths.path import SAME_INSTANT_S, Array, Held, in_steps, played, uniform
 
 PIECE_S = 2.5e-3
 MOST_PIECES = 16
@@ -75,7 +75,7 @@ class Quantised:
         if self.q <= 0.0:
             return signal, None
         values = signal.values.copy()
-        values[:, self.column] = self.q * np.rint(values[:, self.column] / self.q)
+        values[:, self.column] = in_steps(values[:, self.column], self.q)
         return Held(signal.edges_s, values), None
 
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from sim.paths.path import Array, Trace, played, uniform
+from sim.paths.path import Array, Trace, in_steps, played, uniform
 
 SHORTEST_S = 1e-7
 
@@ -110,7 +110,7 @@ class OutputSteps:
         """See OutputStage; remembers nothing."""
         if self.q <= 0.0:
             return signal, None
-        return Trace(signal.t_s, self.q * np.rint(signal.y / self.q), signal.rate), None
+        return Trace(signal.t_s, in_steps(signal.y, self.q), signal.rate), None
 
 
 def _joined(before: Trace, after: Trace) -> Trace:

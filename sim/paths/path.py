@@ -4,14 +4,15 @@ A stage takes a piece of signal and what it remembers, and gives the signal behi
 and a flight sample by sample go through the same code.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+S = TypeVar("S")
 SAME_INSTANT_S = 1e-9
 
 
@@ -66,21 +67,10 @@ class OutputStage(Protocol):
 Stage = InputStage | OutputStage
 
 
-def pass_inputs(
-    stages: Sequence[InputStage], signal: Held, memory: Sequence[Any] | None = None
-) -> tuple[Held, tuple[Any, ...]]:
-    """The inputs behind all stages, and what the stages remember."""
-    kept = []
-    for stage, before in zip(stages, memory or [None] * len(stages), strict=True):
-        signal, after = stage(signal, before)
-        kept.append(after)
-    return signal, tuple(kept)
-
-
-def pass_output(
-    stages: Sequence[OutputStage], signal: Trace, memory: Sequence[Any] | None = None
-) -> tuple[Trace, tuple[Any, ...]]:
-    """One output behind all its stages, and what the stages remember."""
+def passed(
+    stages: Sequence[Callable[[S, Any], tuple[S, Any]]], signal: S, memory: Sequence[Any] | None = None
+) -> tuple[S, tuple[Any, ...]]:
+    """A signal, the inputs (Held) or one output (Trace), behind all its stages in order, and what each stage remembers then."""
     kept = []
     for stage, before in zip(stages, memory or [None] * len(stages), strict=True):
         signal, after = stage(signal, before)
@@ -97,6 +87,12 @@ def played(x: Array, width: float, follower: float | None) -> tuple[Array, float
         at = min(max(at, pushing - half), pushing + half)
         y[k] = at
     return y, at
+
+
+def in_steps(x: Array, step: float | Array) -> Array:
+    """x in whole multiples of `step`, the nearest, halves to the even one; a step of 0 leaves x as it is. Shapes broadcast."""
+    count = np.divide(x, step, out=np.zeros(np.shape(x)), where=np.greater(step, 0.0))
+    return np.where(np.greater(step, 0.0), np.rint(count) * step, x)
 
 
 def uniform(number: Array, seed: int) -> Array:

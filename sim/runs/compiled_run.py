@@ -87,7 +87,9 @@ def run_equations(
         if inputs is None
         else filled("u", inputs, (*((runs,) if per_run else ()), times.size, len(model.inputs))),
         "reference": None if reference is None else filled("reference", reference, (times.size, len(model.outputs))),
-        "resolution": filled("resolution", steps_of(bound, resolution), (len(model.outputs),)),
+        "resolution": filled(
+            "resolution", bound.encoder_steps if resolution is None else resolution, (len(model.outputs),)
+        ),
         "measurement_sd": _optional("measurement_sd", noise.measurement_sd if noise else None, len(model.outputs)),
         "process_sd": _optional("process_sd", noise.process_sd if noise else None, len(model.states)),
         "locked": np.array([axis.name in locked for axis in model.axes], dtype=np.uint8),
@@ -101,11 +103,6 @@ def run_equations(
     batch = (not single if batched is None else batched) and not isinstance(drive, CController)
     (compiled.batch.run_batch if batch else compiled.lib.run_single)(request)
     return Runs(times, **{name: array[0] if single and array is not None else array for name, array in results.items()})
-
-
-def steps_of(bound: BoundPlant, resolution: ArrayLike | None) -> ArrayLike:
-    """The encoders' steps (outputs,), by default the plant file's."""
-    return [bound.plant.sensors[output] for output in bound.model.outputs] if resolution is None else resolution
 
 
 def filled(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:

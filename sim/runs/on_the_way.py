@@ -11,8 +11,8 @@ from sim.bind import BoundPlant
 from sim.kernel.kernel import kernel
 from sim.kernel.law import law_struct
 from sim.kernel.reading import reading
-from sim.paths.path import Held, Trace, pass_inputs, pass_output
-from sim.runs.compiled_run import Array, CController, Drive, Noise, Runs, filled, run_equations, steps_of
+from sim.paths.path import Held, Trace, in_steps, passed
+from sim.runs.compiled_run import Array, CController, Drive, Noise, Runs, filled, run_equations
 from sim.runs.stepped import SteppedPlant
 
 
@@ -31,7 +31,7 @@ def arriving(bound: BoundPlant, t_s: ArrayLike, u: ArrayLike) -> Arriving:
     if not bound.input_path:
         return Arriving(times, commands, np.arange(len(times)))
     end_s = times[-1] + (times[-1] - times[-2] if len(times) > 1 else 1.0)
-    held, _ = pass_inputs(bound.input_path, Held(np.append(times, end_s), commands))
+    held, _ = passed(bound.input_path, Held(np.append(times, end_s), commands))
     rows = np.searchsorted(held.edges_s, times)
     count = rows[-1] + 1
     return Arriving(held.edges_s[:count], held.values[:count], rows)
@@ -42,7 +42,7 @@ def readings(bound: BoundPlant, t_s: Array, x: Array, p: Array) -> Array:
     y, rate = reading(bound.model)(t_s, x, p)
     for output in sorted({stage.output for stage in bound.output_path}):
         stages = [stage for stage in bound.output_path if stage.output == output]
-        y[:, output] = pass_output(stages, Trace(t_s, y[:, output], rate[:, output]))[0].y
+        y[:, output] = passed(stages, Trace(t_s, y[:, output], rate[:, output]))[0].y
     return y
 
 
@@ -54,7 +54,8 @@ def run_open(bound: BoundPlant, t_s: ArrayLike, x0: Array, drive: Array, *, keep
     times = np.ascontiguousarray(t_s, dtype=float)
     commands = filled("u", drive, (times.size, len(bound.model.inputs)))
     way = arriving(bound, times, commands)
-    steps = np.asarray(steps_of(bound, options.pop("resolution")), dtype=float)
+    resolution = options.pop("resolution")
+    steps = np.asarray(bound.encoder_steps if resolution is None else resolution, dtype=float)
     exact = np.zeros(steps.shape) if bound.output_path else steps
     wanted = "yx" if bound.output_path else keep.replace("u", "")
     runs = run_equations(bound, way.t_s, x0, way.u, resolution=exact, keep=wanted, **options)
@@ -138,8 +139,7 @@ def _measured(bound: BoundPlant, way: Arriving, runs: Runs, steps: Array, p: Arr
         own = parameters if parameters.ndim == 1 else parameters[index]
         plain, _ = reading(bound.model)(way.t_s, states, own)
         result[index] = (readings(bound, way.t_s, states, own) + (noisy[index] - plain))[way.rows]
-    whole = np.rint(np.divide(result, steps, out=np.zeros(result.shape), where=steps > 0.0)) * steps
-    return np.where(steps > 0.0, whole, result).reshape(*runs.y.shape[:-2], *result.shape[-2:])
+    return in_steps(result, steps).reshape(*runs.y.shape[:-2], *result.shape[-2:])
 
 
 def _run_of(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sim.bind import BoundPlant
 from sim.kernel.kernel import kernel
 from sim.kernel.reading import reading
-from sim.paths.path import Held, OutputStage, Trace, pass_inputs, pass_output
+from sim.paths.path import Held, OutputStage, Trace, in_steps, passed
 from sim.start import start_state
 
 Array = NDArray[np.float64]
@@ -37,8 +37,7 @@ class SteppedPlant:
         self._x = np.array(start_state(bound, x0), dtype=float)
         self._sign, self._move = np.zeros(max(1, len(model.axes))), np.zeros(max(1, len(model.axes)))
         self._c = np.zeros(self._kernel.constants)
-        steps = [bound.plant.sensors[output] for output in model.outputs] if resolution is None else resolution
-        self._resolution = np.array(steps, dtype=float)
+        self._resolution = np.array(bound.encoder_steps if resolution is None else resolution, dtype=float)
         self._y, self._u = np.zeros(len(model.outputs)), np.zeros(len(model.inputs))
         self._settled = False
         self._kernel.lib.constants_single(self._double(np.ascontiguousarray(bound.p)), self._double(self._c))
@@ -73,7 +72,7 @@ class SteppedPlant:
             times, states = [until_s], [self._x]
         else:
             command = Held(np.array([self.t_s, until_s]), np.array([u], dtype=float))
-            held, self._on_input = pass_inputs(self._bound.input_path, command, self._on_input)
+            held, self._on_input = passed(self._bound.input_path, command, self._on_input)
             times, states = held.edges_s[1:].tolist(), []
             for value, end_s in zip(held.values.tolist(), times, strict=True):
                 self._hold(value, end_s, substeps)
@@ -121,10 +120,10 @@ class _OutputWays:
         self._y = y[-1].copy()
         for output, stages in self._stages.items():
             trace = Trace(t_s, y[:, output], rate[:, output])
-            behind, self._memory[output] = pass_output(stages, trace, self._memory[output])
+            behind, self._memory[output] = passed(stages, trace, self._memory[output])
             self._y[output] = behind.y[-1]
 
     def rounded(self, steps: Array) -> tuple[float, ...]:
         """The last outputs in steps; 0 stands for none."""
-        pairs = zip(self._y.tolist(), steps.tolist(), strict=True)
-        return tuple(float(step * np.rint(value / step) + 0.0) if step > 0.0 else value for value, step in pairs)
+        whole = in_steps(self._y, steps) + 0.0  # as the kernel's: a zero has no sign
+        return tuple(np.where(steps > 0.0, whole, self._y).tolist())
