@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, DirectForm, to_delta, to_direct
 from design.loop import PlantPolynomials, Poles, closed_loop_polynomial, open_loop, polynomial_roots, to_rad_s
-from design.operating_points import exact_delta
-from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z
+from design.operating_points import placed
 from design.schedule import Schedule, evaluate, fit
 from design.settings import AxisSettings
 from design.transfer import transfer_from_polynomials
@@ -85,11 +84,8 @@ def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[PlantPolyno
 
 def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -> DeltaForm:
     """The controller that eq (26) gives for `plant` itself, without fit."""
-    transfer = transfer_from_polynomials(plant.b, plant.a)
-    wanted = characteristic(poles_z(axis.wishes.poles_rad_s, plant.sample_period_s))
     where = f"{axis.name} at psi = {math.degrees(psi_rad):.1f} deg"
-    placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[axis.wishes.free_degree], where)
-    return exact_delta(plant, placement, axis.wishes)
+    return placed(transfer_from_polynomials(plant.b, plant.a), plant, axis.wishes, where).delta
 
 
 def pole_map(plants: Sequence[PlantPolynomials], controllers: Sequence[DeltaForm]) -> Poles:

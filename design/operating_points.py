@@ -71,11 +71,14 @@ def design_point(
     where = f"{axis} at psi = {math.degrees(point.psi_rad):.1f} deg"
     linear = subsystem(bound, linearise(bound, point), axis)
     transfer = transfer_function(linear, sample_period_s, where)
-    wanted = characteristic(poles_z(wishes.poles_rad_s, sample_period_s))
+    return placed(transfer, plant_polynomials(sample(linear, sample_period_s)), wishes, where)
+
+
+def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSettings, where: str) -> PointDesign:
+    """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma; raises BadInput naming `where` (see place)."""
+    wanted = characteristic(poles_z(wishes.poles_rad_s, plant.sample_period_s))
     placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
-    return PointDesign(
-        transfer, placement, exact_delta(plant_polynomials(sample(linear, sample_period_s)), placement, wishes)
-    )
+    return PointDesign(transfer, placement, exact_delta(plant, placement, wishes))
 
 
 def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSettings) -> DeltaForm:
