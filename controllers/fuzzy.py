@@ -31,6 +31,7 @@ from controllers.fuzzy_sets import (
     Wording,
 )
 from records.law_table import LawTable
+from records.table import lag_gain
 
 N = TypeVar("N")
 Slopes = tuple[float, float, float, float]
@@ -165,7 +166,7 @@ def gains_of(wording: Wording, sample_period_s: float) -> FuzzyGains:
     return FuzzyGains(
         degrees=180.0 / math.pi,
         rate_scale=180.0 / math.pi * wording.rate_period_s / FILTER_S,
-        filter_gain=-math.expm1(-sample_period_s / FILTER_S),
+        filter_gain=lag_gain(FILTER_S, sample_period_s),
         output_V=wording.unit_V,
         angle_max_rad=ANGLE_MAX_RAD,
         input_max=INPUT_MAX,

@@ -30,10 +30,10 @@ from controllers.linearisation import (
 from controllers.placing import Placed, placed
 from design.operating_points import design_point
 from design.pole_placement import poles_z
-from design.settings import AXES
 from design.table import observer
 from records.errors import BadInput
 from records.law_table import LawTable
+from records.table import AXES
 
 AGREEMENT = 1e-5  # of each coefficient in double precision with the design by python-control at the operating points
 

@@ -28,10 +28,9 @@ from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.lqg_gains import WEIGHTS, gains_at
 from design.schedule import fit, stored_fit
-from design.settings import AXES
 from design.table import SENSORS
 from records.law_table import LawTable
-from records.table import Polynomial
+from records.table import AXES, Polynomial
 
 N = TypeVar("N")
 Array = NDArray[np.float64]

@@ -18,9 +18,9 @@ from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
-from design.settings import AXES
 from design.table import LIMITS, plain
 from records.law_table import LawTable
+from records.table import AXES, lag_gain
 
 N = TypeVar("N")
 
@@ -105,7 +105,7 @@ def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
         k_p_V_rad=tuning.k_p,
         k_i_Ts_V_rad=tuning.k_i * Ts_s,
         k_d_Tf_V_rad=tuning.k_d / tuning.filter_s,
-        filter_gain=-math.expm1(-Ts_s / tuning.filter_s),
+        filter_gain=lag_gain(tuning.filter_s, Ts_s),
         tracking_gain=Ts_s / math.sqrt(tuning.k_d / tuning.k_i),
         i_max_V=high_V - low_V,
         angle_max_rad=ANGLE_MAX_RAD,

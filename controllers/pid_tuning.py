@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from design.discretise import SampledPlant
 from records.errors import BadInput
+from records.table import lag_gain
 
 Array = NDArray[np.float64]
 
@@ -116,7 +117,7 @@ def _largest_integral(loop: _Loop, k_p: float, k_d: float, bound: float) -> floa
 def _sensitivity(loop: _Loop, k_p: float, k_i: float, k_d: float) -> float:
     """The largest |1/(1 + C G)| over frequencies and operating points; infinite where a loop is unstable."""
     filter_s = _filter_s(loop, k_p, k_d)
-    g = -math.expm1(-loop.Ts_s / filter_s)
+    g = lag_gain(filter_s, loop.Ts_s)
     C = k_p + k_i * loop.Ts_s / (loop.z - 1.0) + k_d / filter_s * (1.0 - g * loop.z / (loop.z - 1.0 + g))
     largest = float(np.max(np.abs(1.0 / (1.0 + loop.G * C))))
     return largest if largest > 20.0 or _is_stable(loop, k_p, k_i, k_d / filter_s, g) else math.inf

@@ -6,21 +6,22 @@ from typing import Any
 
 import jinja2
 
-from codegen.law import AXIS_NAMES, c_environment, frame_axis, frame_context, shared_context
+from codegen.law import c_environment, frame_axis, frame_context, shared_context
 from codegen.law_frame import AxisEquations
 from codegen.numbers import c_float32
 from codegen.self_test import self_test
 from controllers.exact import EquationTwin
 from controllers.frame import float32_polynomial
 from records.law_table import LawTable
+from records.table import AXES
 
 
 def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> Mapping[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c; `template` is a file of controllers/templates for law.c."""
     gains = table.elevation.gains
-    feedforwards = {name: float32_polynomial(getattr(table, name).feedforward_V) for name in AXIS_NAMES}
+    feedforwards = {name: float32_polynomial(table.axis(name).feedforward_V) for name in AXES}
     degrees = {len(entry) - 1 for entry in (*feedforwards.values(), *_polynomials(gains).values())}
-    axes = tuple(frame_axis(table, name) for name in AXIS_NAMES)
+    axes = tuple(frame_axis(table, name) for name in AXES)
     names = [field.name for field in fields(equations.AxisState)]  # type: ignore[arg-type]
     context = {
         **shared_context(table, "float32"),

@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 
 from design.report import AxisReport, DesignReport
-from design.settings import AXES, DesignSettings, MarginLimits
+from design.settings import DesignSettings, MarginLimits
 from records.errors import BadInput
+from records.table import AXES
 
 REMEDY = "choose other poles, more operating points or a higher coefficient_degree"
 

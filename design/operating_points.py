@@ -12,8 +12,9 @@ from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
 from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
 from design.refine import refined
-from design.settings import AXES, AxisSettings, DesignSettings
+from design.settings import AxisSettings, DesignSettings
 from design.transfer import TransferFunction, transfer_function
+from records.table import AXES, BothAxes
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 
@@ -40,17 +41,13 @@ def equilibria(bound: BoundPlant, psi_rad: Array) -> tuple[OperatingPoint, ...]:
 
 
 @dataclass(frozen=True)
-class DesignPoints:
+class DesignPoints(BothAxes[tuple[PointDesign, ...]]):
     """Equilibria (points,) over the schedule's range and the controllers made for each of them."""
 
     psi_rad: Array
     equilibria: tuple[OperatingPoint, ...]
     elevation: tuple[PointDesign, ...]
     azimuth: tuple[PointDesign, ...]
-
-    def axis(self, name: str) -> tuple[PointDesign, ...]:
-        """The designs of the axis called `name`."""
-        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
 
 
 def design_points(bound: BoundPlant, settings: DesignSettings) -> DesignPoints:

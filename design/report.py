@@ -17,8 +17,8 @@ from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, 
 from design.operating_points import DesignPoints, equilibria
 from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, evaluate, fit_error, schedule_of
-from design.settings import AXES, DesignSettings
-from records.table import AxisLaw, ControllerTable
+from design.settings import DesignSettings
+from records.table import AXES, BothAxes, ControllerTable
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class AxisReport:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignReport:
+class DesignReport(BothAxes[AxisReport]):
     """Both axes over the elevations psi_rad (angles,): the operating points and at least 200 angles between them.
 
     `arithmetic` is that of the law that flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of both its loops closed on the
@@ -77,10 +77,6 @@ class DesignReport:
     azimuth: AxisReport
     coupled_slowest_rad_s: Array
     coupled: SlowestPole
-
-    def axis(self, name: str) -> AxisReport:
-        """The report on the axis called `name`."""
-        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
 
     def pole_entries(self) -> list[dict[str, Any]]:
         """The entries `poles` of verification.json: designed poles against those that fly, per axis."""
@@ -143,11 +139,8 @@ class _Survey:
             grid_rad=self.points.psi_rad,
             designs=tuple(design.delta for design in self.points.axis(axis)),
             degree=self.settings.coefficient_degree,
-            schedule=schedule_of(self.law(axis)),
+            schedule=schedule_of(self.table.axis(axis)),
         )
-
-    def law(self, axis: str) -> AxisLaw:
-        return {"elevation": self.table.elevation, "azimuth": self.table.azimuth}[axis]
 
     def plants(self, axis: str) -> tuple[PlantPolynomials, ...]:
         parts = (subsystem(self.bound, plant, axis) for plant in self.linear)
@@ -184,7 +177,7 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
 
 def _feedforward_error_V(survey: _Survey, axis: str) -> float:
     wanted_V = np.array([point.u0[AXES.index(axis)] for point in survey.points.equilibria])
-    return float(np.max(np.abs(polyval(survey.points.psi_rad, survey.law(axis).feedforward_V) - wanted_V)))
+    return float(np.max(np.abs(polyval(survey.points.psi_rad, survey.table.axis(axis).feedforward_V) - wanted_V)))
 
 
 def _coupled(survey: _Survey) -> Poles:

@@ -23,8 +23,7 @@ class Rounding:
 
 
 def _float32(table: ControllerTable, axis: str, psi_rad: Array) -> tuple[DeltaForm, ...]:
-    law = {"elevation": table.elevation, "azimuth": table.azimuth}[axis]
-    rounded = stored(schedule_of(law), STORAGES["float32"])
+    rounded = stored(schedule_of(table.axis(axis)), STORAGES["float32"])
     return tuple(evaluate(rounded, float(psi)) for psi in psi_rad)
 
 

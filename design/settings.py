@@ -30,9 +30,8 @@ from typing import Any
 from design.pole_placement import FREE_DEGREES, ORDER
 from records import checks
 from records.errors import BadInput
+from records.table import AXES, BothAxes
 from sim.bind import BoundPlant
-
-AXES = ("elevation", "azimuth")
 
 DEFAULTS: Mapping[str, float] = {
     "sample_period_s": 0.01,
@@ -93,7 +92,7 @@ class MarginLimits:
 
 
 @dataclass(frozen=True)
-class DesignSettings:
+class DesignSettings(BothAxes[AxisSettings]):
     """Wishes for the whole table."""
 
     sample_period_s: float
@@ -105,10 +104,6 @@ class DesignSettings:
     elevation: AxisSettings
     azimuth: AxisSettings
     margins: MarginLimits
-
-    def axis(self, name: str) -> AxisSettings:
-        """The wishes for the axis called `name`."""
-        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
 
 
 def read_settings(bound: BoundPlant) -> DesignSettings:

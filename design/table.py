@@ -13,10 +13,10 @@ from design.operating_points import DesignPoints, design_points
 from design.report import DesignReport, make_report
 from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
-from design.settings import AXES, DesignSettings
+from design.settings import DesignSettings
 from records.errors import BadInput
 from records.plant import plant_text
-from records.table import AxisLaw, ControllerTable
+from records.table import AXES, AxisLaw, ControllerTable
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
-from records.table import Polynomial, canonical_text, lag_gain
+from records.table import BothAxes, Polynomial, canonical_text, lag_gain
 
 SCHEMA = "law-table/1"
 G = TypeVar("G")
@@ -68,7 +68,7 @@ class AxisTable(Generic[G]):
 
 
 @dataclass(frozen=True)
-class LawTable(Generic[G]):
+class LawTable(BothAxes[AxisTable[G]]):
     """Both axes of a controller over the elevations psi_min_rad..psi_max_rad; `origin` tells where the numbers are from."""
 
     controller: str

@@ -20,14 +20,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from records import checks
 from records.errors import BadInput
 from records.reading import read_json
 
 SCHEMA = "controller-table/1"
+AXES = ("elevation", "azimuth")
 Polynomial = tuple[float, ...]
+A = TypeVar("A")
 
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
@@ -39,6 +41,17 @@ LEAST_SCHEDULE_RAD = 2.0**-30
 def lag_gain(T_s: float, sample_period_s: float) -> float:
     """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
     return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+
+
+class BothAxes(Generic[A]):
+    """A record that has one entry for each of AXES."""
+
+    elevation: A
+    azimuth: A
+
+    def axis(self, name: str) -> A:
+        """The entry of the axis called `name`."""
+        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
 
 
 @dataclass(frozen=True)
@@ -63,7 +76,7 @@ class AxisLaw:
 
 
 @dataclass(frozen=True)
-class ControllerTable:
+class ControllerTable(BothAxes[AxisLaw]):
     """The table of both axes over the scheduling range psi_min_rad..psi_max_rad, and where it came from.
 
     `feedforward_V` of the azimuth axis is a polynomial in the elevation reference, as u_T0 depends on Psi only.

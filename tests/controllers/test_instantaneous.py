@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from controllers.instantaneous import CONTROLLER
-from design.settings import AXES, read_settings
+from design.settings import read_settings
 from records.errors import BadInput
+from records.table import AXES
 from sim.loop import fly
 from sim.manoeuvres import hop
 from tests.controllers.rows import ce150, designed

@@ -9,7 +9,8 @@ import pytest
 
 from controllers.designing import points_of
 from controllers.lqg_gains import WEIGHTS, gains_at, sampled
-from design.settings import AXES, read_settings
+from design.settings import read_settings
+from records.table import AXES
 from sim.loop import fly
 from sim.manoeuvres import Leg, Manoeuvre, hop, manoeuvre
 from sim.simulate import simulate

@@ -9,7 +9,8 @@ import pytest
 
 from controllers.designing import points_of
 from controllers.pid_tuning import LARGEST_SENSITIVITY
-from design.settings import AXES, read_settings
+from design.settings import read_settings
+from records.table import AXES
 from tests.controllers.rows import ce150, designed
 
 
