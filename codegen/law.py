@@ -11,22 +11,16 @@ from codegen.fixed.context import fixed_context
 from codegen.fixed.twin import FixedTwin
 from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
 from codegen.law_frame import without_vanishing_powers
+from codegen.law_terms import PREFIXES, UNITS, array_name, coefficients
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
 from codegen.self_test import self_test
 from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.table import AXES, LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
-
-_FACTORS = {
-    "q": ("e->e_0_rad", "e->e_1_rad", "e->e_2_rad", "e->e_3_rad"),
-    "p": ("self->s_0_V", "self->s_1_V", "self->s_2_V"),
-    "a": ("self->w_0_V", "self->w_1_V", "self->w_2_V"),
-}
-_UNITS = {"q": "V/rad", "p": "1", "a": "1", "u_ff": "V"}
 
 
 @dataclass(frozen=True)
@@ -129,8 +123,8 @@ def frame_context(table: Any, axes: Sequence[Axis], axis_state_fields: Sequence[
 
 def _float32_context(table: ControllerTable) -> dict[str, Any]:
     count = operation_count(table)  # refuses an unusable table before anything is made from it
-    arrays = tuple(array for name in AXIS_NAMES for array in _arrays(table, name))
-    axes = tuple(frame_axis(table, name, tuple(_terms(name, _law_of(table, name)))) for name in AXIS_NAMES)
+    arrays = tuple(array for name in AXES for array in _arrays(table, name))
+    axes = tuple(frame_axis(table, name, tuple(_terms(name, table.axis(name)))) for name in AXES)
     return frame_context(table, axes, AXIS_STATE_FIELDS) | {
         "axis_state_note": "; the index is the power of delta = 1 - z^-1",
         "arrays": arrays,
@@ -149,14 +143,12 @@ _TEMPLATES = {
     "float32": {"law.h": "law.h.j2", "law.c": "law.c.j2", "law_self_test.c": "law_self_test.c.j2"},
     "fixed": {"law.h": "law_fixed.h.j2", "law.c": "law_fixed.c.j2", "law_self_test.c": "law_self_test.c.j2"},
 }
-_AXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
-AXIS_NAMES = tuple(_AXES)
 
 
 def frame_axis(table: Any, name: str, terms: tuple[Term, ...] = ()) -> Axis:
     """One axis of any float32 table as the frame's template sees it."""
-    axis = _law_of(table, name)
-    angle, voltage = _AXES[name]
+    axis = table.axis(name)
+    angle, voltage = PREFIXES[name]
     time_constant_s = axis.prefilter_time_constant_s
     return Axis(
         name=name,
@@ -165,51 +157,33 @@ def frame_axis(table: Any, name: str, terms: tuple[Term, ...] = ()) -> Axis:
         filter="take_reference" if time_constant_s == 0.0 else "prefilter",
         prefilter_gain=axis.prefilter_gain(table.sample_period_s),
         prefilter_time_constant_s=time_constant_s,
-        feedforward=_value(f"{name}_u_ff_V", axis.feedforward_V, "self->elevation.reference_2_rad"),
+        feedforward=_value(array_name(name, "u_ff_V"), axis.feedforward_V, "self->elevation.reference_2_rad"),
         terms=terms,
     )
 
 
 def _terms(name: str, law: AxisLaw) -> list[Term]:
-    """The terms of the move in their order of summation; -p_0 and -a_0, the others are added."""
+    """The terms of the move in their order of summation."""
     terms = []
-    for letter, polynomials in _groups(law):
-        for index, polynomial in enumerate(polynomials):
-            if without_vanishing_powers(polynomial):
-                coefficient = f"{letter}_{index}"
-                sign = "-" if coefficient in ("p_0", "a_0") else "+"
-                value = _value(f"{name}_{coefficient}{_suffix(letter)}", polynomial, "schedule_rad")
-                terms.append(Term(sign, coefficient, value, _FACTORS[letter][index]))
+    for entry in coefficients(law):
+        if without_vanishing_powers(entry.polynomial):
+            value = _value(array_name(name, entry.name), entry.polynomial, "schedule_rad")
+            holder = "e" if entry.letter == "q" else "self"
+            terms.append(Term("-" if entry.sign < 0 else "+", entry.name, value, f"{holder}->{entry.factor}"))
     return terms
 
 
 def _arrays(table: ControllerTable, name: str) -> list[Array]:
-    law: AxisLaw = _law_of(table, name)
+    law = table.axis(name)
     psi_rad = (table.psi_min_rad, table.psi_max_rad)
-    named = [
-        (f"{name}_{letter}_{index}{_suffix(letter)}", polynomial, _UNITS[letter], psi_rad)
-        for letter, polynomials in _groups(law)
-        for index, polynomial in enumerate(polynomials)
-    ]
+    named = [(array_name(name, entry.name), entry.polynomial, entry.unit, psi_rad) for entry in coefficients(law)]
     reference_rad = (table.elevation.reference_min_rad, table.elevation.reference_max_rad)
-    named.append((f"{name}_u_ff_V", law.feedforward_V, _UNITS["u_ff"], reference_rad))
+    named.append((array_name(name, "u_ff_V"), law.feedforward_V, UNITS["u_ff"], reference_rad))
     return [
         Array(array, without_vanishing_powers(polynomial), unit, _range_text(polynomial, over_rad))
         for array, polynomial, unit, over_rad in named
         if without_vanishing_powers(polynomial)
     ]
-
-
-def _groups(law: AxisLaw) -> tuple[tuple[str, tuple[Polynomial, ...]], ...]:
-    return ("q", law.q_V_rad), ("p", law.p), ("a", tuple((a,) for a in law.a))
-
-
-def _law_of(table: Any, name: str) -> Any:
-    return table.elevation if name == "elevation" else table.azimuth
-
-
-def _suffix(letter: str) -> str:
-    return "_V_rad" if letter == "q" else ""
 
 
 def _value(array: str, polynomial: Polynomial, x: str) -> str:

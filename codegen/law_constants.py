@@ -5,7 +5,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from codegen.law_frame import AxisFrame, LawNumbers, frame_numbers, range_numbers, without_vanishing_powers
+from codegen.law_frame import (
+    AxisFrame,
+    LawNumbers,
+    frame_numbers,
+    polynomial_bound,
+    range_numbers,
+    without_vanishing_powers,
+)
 from records.errors import BadInput
 from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
@@ -70,22 +77,19 @@ def _refuse_unusable(table: ControllerTable) -> None:
         )
     for name, axis in (("elevation", table.elevation), ("azimuth", table.azimuth)):
         psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
-        gains = [_largest(polynomial, psi_rad) for polynomial in axis.q_V_rad]
+        gains = [polynomial_bound(polynomial, psi_rad) for polynomial in axis.q_V_rad]
         if not any(gains):
             raise _unusable(name, "every q is zero", "an axis with feedback")
         # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
         span_V = axis.u_max_V - axis.u_min_V
         feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
-        recursion_V = sum(_largest(p, psi_rad) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
+        recursion_V = (
+            sum(polynomial_bound(p, psi_rad) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
+        )
         reference_rad = max(abs(table.elevation.reference_min_rad), abs(table.elevation.reference_max_rad))
-        reached_V = feedback_V + recursion_V + span_V + _largest(axis.feedforward_V, reference_rad)
+        reached_V = feedback_V + recursion_V + span_V + polynomial_bound(axis.feedforward_V, reference_rad)
         if not reached_V < PLAUSIBLE_V:
             raise _unusable(name, f"voltages of up to {reached_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
-
-
-def _largest(polynomial: Polynomial, angle_rad: float) -> float:
-    """Bound of |polynomial| up to this angle."""
-    return sum(abs(coefficient) * angle_rad**power for power, coefficient in enumerate(polynomial))
 
 
 def _unusable(axis: str, got: str, expected: str) -> BadInput:

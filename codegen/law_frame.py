@@ -153,6 +153,11 @@ def without_vanishing_powers(polynomial: Polynomial) -> Polynomial:
     return polynomial[: used[-1] + 1] if used else ()
 
 
+def polynomial_bound(polynomial: Polynomial, widest: float) -> float:
+    """Bound of |polynomial| for |x| <= widest: sum_i |c_i| widest^i."""
+    return sum(abs(c) * widest**power for power, c in enumerate(polynomial))
+
+
 def state_of_words(words: Any, axis_state: Callable[..., Any]) -> LawState[Any]:
     """A state from its numbers in the order of the C structure, for axes that remember an `axis_state`; `words[i]` is number i."""
     count = len(fields(axis_state))  # type: ignore[arg-type]

@@ -3,12 +3,7 @@
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
-from codegen.fixed.formats import (
-    AxisFormats,
-    LawFormats,
-    gain_word,
-    law_formats,
-)
+from codegen.fixed.formats import LawFormats, gain_word, law_formats
 from codegen.fixed.polynomials import WORD_BITS, PolynomialFormat
 from codegen.law_constants import law_constants
 from records.table import AxisLaw, ControllerTable
@@ -121,8 +116,7 @@ def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N
 
 
 def _axis(table: ControllerTable, name: str, formats: LawFormats, number: MakeNumber[N]) -> FixedAxis[N]:
-    axis: AxisLaw = table.elevation if name == "elevation" else table.azimuth
-    own: AxisFormats = formats.elevation if name == "elevation" else formats.azimuth
+    axis, own = table.axis(name), formats.axis(name)
     angle, voltage = formats.angle_places, formats.voltage_places
     residue_places = own.sum_places - voltage
     terms = tuple(

@@ -10,11 +10,9 @@ from codegen.fixed.polynomials import PolynomialFormat
 from codegen.fixed.ranges import OverflowProof, Range, prove_no_overflow
 from codegen.fixed.twin import duty_ratio
 from codegen.law_equations import LAST_ACCEPTED_FIELDS
+from codegen.law_terms import PREFIXES, UNITS
 from codegen.twin import FULL_SCALE_V
 from records.table import AxisLaw, ControllerTable
-
-_UNITS = {"q": "V/rad", "p": "1", "a": "1"}
-_PREFIXES = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
 
 
 @dataclass(frozen=True)
@@ -111,7 +109,7 @@ def _all_polynomials(law: FixedLaw[int]) -> list[FixedPolynomial[int]]:
 
 
 def _axis(law: AxisLaw, axis: FixedAxis[int], formats: LawFormats, own: AxisFormats, proof: OverflowProof) -> Axis:
-    angle, voltage = _PREFIXES[axis.name]
+    angle, voltage = PREFIXES[axis.name]
     polynomials = [
         _polynomial(axis.name, term.coefficient, term.polynomial, form.polynomial, "psi", proof)
         for term, form in zip(axis.terms, own.terms, strict=True)
@@ -161,7 +159,7 @@ def _polynomial(
         coefficients.append(Coefficient(part.coefficient, shape.places, text))
     return Polynomial(
         name=name,
-        unit=_UNITS.get(name[0], "V"),
+        unit=UNITS.get(name[0], "V"),
         places=form.places,
         range=proof.ranges[f"{axis}.{name}"],
         of=of,
@@ -171,7 +169,8 @@ def _polynomial(
 
 def _voltage_limits(table: ControllerTable, law: FixedLaw[int]) -> list[tuple[str, int, float]]:
     rows = []
-    for prefix, axis, own in (("U_M", law.elevation, table.elevation), ("U_T", law.azimuth, table.azimuth)):
+    for axis, own in ((law.elevation, table.elevation), (law.azimuth, table.azimuth)):
+        _, prefix = PREFIXES[axis.name]
         rows += [
             (f"{prefix}_MIN_V", axis.u_min_V, own.u_min_V),
             (f"{prefix}_MAX_V", axis.u_max_V, own.u_max_V),

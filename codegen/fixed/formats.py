@@ -12,13 +12,13 @@ from codegen.fixed.polynomials import (
     WORD_BITS,
     PolynomialFormat,
     bits_of,
-    polynomial_bound,
     polynomial_format,
     room_for,
 )
-from codegen.law_frame import without_vanishing_powers
+from codegen.law_frame import polynomial_bound, without_vanishing_powers
+from codegen.law_terms import Coefficient, coefficients
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable, Polynomial
+from records.table import AxisLaw, BothAxes, ControllerTable, Polynomial
 
 MISSING = -(2**31)  # the word that stands for "no number", as NaN does in float32
 HEADROOM_BITS = 5  # feedback may reach 2^5 times the limits at least
@@ -27,12 +27,6 @@ FASTEST_RAD_S = 15.0  # motion of an axis that feedback has room for
 COEFFICIENT_BITS = 17  # every scheduled coefficient has at least so many, but for those of the anti-windup
 FILTERED_BITS = 28  # of magnitude, of a filtered reference
 SUM_BITS = 62  # of the exact sum of products
-
-FACTORS = {
-    "q": ("e_0_rad", "e_1_rad", "e_2_rad", "e_3_rad"),
-    "p": ("s_0_V", "s_1_V", "s_2_V"),
-    "a": ("w_0_V", "w_1_V", "w_2_V"),
-}
 
 
 @dataclass(frozen=True)
@@ -66,7 +60,7 @@ class AxisFormats:
 
 
 @dataclass(frozen=True)
-class LawFormats:
+class LawFormats(BothAxes[AxisFormats]):
     """Formats of both axes. States are kept within +-2^bits words: e within error_bits, s and w within theirs, and twice and four
     times that for their first and second differences. `schedule_bits` and `reference_bits`: |psi| and |psi_ref| < 2^bits rad."""
 
@@ -167,9 +161,7 @@ class _Shared:
 
 def _axis_formats(shared: _Shared, name: str, axis: AxisLaw) -> AxisFormats:
     sum_places = _sum_places(shared, name, axis)
-    terms = tuple(
-        _term(shared, letter, index, polynomial, sum_places) for letter, index, polynomial in _polynomials(axis)
-    )
+    terms = tuple(_term(shared, coefficient, sum_places) for coefficient in _present(axis))
     psi_ref_rad = _widest_reference(shared.table.elevation)
     return AxisFormats(
         reference_places=FILTERED_BITS - bits_of(_widest_reference(axis)),
@@ -181,7 +173,7 @@ def _axis_formats(shared: _Shared, name: str, axis: AxisLaw) -> AxisFormats:
 
 def _sum_places(shared: _Shared, name: str, axis: AxisLaw) -> int:
     """The most places for which each coefficient fits its word, the sum of products 62 bits, and the move of v one word."""
-    bounds = [(letter, index, _bound(polynomial, shared)) for letter, index, polynomial in _polynomials(axis)]
+    bounds = [(c.letter, c.index, _bound(c.polynomial, shared)) for c in _present(axis)]
     fitting = min(room_for(bound) + _factor_places(shared, letter) for letter, _, bound in bounds)
     total = sum(bound * 2.0 ** (_factor_bits(shared, letter) + index) for letter, index, bound in bounds)
     places = min(fitting, SUM_BITS - bits_of(total), shared.voltage_places + 30)
@@ -196,27 +188,26 @@ def _sum_places(shared: _Shared, name: str, axis: AxisLaw) -> int:
     return places
 
 
-def _term(shared: _Shared, letter: str, index: int, polynomial: Polynomial, sum_places: int) -> TermFormat:
+def _term(shared: _Shared, coefficient: Coefficient, sum_places: int) -> TermFormat:
+    letter = coefficient.letter
     places = sum_places - _factor_places(shared, letter)
-    bound = _bound(polynomial, shared)
+    bound = _bound(coefficient.polynomial, shared)
     wanted = COEFFICIENT_BITS - bits_of(bound) if letter != "a" else places
     excess = max(0, min(wanted, room_for(bound), places + WORD_BITS) - places)
-    coefficient = f"{letter}_{index}"
-    widest = bound * 2.0 ** (places + excess) + 2.0 ** (_factor_word_bits(shared, letter) + index)
+    widest = bound * 2.0 ** (places + excess) + 2.0 ** (_factor_word_bits(shared, letter) + coefficient.index)
     return TermFormat(
-        coefficient=coefficient,
-        factor=FACTORS[letter][index],
-        sign=-1 if coefficient in ("p_0", "a_0") else +1,
-        polynomial=polynomial_format(polynomial, shared.psi_rad, shared.schedule_bits, places + excess),
+        coefficient=coefficient.name,
+        factor=coefficient.factor,
+        sign=coefficient.sign,
+        polynomial=polynomial_format(coefficient.polynomial, shared.psi_rad, shared.schedule_bits, places + excess),
         excess=excess,
         is_narrow=widest < 2.0**WORD_BITS - 2.0**18,
     )
 
 
-def _polynomials(axis: AxisLaw) -> list[tuple[str, int, Polynomial]]:
-    groups = (("q", axis.q_V_rad), ("p", axis.p), ("a", tuple((a,) for a in axis.a)))
-    named = [(letter, index, polynomial) for letter, rows in groups for index, polynomial in enumerate(rows)]
-    return [(letter, index, polynomial) for letter, index, polynomial in named if without_vanishing_powers(polynomial)]
+def _present(axis: AxisLaw) -> list[Coefficient]:
+    """Those that are not zero in float32."""
+    return [coefficient for coefficient in coefficients(axis) if without_vanishing_powers(coefficient.polynomial)]
 
 
 def _factor_places(shared: _Shared, letter: str) -> int:

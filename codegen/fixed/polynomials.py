@@ -72,11 +72,6 @@ def _power_format(
     return PowerFormat(power, coefficient, full, products=3, shift=wanted - full)
 
 
-def polynomial_bound(polynomial: Polynomial, widest: float) -> float:
-    """Bound of |polynomial| for |x| <= widest."""
-    return sum(abs(c) * widest**power for power, c in enumerate(polynomial))
-
-
 def bits_of(value: float) -> int:
     """Least n with |value| < 2^n."""
     return math.frexp(value)[1]

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from codegen.fixed.constants import FixedPolynomial, fixed_constants
+from codegen.fixed.constants import FixedPolynomial, fixed_constants, word_number
 from codegen.fixed.formats import count_format, law_formats
+from codegen.law_terms import PREFIXES, array_name
 from codegen.numbers import c_float32
 from records.table import ControllerTable
 
@@ -54,17 +55,17 @@ def _whole(name: str, value: float) -> Literal | None:
 
 
 def _word(value: float, places: int, made_up: float = 0.0, neglected: float = 0.0) -> Literal:
-    word = round(value * 2.0**places + made_up)
+    word = word_number(value, places, made_up)
     return Literal(f"{word} /* {places} places */", repr(word * 2.0**-places))
 
 
 def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
     law = fixed_constants(table, _word)
-    for axis, angle, voltage in ((law.elevation, "PSI", "U_M"), (law.azimuth, "PHI", "U_T")):
+    for axis in (law.elevation, law.azimuth):
+        angle, voltage = PREFIXES[axis.name]
         for term in axis.terms:
-            suffix = "_V_rad" if term.coefficient.startswith("q") else ""
-            yield from _coefficients(f"{axis.name}_{term.coefficient}{suffix}", term.polynomial)
-        yield from _coefficients(f"{axis.name}_u_ff_V", axis.feedforward_V)
+            yield from _coefficients(array_name(axis.name, term.coefficient), term.polynomial)
+        yield from _coefficients(array_name(axis.name, "u_ff_V"), axis.feedforward_V)
         yield f"LAW_{voltage}_MIN_V", axis.u_min_V
         yield f"LAW_{voltage}_MAX_V", axis.u_max_V
         yield f"LAW_{voltage}_SAFE_V", axis.u_safe_V
@@ -73,7 +74,8 @@ def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
         if axis.prefilter_gain is not None:
             yield f"{axis.name}_limits.prefilter_gain", axis.prefilter_gain
     formats = law_formats(table)
-    for own, angle in ((table.elevation, "PSI"), (table.azimuth, "PHI")):
+    for name, (angle, _) in PREFIXES.items():
+        own = table.axis(name)
         places = formats.angle_places + count_format(formats, own).shift
         yield f"LAW_{angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
     yield "LAW_PSI_MIN_RAD", law.psi_min_rad

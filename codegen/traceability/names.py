@@ -8,16 +8,17 @@ from dataclasses import dataclass, replace
 from codegen.fixed.formats import MISSING, law_formats
 from codegen.law import ARITHMETIC_CODES
 from codegen.law_frame import without_vanishing_powers
+from codegen.law_terms import PREFIXES, UNITS, array_name, coefficients
 from codegen.traceability.literals import LEFT_OUT, LITERALS, Literal
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.errors import BadInput
-from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.table import AXES, LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 _FIT = "least squares over the operating points, coefficient of Psi^{power} [rad^-{power}]"
 # Members of the C's structures that hold a constant of the header.
 _MEMBERS = {
     f"{axis}_limits.{member}": f"LAW_{own}_{suffix}"
-    for axis, angle, voltage in (("elevation", "PSI", "U_M"), ("azimuth", "PHI", "U_T"))
+    for axis, (angle, voltage) in PREFIXES.items()
     for member, own, suffix in (
         ("reference_min_rad", angle, "REF_MIN_RAD"),
         ("reference_max_rad", angle, "REF_MAX_RAD"),
@@ -85,13 +86,10 @@ def _expected(wanted: str, names: Sequence[str]) -> str:
 
 
 def _constants(table: ControllerTable) -> Iterator[Constant]:
-    for axis, law in (("elevation", table.elevation), ("azimuth", table.azimuth)):
-        yield from _coefficients(table, axis, law)
-    for axis, law, angle, voltage in (
-        ("elevation", table.elevation, "PSI", "U_M"),
-        ("azimuth", table.azimuth, "PHI", "U_T"),
-    ):
-        yield from _limits(table, axis, law, angle, voltage)
+    for axis in AXES:
+        yield from _coefficients(table, axis, table.axis(axis))
+    for axis in AXES:
+        yield from _limits(table, axis, table.axis(axis))
     design = "wish of the plant file, [design]"
     yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
     yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
@@ -130,24 +128,20 @@ def _formats(table: ControllerTable) -> Iterator[Constant]:
 
 def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
     pole = table.origin.get(axis, {}).get("observer_pole", float("nan"))
-    groups: tuple[tuple[str, str, str, tuple[Polynomial, ...]], ...] = (
-        ("q", "_V_rad", "V/rad", law.q_V_rad),
-        ("p", "", "1", law.p),
-        ("a", "", "1", tuple((a,) for a in law.a)),
-    )
-    for letter, suffix, unit, polynomials in groups:
-        for index, polynomial in enumerate(polynomials):
-            for power, value in enumerate(without_vanishing_powers(polynomial)):
-                made_as = _OBSERVER.format(pole=pole) if letter == "a" else _FIT.format(power=power)
-                name = f"{axis}_{letter}_{index}{suffix}[{power}]"
-                yield Constant(name, value, unit, made_as, axis, letter, index, power, polynomial)
+    for entry in coefficients(law):
+        letter, polynomial = entry.letter, entry.polynomial
+        for power, value in enumerate(without_vanishing_powers(polynomial)):
+            made_as = _OBSERVER.format(pole=pole) if letter == "a" else _FIT.format(power=power)
+            name = f"{array_name(axis, entry.name)}[{power}]"
+            yield Constant(name, value, entry.unit, made_as, axis, letter, entry.index, power, polynomial)
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
-        name = f"{axis}_u_ff_V[{power}]"
+        name = f"{array_name(axis, 'u_ff_V')}[{power}]"
         made_as = f"equilibrium voltage, {_FIT.format(power=power)}"
-        yield Constant(name, value, "V", made_as, axis, "u_ff", 0, power, law.feedforward_V)
+        yield Constant(name, value, UNITS["u_ff"], made_as, axis, "u_ff", 0, power, law.feedforward_V)
 
 
-def _limits(table: ControllerTable, axis: str, law: AxisLaw, angle: str, voltage: str) -> Iterator[Constant]:
+def _limits(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
+    angle, voltage = PREFIXES[axis]
     low, high = ("u_min", "u_max") if axis == "elevation" else ("uT_min", "uT_max")
     yield Constant(f"LAW_{voltage}_MIN_V", law.u_min_V, "V", "limit of the plant's input", axis, parameter=low)
     yield Constant(f"LAW_{voltage}_MAX_V", law.u_max_V, "V", "limit of the plant's input", axis, parameter=high)

@@ -14,10 +14,10 @@ from numpy.polynomial.polynomial import polyval
 
 from codegen.traceability.names import Constant, constants, find_constant, identity
 from design.operating_points import design_point
-from design.settings import AXES, DesignSettings
+from design.settings import DesignSettings
 from records.errors import BadInput
 from records.plant import Parameter, plant_text
-from records.table import ControllerTable
+from records.table import AXES, ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
 
