@@ -42,8 +42,8 @@ sizes where one is named.
 
 An effect of one's own is one file in `sim/effects/`, made known to `FAMILIES` in its `__init__.py`, in the order in which it acts.
 It then is in the library of every plant that has its place, in the simulation, the diagnosis and this page (`python -c "from
-sim.composition.page import *; print(effects_page(), end='')"`). Before any log it counts as rare; `diagnosis/prior.py` names those that
-are common.
+sim.composition.page import *; print(effects_page(), end='')"`). Before any log it counts as rare; `diagnosis/decide/prior.py` names
+those that are common.
 """
 
 

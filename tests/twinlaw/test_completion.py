@@ -7,8 +7,7 @@ import select
 import shutil
 import subprocess
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -34,7 +33,6 @@ def scripts(root: Command, tmp_path: Path) -> Callable[[str], Path]:
             pytest.skip(f"no {shell} in the PATH: apt install {shell}")
         (tmp_path / "plant.toml").touch()
         (tmp_path / "my plants").mkdir()
-        (tmp_path / "my plants" / "deep.toml").touch()
         path = tmp_path / f"twinlaw.{shell}"
         path.write_text(completion_text(root, shell), encoding="utf-8")
         return path
@@ -121,63 +119,45 @@ def test_fish_offers_what_fits(scripts: Callable[[str], Path], line: str, offere
     assert done.stderr == ""
 
 
-# What a terminal shows behind the program's name: before the Tab, and after it.
-TYPED = [
-    ("diag", "diagnose "),
-    ("blind sc", "blind score "),
-    ("run --pla", "run --plant"),
-    ("run --arithmetic fl", "run --arithmetic float32 "),
-    ("run --plant plan", "run --plant plant.toml "),
-    (r"run --plant my\ plants/de", r"run --plant my\ plants/deep.toml "),
-    ("watch --port emu", "watch --port emulated "),
-    ("compare --controllers pid lq", "compare --controllers pid lqg "),
-    ("compare --controllers pid lqg --eff", "compare --controllers pid lqg --effects"),
-    ("diagnose a.csv plan", "diagnose a.csv plant.toml "),
-    ("diagnose --holdout a.csv plan", "diagnose --holdout a.csv plant.toml "),
-    ("diagnose --holdout a.csv b.csv --pla", "diagnose --holdout a.csv b.csv --plant"),
-]
-CLEAR = "\x15"  # Ctrl-U: the line is emptied
-STARTS = {
-    "bash": (["bash", "--norc", "--noprofile", "-i"], ""),
-    "zsh": (["zsh", "-f", "-i"], "autoload -Uz compinit; compinit -D -u; "),
-}
-
-
 @pytest.mark.parametrize(
-    ("shell", "lines"), [("bash", [*TYPED, ("run --plant=plan", "run --plant=plant.toml ")]), ("zsh", TYPED)]
+    ("typed", "becomes"),
+    [
+        ("twinlaw diag", "twinlaw diagnose "),
+        ("twinlaw blind sc", "twinlaw blind score "),
+        ("twinlaw run --pla", "twinlaw run --plant"),
+        ("twinlaw run --arithmetic fl", "twinlaw run --arithmetic float32 "),
+        ("twinlaw run --plant plan", "twinlaw run --plant plant.toml "),
+        ("twinlaw watch --port emu", "twinlaw watch --port emulated "),
+        ("twinlaw compare --controllers pid lq", "twinlaw compare --controllers pid lqg "),
+        ("twinlaw compare --controllers pid lqg --eff", "twinlaw compare --controllers pid lqg --effects"),
+    ],
 )
-def test_a_terminal_completes_what_is_typed(
-    scripts: Callable[[str], Path], shell: str, lines: list[tuple[str, str]]
-) -> None:
-    script, (command, prepare) = scripts(shell), STARTS[shell]
-    with terminal(command, script.parent) as screen:
-        os.write(screen, f"PS1='> '; {prepare}source {script}\n".encode())
-        for typed, becomes in lines:
-            os.write(screen, f"{CLEAR}echo READY\n".encode())
-            until_shown(screen, "\nREADY")
-            os.write(screen, f"twinlaw {typed}\t".encode())
-            assert f"twinlaw {becomes}" in until_shown(screen, f"twinlaw {becomes}")
+def test_zsh_completes_what_is_typed(scripts: Callable[[str], Path], typed: str, becomes: str) -> None:
+    script = scripts("zsh")
+    start = f"PS1='> '; autoload -Uz compinit; compinit -D -u; source {script}; print READY\n"
+    assert becomes in screen(["zsh", "-f", "-i"], start, f"{typed}\t", becomes, script.parent)
 
 
-@contextmanager
-def terminal(command: list[str], folder: Path) -> Iterator[int]:
-    """A program in a terminal of its own."""
-    child, screen = pty.fork()
+def screen(command: list[str], start: str, typed: str, wanted: str, folder: Path) -> str:
+    """What a shell in a terminal of its own shows after `typed`; it is waited for until `wanted` is there."""
+    child, terminal = pty.fork()
     if child == 0:
         os.chdir(folder)
         os.environ.update({"TERM": "dumb", "HOME": str(folder)})
         os.execvp(command[0], command)
     try:
-        yield screen
+        os.write(terminal, start.encode())
+        until_shown(terminal, "\nREADY")
+        os.write(terminal, typed.encode())
+        return until_shown(terminal, wanted)
     finally:
-        os.close(screen)
+        os.close(terminal)
         os.waitpid(child, 0)
 
 
-def until_shown(screen: int, wanted: str) -> str:
-    """What the terminal shows from now on until `wanted` is there."""
+def until_shown(terminal: int, wanted: str) -> str:
     shown, end = "", time.monotonic() + PATIENCE_S
     while wanted not in shown.replace("\r", "") and time.monotonic() < end:
-        if select.select([screen], [], [], 0.1)[0]:
-            shown += os.read(screen, 4096).decode(errors="replace")
+        if select.select([terminal], [], [], 0.1)[0]:
+            shown += os.read(terminal, 4096).decode(errors="replace")
     return shown.replace("\r", "")

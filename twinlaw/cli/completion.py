@@ -1,13 +1,10 @@
-"""Shell completion: a parser becomes a tree of commands, and the tree a script for bash, zsh or fish that starts no Python.
+"""Shell completion from the argparse parsers: a parser becomes a tree of commands, the tree becomes a script for bash, zsh or fish.
 
-Not made with shtab (1.13.0), which in real shells does not complete what twinlaw's users type: in zsh the second of several files or words
-(`diagnose A.csv B.csv`, `--controllers pid lqg`) and any option behind them; in fish the second word of such an option; in bash an option
-behind files (`--holdout A.csv --plant`), a value behind `=`, and a file in a folder whose name holds a space.
+The script calls nothing: what it offers was written into it, so completing costs no start of Python.
 """
 
 import argparse
 import re
-import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,14 +45,14 @@ class Command:
         return " ".join(self.path[1:])
 
     @property
-    def last(self) -> str:
-        """The word that leads to it."""
-        return self.path[-1]
-
-    @property
     def typed(self) -> str:
         """What the scripts compare: where the words before have led, a space, and its own word."""
         return f"{' '.join(self.path[1:-1])} {self.last}"
+
+    @property
+    def last(self) -> str:
+        """The word that leads to it."""
+        return self.path[-1]
 
     @property
     def all(self) -> Iterator["Command"]:
@@ -65,25 +62,37 @@ class Command:
             yield from command.all
 
 
-def completion_text(root: Command, shell: str) -> str:
-    """The script for one of SHELLS; the same tree gives the same text."""
-    environment = text_templates(TEMPLATES)
-    environment.filters["quoted"] = shlex.quote
-    return environment.get_template(f"completion.{shell}.j2").render(root=root)
-
-
 def command_tree(parser: argparse.ArgumentParser, path: tuple[str, ...] = ("twinlaw",), text: str = "") -> Command:
     """The commands of a parser, in its order; help is cut to its first sentence."""
-    below = _subcommands(parser)
-    positionals = [] if below else [action for action in parser._actions if not action.option_strings]
+    choices = _subcommands(parser)
+    positionals = [action for action in parser._actions if not action.option_strings and action.choices is None]
+    words = [str(word) for action in parser._actions if not action.option_strings for word in _choices(action)]
     return Command(
         path=path,
         help=_line(text),
         options=tuple(_option(action) for action in parser._actions if action.option_strings),
-        words=tuple(str(word) for action in positionals for word in action.choices or ()),
-        files=any(action.type is Path and action.choices is None for action in positionals),
-        commands=tuple(command_tree(sub, (*path, word), text) for word, (sub, text) in below.items()),
+        words=() if choices else tuple(words),
+        files=any(action.type is Path for action in positionals),
+        commands=tuple(command_tree(sub, (*path, word), text) for word, (sub, text) in choices.items()),
     )
+
+
+def completion_text(root: Command, shell: str) -> str:
+    """The script for one of SHELLS; the same tree gives the same text."""
+    environment = text_templates(TEMPLATES)
+    environment.filters["quoted"] = _QUOTED[shell]
+    environment.filters["spec"] = lambda text: re.sub(
+        r"([\[\]:])", r"\\\1", text
+    )  # what _arguments would take for its own
+    environment.filters["behind"] = lambda flags, at: " | ".join(f'"{at} {flag}"' for flag in flags)
+    return environment.get_template(f"completion.{shell}.j2").render(root=root)
+
+
+_QUOTED = {
+    "bash": lambda text: "'" + text.replace("'", "'\\''") + "'",
+    "zsh": lambda text: "'" + text.replace("'", "'\\''") + "'",
+    "fish": lambda text: "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'",
+}
 
 
 def _subcommands(parser: argparse.ArgumentParser) -> Mapping[str, tuple[argparse.ArgumentParser, str]]:
@@ -94,16 +103,22 @@ def _subcommands(parser: argparse.ArgumentParser) -> Mapping[str, tuple[argparse
     return {}
 
 
+def _choices(action: argparse.Action) -> list[object]:
+    return list(action.choices or ())
+
+
 def _option(action: argparse.Action) -> Option:
-    words = ["emulated"] if action.default == "emulated" else action.choices or ()
+    words = [str(word) for word in _choices(action)] or (["emulated"] if action.default == "emulated" else [])
+    text = (action.help or "") % {"default": action.default, "prog": "twinlaw"}
+    metavar = action.metavar if isinstance(action.metavar, str) else None
     return Option(
         flags=tuple(action.option_strings),
-        help=_line((action.help or "") % {"default": action.default, "prog": "twinlaw"}),
+        help=_line(text),
         takes=action.nargs != 0,
         many=action.nargs in ("+", "*"),
-        words=tuple(str(word) for word in words),
+        words=tuple(words),
         file=action.type is Path or action.dest == "port",
-        name=action.metavar if isinstance(action.metavar, str) else action.dest.upper(),
+        name=metavar or action.dest.upper(),
     )
 
 
