@@ -13,6 +13,7 @@ from sim.loop import fly
 from sim.manoeuvres import flight
 from tests.law_tables import ce150_table, changed_axis
 from tests.replay.firmware_flights import Wrapped, edited_law, flown, plant, rows_of, stale
+from tests.soak import sampled
 from verification.host_law import host_law
 
 TABLE = ce150_table()
@@ -43,20 +44,20 @@ def _exchanged(own: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {"psi_ref_rad": own["phi_ref_rad"], "phi_ref_rad": own["psi_ref_rad"]}
 
 
-@pytest.mark.parametrize(
-    ("tamper", "cause", "words"),
-    [
-        (lambda log: replace(log, u=log.u[:, ::-1].copy()), "outputs_exchanged", "two outputs"),
-        (lambda log: replace(log, y=log.y[:, ::-1].copy()), "inputs_exchanged", "two angles"),
-        (lambda log: replace(log, u=log.u * [1.0, -1.0]), "output_sign", "u_T_V with its sign turned"),
-        (lambda log: replace(log, y=log.y * [1.0, -1.0]), "input_sign", "azimuth angle"),
-        (lambda log: replace(log, u=log.u * 1000.0), "output_unit", "1000 times"),
-        (lambda log: replace(log, u=log.u * [0.9, 1.0]), "output_scaled", "0.9 times"),
-        (lambda log: replace(log, u=log.u[:, ::-1] * 1000.0), "outputs_exchanged + output_unit", "exchanges"),
-        (lambda log: replace(log, u=log.u * [1.0, 0.0]), "input_constant", "u_T_V stands at 0 V"),
-        (lambda log: replace(log, u=0.0 * log.u + 5.0), "input_constant", "u_M_V stands at 5 V and u_T_V"),
-    ],
-)
+TAMPERED = [
+    (lambda log: replace(log, u=log.u[:, ::-1].copy()), "outputs_exchanged", "two outputs"),
+    (lambda log: replace(log, y=log.y[:, ::-1].copy()), "inputs_exchanged", "two angles"),
+    (lambda log: replace(log, u=log.u * [1.0, -1.0]), "output_sign", "u_T_V with its sign turned"),
+    (lambda log: replace(log, y=log.y * [1.0, -1.0]), "input_sign", "azimuth angle"),
+    (lambda log: replace(log, u=log.u * 1000.0), "output_unit", "1000 times"),
+    (lambda log: replace(log, u=log.u * [0.9, 1.0]), "output_scaled", "0.9 times"),
+    (lambda log: replace(log, u=log.u[:, ::-1] * 1000.0), "outputs_exchanged + output_unit", "exchanges"),
+    (lambda log: replace(log, u=log.u * [1.0, 0.0]), "input_constant", "u_T_V stands at 0 V"),
+    (lambda log: replace(log, u=0.0 * log.u + 5.0), "input_constant", "u_M_V stands at 5 V and u_T_V"),
+]
+
+
+@pytest.mark.parametrize(("tamper", "cause", "words"), sampled(TAMPERED, keep=TAMPERED[1:8]))
 def test_columns_that_are_exchanged_turned_scaled_or_dead_are_named(
     tamper: Callable[[RunLog], RunLog], cause: str, words: str
 ) -> None:
@@ -65,25 +66,28 @@ def test_columns_that_are_exchanged_turned_scaled_or_dead_are_named(
     assert words in (found.sentence or "")
 
 
-@pytest.mark.parametrize(
-    ("samples", "cause", "words"),
-    [
-        (1, "reference_logged_late", "one sample too late"),
-        (50, "reference_logged_late", "50 samples too late"),
-        (-1, "stale_reference", "one sample old"),
-        (-7, "stale_reference", "7 samples old"),
-    ],
-)
+MOVED = [
+    (1, "reference_logged_late", "one sample too late"),
+    (50, "reference_logged_late", "50 samples too late"),
+    (-1, "stale_reference", "one sample old"),
+    (-7, "stale_reference", "7 samples old"),
+]
+
+
+@pytest.mark.parametrize(("samples", "cause", "words"), sampled(MOVED, keep=MOVED[1:3]))
 def test_references_logged_late_or_early_are_named_with_their_age(samples: int, cause: str, words: str) -> None:
     found = _told(_moved(samples))
     assert (found.bit_exact, found.cause, found.incidents) == (False, cause, ())
     assert words in (found.sentence or "")
 
 
-@pytest.mark.parametrize(
-    ("samples", "axes", "words"),
-    [(1, (0, 1), "both angles that the log holds one sample"), (3, (0,), "the elevation that the log holds 3 samples")],
-)
+AGED = [
+    (1, (0, 1), "both angles that the log holds one sample"),
+    (3, (0,), "the elevation that the log holds 3 samples"),
+]
+
+
+@pytest.mark.parametrize(("samples", "axes", "words"), sampled(AGED, keep=AGED[1:]))
 def test_angles_logged_late_are_named_with_their_age(samples: int, axes: tuple[int, ...], words: str) -> None:
     log = _own()
     y = log.y.copy()
@@ -119,20 +123,20 @@ def _one_place_up(axis: str, key: str) -> ControllerTable:
     return changed_axis(TABLE, axis, **{key: changed})
 
 
-@pytest.mark.parametrize(
-    ("axis", "key", "words"),
-    [("elevation", "q_V_rad", "elevation q_V_rad[1][0]"), ("azimuth", "feedforward_V", "azimuth feedforward_V[0]")],
-)
+OFF = [("elevation", "q_V_rad", "elevation q_V_rad[1][0]"), ("azimuth", "feedforward_V", "azimuth feedforward_V[0]")]
+
+
+@pytest.mark.parametrize(("axis", "key", "words"), sampled(OFF, keep=OFF[:1]))
 def test_a_coefficient_that_is_off_by_one_place_is_named(axis: str, key: str, words: str) -> None:
     found = _told(flown(host_law(_one_place_up(axis, key))))
     assert (found.bit_exact, found.cause) == (False, "coefficient_last_place")
     assert f"{words} one unit of the last place up" in (found.sentence or "")
 
 
-def test_other_coefficients_are_not_taken_for_a_log_that_begins_in_flight() -> None:
-    for factor in (1.00001, 1.01):
-        rows = tuple(tuple(factor * value for value in row) for row in TABLE.elevation.q_V_rad)
-        assert _told(flown(host_law(changed_axis(TABLE, "elevation", q_V_rad=rows)))).cause == "not_found"
+@pytest.mark.parametrize("factor", sampled([1.00001, 1.01], keep=[1.00001]))
+def test_other_coefficients_are_not_taken_for_a_log_that_begins_in_flight(factor: float) -> None:
+    rows = tuple(tuple(factor * value for value in row) for row in TABLE.elevation.q_V_rad)
+    assert _told(flown(host_law(changed_axis(TABLE, "elevation", q_V_rad=rows)))).cause == "not_found"
 
 
 def test_an_offset_is_named_and_a_log_that_begins_in_flight_is_its_alternative() -> None:
@@ -161,32 +165,43 @@ def test_a_difference_that_begins_at_a_limit_is_said_to() -> None:
     found = _told(flown(law, TIGHT), TIGHT)
     assert found.cause == "not_found"
     assert "anti-windup" in (found.sentence or "")
+
+
+@pytest.mark.soak
+def test_a_difference_that_begins_at_no_limit_is_not_laid_on_one() -> None:
     other = edited_law("e_2_rad = e_1_rad - self->e_1_rad", "e_2_rad = 0.9f * (e_1_rad - self->e_1_rad)")
     assert "anti-windup" not in (_told(flown(other)).sentence or "")
 
 
-@pytest.mark.parametrize("has_numbers", [False, True])
-def test_a_log_that_lacks_half_its_rows_says_so(has_numbers: bool) -> None:
+LACKING = [(numbers, rows) for numbers in (False, True) for rows in ("every other", "the middle")]
+
+
+@pytest.mark.parametrize(("has_numbers", "lacks"), sampled(LACKING, keep=LACKING[2:3]))
+def test_a_log_that_lacks_half_its_rows_says_so(has_numbers: bool, lacks: str) -> None:
     log = _own()
     log = replace(log, seq=np.arange(len(log.t_s)) if has_numbers else None)
-    for kept in (np.arange(len(log.t_s)) % 2 == 0, (log.t_s < 5.0) | (log.t_s > 15.0)):
-        found = _told(rows_of(log, kept))
-        assert (found.bit_exact, found.cause) == (False, "missing_rows")
-        assert f"{kept.sum()} of 2001 samples" in (found.sentence or "")
+    kept = np.arange(len(log.t_s)) % 2 == 0 if lacks == "every other" else (log.t_s < 5.0) | (log.t_s > 15.0)
+    found = _told(rows_of(log, kept))
+    assert (found.bit_exact, found.cause) == (False, "missing_rows")
+    assert f"{kept.sum()} of 2001 samples" in (found.sentence or "")
 
 
-def test_rows_that_stand_twice_are_told_from_a_law_that_was_not_run() -> None:
+@pytest.mark.parametrize("every", sampled([1, 100], keep=[100]))
+def test_rows_that_stand_twice_are_told_from_a_law_that_was_not_run(every: int) -> None:
     log = _own()
-    for every in (1, 100):
-        rows = np.sort(np.concatenate([np.arange(len(log.t_s)), np.arange(100, 2000, every)]))
-        found = _told(replace(rows_of(log, rows), t_s=0.01 * np.arange(len(rows))))
-        assert (found.bit_exact, found.cause, found.alternatives) == (False, "repeated_row", ("lost_sample",))
+    rows = np.sort(np.concatenate([np.arange(len(log.t_s)), np.arange(100, 2000, every)]))
+    found = _told(replace(rows_of(log, rows), t_s=0.01 * np.arange(len(rows))))
+    assert (found.bit_exact, found.cause, found.alternatives) == (False, "repeated_row", ("lost_sample",))
+
+
+def test_one_row_that_stands_twice_is_a_law_that_was_not_run_once() -> None:
+    log = _own()
     rows = np.insert(np.arange(len(log.t_s)), 700, 700)
     found = _told(replace(rows_of(log, rows), t_s=0.01 * np.arange(len(rows))))
     assert (found.cause, found.alternatives) == ("lost_sample", ("repeated_row",))
 
 
-@pytest.mark.parametrize("factor", [0.5, 0.99, 1.01, 1.1, 2.0, 1000.0])
+@pytest.mark.parametrize("factor", sampled([0.5, 0.99, 1.01, 1.1, 2.0, 1000.0], keep=[0.99, 1000.0]))
 def test_a_clock_that_runs_fast_or_slow_loses_no_samples(factor: float) -> None:
     log = _own()
     assert _told(replace(log, t_s=factor * log.t_s)).bit_exact

@@ -21,6 +21,7 @@ from sim.manoeuvres import flight
 from tests.controllers.rows import designed
 from tests.law_tables import ce150_table, changed_axis, dense_table
 from tests.replay.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
+from tests.soak import sampled
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.host_law import HostLaw, host_law
 from verification.stimuli import reference_jumps, saturating, with_special_numbers
@@ -62,14 +63,14 @@ def test_the_law_as_data_gives_the_bits_of_the_generated_law(table: ControllerTa
         assert np.array_equal(data.outputs(inputs), expected[:, 0].view(np.float32).astype(float))
 
 
-@pytest.mark.parametrize("table", [TABLE, TIGHT])
+@pytest.mark.parametrize("table", sampled([TABLE, TIGHT], keep=[TIGHT]))
 def test_a_log_of_the_tables_own_law_is_bit_exact(table: ControllerTable) -> None:
     found = _replayed(host_law(table), table)
     assert found.record() == Firmware(True, True, None, None)
     assert [entry.samples_different for entry in found.residuals] == [0, 0]
 
 
-@pytest.mark.parametrize("table", [TABLE, TIGHT])
+@pytest.mark.parametrize("table", sampled([TABLE, TIGHT], keep=[TIGHT]))
 def test_a_log_of_the_law_in_fixed_point_is_bit_exact_and_said_to_be(table: ControllerTable) -> None:
     found = _replayed(host_law(table, "fixed"), table)
     assert found.record() == Firmware(True, True, None, None)
@@ -85,10 +86,10 @@ def test_a_sample_lost_by_a_law_in_fixed_point_is_found_at_its_time_and_not_expl
     assert "fixed point" in (found.sentence or "")
 
 
-@pytest.mark.parametrize(
-    ("columns", "samples", "words"),
-    [((2, 3), 1, "both angles"), ((2,), 1, "the elevation"), ((3,), 2, "the azimuth measured two samples")],
-)
+STALE = [((2, 3), 1, "both angles"), ((2,), 1, "the elevation"), ((3,), 2, "the azimuth measured two samples")]
+
+
+@pytest.mark.parametrize(("columns", "samples", "words"), sampled(STALE, keep=STALE[2:]))
 def test_stale_angles_are_named_with_axis_and_age(columns: tuple[int, ...], samples: int, words: str) -> None:
     found = _replayed(Wrapped(host_law(TABLE), stale(columns, samples)))
     assert (found.bit_exact, found.cause, found.incidents) == (False, "stale_sample", ())
@@ -101,16 +102,16 @@ def test_stale_references_and_late_outputs_are_told_apart() -> None:
     assert _replayed(late).cause == "late_output"
 
 
-@pytest.mark.parametrize(
-    ("flew", "cause"),
-    [
-        (ce150_table(prefilter_time_constant_s=0.0), "reference_unfiltered"),
-        (ce150_table(prefilter_time_constant_s=0.5), "other_prefilter"),
-        (_rounded(TABLE, "%.6g"), "rounded_coefficients"),
-        (_rounded(TABLE, "%.4E"), "rounded_coefficients"),
-        (_both_axes(TABLE, feedforward_V=(0.0,)), "no_feedforward"),
-    ],
-)
+OTHER_NUMBERS = [
+    (ce150_table(prefilter_time_constant_s=0.0), "reference_unfiltered"),
+    (ce150_table(prefilter_time_constant_s=0.5), "other_prefilter"),
+    (_rounded(TABLE, "%.6g"), "rounded_coefficients"),
+    (_rounded(TABLE, "%.4E"), "rounded_coefficients"),
+    (_both_axes(TABLE, feedforward_V=(0.0,)), "no_feedforward"),
+]
+
+
+@pytest.mark.parametrize(("flew", "cause"), sampled(OTHER_NUMBERS, keep=[OTHER_NUMBERS[n] for n in (0, 2, 4)]))
 def test_a_law_with_other_numbers_is_named(flew: ControllerTable, cause: str) -> None:
     assert _replayed(host_law(flew)).cause == cause
 
@@ -144,7 +145,7 @@ def test_anti_windup_and_limits_are_named(controller: object, cause: str) -> Non
     assert _replayed(controller(), TIGHT).cause == cause  # type: ignore[operator]
 
 
-@pytest.mark.parametrize("step_V", [10.0 / 3200.0, 10.0 / 255.0])
+@pytest.mark.parametrize("step_V", sampled([10.0 / 3200.0, 10.0 / 255.0], keep=[10.0 / 3200.0]))
 def test_an_output_in_steps_is_named(step_V: float) -> None:
     controller = Wrapped(
         host_law(TABLE), after=lambda k, u: (round(u[k][0] / step_V) * step_V, round(u[k][1] / step_V) * step_V)
@@ -167,7 +168,7 @@ def test_a_build_that_fuses_products_and_sums_is_named() -> None:
 
 
 @pytest.mark.parametrize(("fate", "cause"), [("output", "dropped_frame"), ("law", "lost_sample")])
-@pytest.mark.parametrize("probability", [0.02, 0.3])
+@pytest.mark.parametrize("probability", sampled([0.02, 0.3], keep=[0.3]))
 def test_lost_frames_and_lost_samples_are_told_apart_and_counted(fate: str, cause: str, probability: float) -> None:
     lost = np.random.default_rng(3).random(3000) < probability
     lost[0] = False
@@ -186,22 +187,26 @@ def test_a_reset_in_flight_is_found_at_its_time() -> None:
     assert found.first_difference_s == pytest.approx(7.0)
 
 
-def test_two_causes_at_once_are_both_named() -> None:
+def test_a_cause_and_lost_frames_are_both_named() -> None:
     lost = np.random.default_rng(3).random(3000) < 0.02
     lost[0] = False
     found = _replayed(Lossy(Wrapped(host_law(TABLE), stale((2, 3))), lambda k: "output" if lost[k] else None))
     assert found.cause == "stale_sample + dropped_frame"
+
+
+@pytest.mark.soak
+def test_two_causes_at_once_are_both_named() -> None:
     fb = _both_axes(TIGHT, a=(1.0, 0.0, 0.0))
     assert _replayed(Wrapped(host_law(fb), stale((2, 3))), TIGHT).cause == "stale_sample + anti_windup_fb"
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("e_2_rad = e_1_rad - self->e_1_rad", "e_2_rad = 0.9f * (e_1_rad - self->e_1_rad)"),
-        ("self->v_V = v_V;", "self->v_V = v_V * 0.9999f;"),
-    ],
-)
+UNKNOWN = [
+    ("e_2_rad = e_1_rad - self->e_1_rad", "e_2_rad = 0.9f * (e_1_rad - self->e_1_rad)"),
+    ("self->v_V = v_V;", "self->v_V = v_V * 0.9999f;"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), sampled(UNKNOWN, keep=UNKNOWN[:1]))
 def test_what_no_variant_explains_is_not_named(old: str, new: str) -> None:
     found = _replayed(edited_law(old, new))
     assert (found.bit_exact, found.cause, found.incidents) == (False, "not_found", ())
@@ -227,18 +232,29 @@ def test_the_digits_of_the_log_are_told_from_the_firmware() -> None:
     assert replay_firmware(replace(log, u=np.array(nine_digits)), TABLE).bit_exact
 
 
-def test_missing_rows_and_numbers_are_recovered_where_the_log_allows_it() -> None:
+@pytest.mark.parametrize("numbered", sampled([False, True], keep=[True]))
+def test_missing_rows_are_recovered_where_the_log_allows_it(numbered: bool) -> None:
     log = flown(host_law(TABLE))
+    log = replace(log, seq=np.arange(len(log.t_s)) if numbered else None)
     kept = np.ones(len(log.t_s), bool)
     kept[[200, 500, 501, 1300]] = False
-    for gappy in (rows_of(log, kept), rows_of(replace(log, seq=np.arange(len(log.t_s))), kept)):
-        found = replay_firmware(gappy, TABLE)
-        assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+    found = replay_firmware(rows_of(log, kept), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+
+
+def test_of_five_rows_missing_in_a_row_nothing_is_recovered() -> None:
+    log = flown(host_law(TABLE))
+    kept = np.ones(len(log.t_s), bool)
+    kept[800:805] = False
+    assert replay_firmware(rows_of(log, kept), TABLE).cause == "missing_rows"
+
+
+@pytest.mark.soak
+def test_missing_numbers_are_recovered_where_the_log_allows_it() -> None:
+    log = flown(host_law(TABLE))
     y = log.y.copy()
     y[[300, 900, 901], [0, 1, 1]] = np.nan
     assert replay_firmware(replace(log, y=y), TABLE).cause == "sample_not_logged"
-    kept[800:805] = False
-    assert replay_firmware(rows_of(log, kept), TABLE).cause == "missing_rows"
 
 
 def test_a_log_of_another_table_is_refused_and_a_table_is_found_beside_the_log(tmp_path: Path) -> None:
@@ -273,13 +289,15 @@ def test_a_log_without_references_is_not_replayed() -> None:
     assert (found.replayed, found.bit_exact, found.cause) == (False, False, "not_replayable")
 
 
-@pytest.mark.parametrize(("flew", "cause"), [(TABLE, "begins_in_flight"), (ce150_table(degree=2), "not_found")])
-def test_a_log_that_begins_in_flight_is_told_from_another_firmware(flew: ControllerTable, cause: str) -> None:
+BEGUN = [(flew, begin_s) for flew in (TABLE, ce150_table(degree=2)) for begin_s in (20.0, 52.0, 90.0)]
+
+
+@pytest.mark.parametrize(("flew", "begin_s"), sampled(BEGUN, keep=[BEGUN[2], BEGUN[5]]))
+def test_a_log_that_begins_in_flight_is_told_from_another_firmware(flew: ControllerTable, begin_s: float) -> None:
     # References that move now and then do not matter: the filters forget how they began as well as if all rested.
     log = fly(plant(), host_law(flew), flight(plant()), table_digest=TABLE.digest)
-    for begin_s in (20.0, 52.0, 90.0):
-        found = replay_firmware(rows_of(log, log.t_s > begin_s), TABLE)
-        assert (found.bit_exact, found.cause) == (False, cause)
+    found = replay_firmware(rows_of(log, log.t_s > begin_s), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "begins_in_flight" if flew is TABLE else "not_found")
 
 
 def test_a_log_too_short_to_tell_the_laws_state_says_that_its_beginning_may_be_missing() -> None:
