@@ -13,11 +13,11 @@ from codegen.law import generate_law
 from codegen.traceability.literals import LEFT_OUT
 from codegen.traceability.origin import names, trace
 from design.settings import read_settings
-from design.table import design
 from records.errors import BadInput
 from records.plant import load_plant
 from records.table import ControllerTable, table_text
 from sim.bind import BoundPlant, bind
+from tests.plants import stated_table
 from twinlaw.command import main
 
 PLANT = Path("plants/ce150.toml")
@@ -26,7 +26,7 @@ PLANT = Path("plants/ce150.toml")
 @cache
 def designed() -> tuple[BoundPlant, ControllerTable]:
     bound = bind(load_plant(PLANT))
-    return bound, design(bound, read_settings(bound))[0]
+    return bound, stated_table("ce150")
 
 
 def traced(name: str) -> Any:

@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from records.log import RunLog
 from records.plant import load_plant
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
+from tests.plants import stated_table
 
 Fly = Callable[..., RunLog]
 SECONDS = 30.0
@@ -33,7 +32,7 @@ def fly(plant: BoundPlant) -> Fly:
     With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
     `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes.
     """
-    table, _ = design(plant, read_settings(plant))
+    table = stated_table("ce150")
 
     def flown(
         seed: int,

@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import nominal_fit
@@ -22,6 +20,7 @@ from sim.bind import BoundPlant, evaluated
 from sim.columns import log_columns
 from sim.simulate import Noise, simulate
 from tests.diagnosis.conftest import Fly
+from tests.plants import stated_table
 from toolchain.host import CText, build_shared, c_text, load_shared
 
 TOLD = round(decisions.UNTOLD_S / 0.01)  # the first row that counts
@@ -222,7 +221,7 @@ def test_an_arm_that_slides_out_as_the_log_begins_is_not_taken_to_rest(
 ) -> None:
     # Truth: the log begins 0.2 s after a ramp of 0.08 rad/s has ended, the arm slides on. Model and noise are those that flew, so no
     # innovation after the first second is beyond 5 sd; taken to rest at its first readings, the arm is 7 sd away when it moves again.
-    table, _ = design(plant, read_settings(plant))
+    table = stated_table("ce150")
     t_s = np.arange(0.0, 14.0, 0.01)
     reference = np.zeros((len(t_s), 2))
     reference[:, 0] = np.interp(t_s, [3.0, 8.6], [-0.2, 0.248]) + 0.1 * (t_s > 12.0)

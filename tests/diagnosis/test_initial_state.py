@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.library.effect_library import EffectLibrary, effect_library
@@ -14,6 +12,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.loop import fly_law
 from sim.manoeuvres import flight
+from tests.plants import stated_table
 
 AT_REST_RAD_S, LEVEL_RAD_S = 0.0, 415.0  # of the main rotor, switched off and in level flight
 
@@ -26,7 +25,7 @@ def library(plant: BoundPlant) -> EffectLibrary:
 @pytest.fixture(scope="module")
 def flown(plant: BoundPlant) -> RunLog:
     """The default flight, which starts at the stop with both rotors at rest."""
-    table, _ = design(plant, read_settings(plant))
+    table = stated_table("ce150")
     return fly_law(plant, table, flight(plant))
 
 

@@ -6,8 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from diagnosis.diagnose import Material, diagnose, nominal_fit
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.evidence import FittedHypothesis, evidence
@@ -21,6 +19,7 @@ from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.model import Model
 from tests.diagnosis.conftest import Fly
+from tests.plants import stated_table
 
 V_C_RAD_S = 0.005
 LEVEL_N_M = 3e-4
@@ -32,7 +31,7 @@ CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD
 
 def default_flight(plant: BoundPlant, effects: Mapping[str, Mapping[str, float]]) -> RunLog:
     """The default flight in still air, with holds in which an axis that sticks stays where it is."""
-    table, _ = design(plant, read_settings(plant))
+    table = stated_table("ce150")
     return replace(fly_law(with_effects(plant, effects), table, flight(plant)), extra={})
 
 

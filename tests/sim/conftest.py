@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 import sympy
 
-from design.settings import read_settings
-from design.table import design
 from records.plant import Plant, load_plant
 from records.table import ControllerTable
 from sim.bind import BoundPlant, bind
 from sim.model import TIME, Axis, Model, ParameterSpec, symbol
+from tests.plants import stated_table
 
 PLANTS = Path(__file__).parents[2] / "plants"
 POSITION, VELOCITY, FORCE = symbol("s_m"), symbol("v_m_s"), symbol("u_N")
@@ -34,7 +33,7 @@ def literal() -> BoundPlant:
 @pytest.fixture(scope="session")
 def table(bound: BoundPlant) -> ControllerTable:
     """The controller of the CE150's plant file."""
-    return design(bound, read_settings(bound))[0]
+    return stated_table("ce150")
 
 
 @pytest.fixture(scope="session")

@@ -9,14 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from records.diagnosis import load_diagnosis
 from records.log import RunLog, save_log
 from sim.bind import BoundPlant
 from sim.loop import fly_law
 from sim.manoeuvres import flight
-from tests.plants import bound
+from tests.plants import bound, stated_table
 from twinlaw.command import main
 from twinlaw.workflows.diagnosing import earlier_predictions, writable
 
@@ -31,7 +29,7 @@ def rig() -> BoundPlant:
 @pytest.fixture(scope="module")
 def whole(rig: BoundPlant) -> RunLog:
     """The default flight, in which no air moves."""
-    table, _ = design(rig, read_settings(rig))
+    table = stated_table("ce150")
     return replace(fly_law(rig, table, flight(rig)), table_digest=None)
 
 

@@ -9,13 +9,11 @@ from pathlib import Path
 import pytest
 
 from blind.cases.make import make
-from design.settings import read_settings
-from design.table import design
 from records.errors import BadInput
 from records.log import save_log
 from sim.loop import fly_law
 from sim.manoeuvres import flight
-from tests.plants import bound
+from tests.plants import bound, stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main
 from twinlaw.workflows.diagnosing_each import answer, parcel, questions
@@ -29,7 +27,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of two logs and a case: six seconds of flight, ten samples, and the six seconds with four more held out."""
     place = tmp_path_factory.mktemp("logs")
     rig = bound("ce150")
-    table, _ = design(rig, read_settings(rig))
+    table = stated_table("ce150")
     log = replace(fly_law(rig, table, flight(rig)), table_digest=None, extra={})
 
     def save(path: Path, rows: slice) -> None:
