@@ -20,6 +20,8 @@ FOLDERS = (
     "firmware",
     "verification",
     "rig",
+    "logcheck",
+    "replay",
     "identification",
     "diagnosis",
     "blind",

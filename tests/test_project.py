@@ -28,6 +28,8 @@ PACKAGES = (
     "controllers",
     "verification",
     "rig",
+    "logcheck",
+    "replay",
     "identification",
     "diagnosis",
     "blind",
