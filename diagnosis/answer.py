@@ -16,11 +16,12 @@ from diagnosis.explain.improved import estimates, improved_plant
 from diagnosis.explain.maps import band_map, region_map, removed_energy, time_map
 from diagnosis.explain.notes import notes_of
 from diagnosis.explain.places import place_shares
+from diagnosis.explain.sentences import sentences
 from diagnosis.explain.sparse import suggestion
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from diagnosis.result import Judged, Material, Result, Seen
+from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Search
 from records.diagnosis import Diagnosis, Hypothesis, Unknown
 
@@ -32,6 +33,9 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     before, after = _innovations(case, found.nominal), _innovations(case, found.fitted[0])
     energy = removed_energy(before, after)
     predicted = () if judged.holdout is None else judged.holdout.predicted(judged.chosen)
+    holdout = judged.holdout
+    kept = holdout.notes if holdout is not None and judged.chosen is holdout.base else ()
+    notes = (*judged.notes, *kept, *notes_of(case, seen.score_tests, judged.chosen, weighed))
     diagnosis = Diagnosis(
         verdict="gap",
         false_alarm_probability=seen.detection.p,
@@ -51,26 +55,43 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         found=judged.chosen.effects,
         shrinkage=None if judged.holdout is None else judged.holdout.shrinkage(predicted),
         next_experiment=next_experiment(case, weighed),
-        notes=(*judged.notes, *notes_of(case, seen.score_tests, judged.chosen, weighed)),
+        notes=sentences(notes),
+        verdict_reason=_reason(judged).value,
+        decisions=seen.decisions,
+        note_records=notes,
     )
     shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
     return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape)
 
 
-def no_gap(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
-    """The answer where nothing shows, or nothing could."""
+def _reason(judged: Judged) -> Exit:
+    """By which end a gap was told."""
+    weighed = judged.weighed
+    if judged.chosen.effects:
+        return Exit.EFFECT_ADDED
+    if weighed.nameless or not (weighed.probabilities or weighed.retune):
+        return Exit.UNKNOWN_EFFECT
+    return Exit.PARAMETERS_ALONE if weighed.retune >= max(weighed.probabilities, default=0.0) else Exit.NAMED_NOT_ADDED
+
+
+def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit) -> Result:
+    """The answer where nothing shows, or nothing could; `reason` is by which end."""
     case = seen.case
     chosen = seen.retuned if holdout is None else holdout.base
     predicted = () if holdout is None else holdout.predicted(chosen)
     told = () if holdout is None else holdout.notes
     blind = cannot_tell(case, seen.score_tests)
+    notes = (*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None))
     diagnosis = Diagnosis(
         verdict="cannot tell" if blind else "no gap",
         false_alarm_probability=seen.detection.p,
         firmware=material.firmware,
         shrinkage=None if holdout is None else holdout.shrinkage(predicted),
         next_experiment=revealing_experiment(case, seen.retuned.fit.hypothesis) if blind else None,
-        notes=(*material.notes, *told, *notes_of(case, seen.score_tests, chosen, None)),
+        notes=sentences(notes),
+        verdict_reason=(Exit.TOO_LITTLE_SEEN if blind and reason is Exit.NOTHING_SEEN else reason).value,
+        decisions=seen.decisions,
+        note_records=notes,
     )
     return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted)
 

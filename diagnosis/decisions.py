@@ -3,9 +3,11 @@
 What only bounds an iteration, spaces a grid or scales a number stands where it is used. `table()` lists all of these.
 """
 
+import math
 from collections.abc import Iterator
 
 from records.deciding import Count, Counts, Decides, Limit, Limits
+from records.reasons import Decision
 
 DEVELOPMENT = "development cases of the sealed generator, seeds 21 and 22"
 DEVELOPMENT_21 = "160 development cases, seed 21"
@@ -247,9 +249,7 @@ YIELDING_EARLY_SHARE = Limit(
     "where rigs yield",
     "EMPS; seed 31 of the second rig",
 )
-ABOUT_MISSING_ROWS = Limits(
-    tuple(range(-2, 4)), "rows", "about a missing row readings tell nothing of lost commands", DEVELOPMENT
-)
+ABOUT_MISSING_ROWS = Counts((-2, 4), "rows", "about a missing row readings tell nothing of lost commands", DEVELOPMENT)
 ASTRAY_LOSSES = Limit(
     1.0, "mean square standard deviations", "beyond it losses are sought from the stated parameters too", "seed 900011"
 )
@@ -409,3 +409,17 @@ IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters
 def table() -> Iterator[tuple[str, Decides]]:
     """Name and constant of each, in the order of the rooms."""
     return ((name, value) for name, value in globals().items() if isinstance(value, Decides))
+
+
+def decided(rule: str, of: str, value: float, limit: Limit | Count, outcome: str) -> Decision:
+    """The record of a rule that held `value` against one of these constants."""
+    return held_against(rule, of, value, float(limit), limit.unit, outcome)
+
+
+def held_against(rule: str, of: str, value: float, limit: float, unit: str, outcome: str) -> Decision:
+    """The record of a rule whose limit follows from several of these constants, or from the data."""
+    return Decision(rule, of, _finite(value), _finite(limit), unit, outcome)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,4 +1,7 @@
-"""The diagnosis: from a plant and its logs to what the model lacks, in the order detect, search, weigh, check on the hold-out."""
+"""The diagnosis: from a plant and its logs to what the model lacks, in the order detect, search, weigh, check on the hold-out.
+
+Every rule that has a say leaves a record on the way (records/reasons.py), and every end of the path has a name, the `Exit`.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,60 +15,67 @@ from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, ov
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, weigh
 from diagnosis.decide.wiring import demand_wiring
-from diagnosis.detect.detection import Detection, detect, form_scores
+from diagnosis.decisions import decided, held_against
+from diagnosis.detect.detection import detect, form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library, is_gust
 from diagnosis.library.input_effects import LOST_FRAMES
-from diagnosis.result import Judged, Material, Result, Seen
+from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
 from diagnosis.search.gusts import gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
-from records.errors import BadInput
+from records.reasons import Decision
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
-
-ROUNDS = 4
-SETTLED = 0.05
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
-    if seen.detection.p > decisions.ALARM:
-        return _nothing(seen, material, _holdout(seen, material))
+    if not _alarmed(seen.detection.p):
+        return _nothing(seen, material, Exit.NOTHING_SEEN)
     demand_wiring(seen.case, seen.retuned.fit, nominal_fit, "the logs to explain")
     seen, found = _explained(seen)
     if found is None:
-        return _nothing(seen, material, _holdout(seen, material))
+        return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
     beyond = retune(seen.case, seen.retuned.fit)
-    seen = replace(seen, detection=confirmed_by(seen.detection, found, beyond))
-    if seen.detection.p > decisions.ALARM:
-        return _nothing(seen, material, _holdout(seen, material))
-    judged = _judged(seen, material, found, beyond)
-    seen = replace(seen, detection=borne_out(seen.detection, judged))
-    if seen.detection.p > decisions.ALARM:
-        return _nothing(seen, material, judged.holdout)
+    seen = confirmed_by(seen, found, beyond)
+    if not _alarmed(seen.detection.p):
+        return _nothing(seen, material, Exit.UNEXPLAINED)
+    seen, judged = _judged(seen, material, found, beyond)
+    seen, stands = borne_out(seen, judged.weighed)
+    if not stands:
+        return _told(seen, replace(material, notes=judged.notes), judged.holdout, Exit.NOT_BORNE_OUT)
     return gap(seen, material, judged)
 
 
-def _nothing(seen: Seen, material: Material, holdout: Holdout | None) -> Result:
-    """The answer where no gap shows, with what logs that were not fitted say to that. Raises BadInput where they are wired otherwise."""
+def _alarmed(p: float) -> bool:
+    """Whether so large a gap has a chance without one that is small enough to look for a cause."""
+    return p <= decisions.ALARM
+
+
+def _nothing(seen: Seen, material: Material, reason: Exit) -> Result:
+    """The answer where no gap shows. Raises BadInput where logs that were not fitted are wired otherwise."""
+    seen, holdout = _checked(seen, material)
+    return _told(seen, material, holdout, reason)
+
+
+def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit) -> Result:
+    """The same, with what logs that were not fitted say to that."""
     if seen.checked is None:
-        return no_gap(seen, material, holdout)
+        return no_gap(seen, material, holdout, reason)
     together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
-    told = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
+    told, rules = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
     if told:
         demand_wiring(seen.checked, nominal_fit(seen.checked), nominal_fit, "the hold-out")
-    return no_gap(seen, replace(material, notes=(*material.notes, *told)), holdout)
+    return no_gap(seen.because(*rules), replace(material, notes=(*material.notes, *told)), holdout, reason)
 
 
 def _seen(bound: BoundPlant, material: Material) -> Seen:
@@ -87,15 +97,13 @@ def _looked_at(case: Case, checked: Case | None) -> Seen:
     linearisation = replace(linearisation, case=case)
     score_tests = score_effects(case, linearisation, case.library.candidates)
     retuned = FittedHypothesis((), nominal, evidence(nominal))
-    return Seen(
-        case,
-        checked,
-        retuned,
-        linearisation,
-        tuple(score_tests),
-        lossy,
-        detect(case, linearisation, score_tests, lossy),
-    )
+    detection = detect(case, linearisation, score_tests, lossy)
+    rules = (*detection.decisions, _false_alarm("logs", detection.p))
+    return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
+
+
+def _false_alarm(of: str, p: float) -> Decision:
+    return decided("false_alarm", of, p, decisions.ALARM, "a cause is looked for" if _alarmed(p) else "no gap")
 
 
 def _explained(seen: Seen) -> tuple[Seen, Search | None]:
@@ -107,13 +115,13 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     """
     begun = _alone(seen)
     first = begun.best(decisions.YIELDING_ASKED)
-    again = _yielding(seen, first, decisions.YIELDING_EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
+    seen, again = _yielding(seen, first, decisions.YIELDING_EARLY_SHARE * (first[0].evidence - seen.retuned.evidence))
     if again is not None:
         further = _searched(again)
         if needed(seen.case, again.retuned if further is None else further.fitted[0]):
             return again, further
     found = search(seen.case, seen.case.library.candidates, begun)
-    again = _yielding(seen, found.fitted[: decisions.YIELDING_ASKED])
+    seen, again = _yielding(seen, found.fitted[: decisions.YIELDING_ASKED])
     if again is None:
         return seen, found
     further = _searched(again)
@@ -121,45 +129,80 @@ def _explained(seen: Seen) -> tuple[Seen, Search | None]:
     return (again, further) if best.evidence > found.fitted[0].evidence else (seen, found)
 
 
-def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.0) -> Seen | None:
-    """All anew with axes that yield near rest, where that explains the logs better beside one of those found; else None."""
+def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.0) -> tuple[Seen, Seen | None]:
+    """The same with the rules asked, and all anew with axes that yield near rest, where that explains the logs better beside one of those
+    found; else None."""
     asked = list(found) if seen.retuned in found else [*found, seen.retuned]
-    case = yielding(seen.case, asked, further)
-    return None if case is seen.case else _looked_at(case, seen.checked)
+    case, rules = yielding(seen.case, asked, further)
+    seen = seen.because(*rules)
+    if case is seen.case:
+        return seen, None
+    again = _looked_at(case, seen.checked)
+    return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 
 def _searched(seen: Seen) -> Search | None:
     """What is found; None where there is no gap."""
-    return None if seen.detection.p > decisions.ALARM else search(seen.case, seen.case.library.candidates, _alone(seen))
+    if not _alarmed(seen.detection.p):
+        return None
+    return search(seen.case, seen.case.library.candidates, _alone(seen))
 
 
 def _alone(seen: Seen) -> Alone:
-    return alone(
-        seen.case, seen.retuned, seen.case.library.candidates, seen.linearisation, seen.score_tests, seen.lossy
-    )
+    candidates = seen.case.library.candidates
+    return alone(seen.case, seen.retuned, candidates, seen.linearisation, seen.score_tests, seen.lossy)
 
 
-def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> Judged:
+def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:
     """Weigh what was found, and check it on the hold-out."""
-    case, retuned = seen.case, seen.retuned
+    retuned = seen.retuned
+    seen = seen.because(*found.decisions)
+    found, left, weighed, rules = _with_gusts(seen, found, beyond)
+    seen = seen.because(*rules, *weighed.decisions)
+    seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
+    notes = material.notes
+    if holdout is not None:
+        weighed, rules = overruled(holdout, weighed, retuned, left)
+        weighed, told, further = partly(holdout, weighed, left)
+        seen = seen.because(*rules, *further)
+    else:
+        told = ()
+    doubts = doubt(seen.case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
+    weighed, notes = doubts.applied(weighed), (*notes, *doubts.notes, *told)
+    chosen, rules = likeliest(weighed, retuned, beyond)
+    seen = seen.because(*doubts.decisions, *rules)
+    if holdout is not None:
+        chosen, rules = helpful(holdout, chosen)
+        seen = seen.because(*rules)
+    return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
+
+
+def _with_gusts(
+    seen: Seen, found: Search, beyond: Retune | None
+) -> tuple[Search, float, Weighed, tuple[Decision, ...]]:
+    """What was found, weighed; with gusts where nothing else explains the logs well and they do."""
     left, weighed = _weighed(seen, found, beyond)
-    if max(weighed.retune, *weighed.probabilities, 0.0) < decisions.WELL_EXPLAINED:
-        enough = retuned.evidence + decisions.GUST_EXPLAINS * (found.fitted[0].evidence - retuned.evidence)
-        further = [entry for entry in gusts(case, retuned) if entry.evidence > enough]
+    likely = max(weighed.retune, *weighed.probabilities, 0.0)
+    explained = likely >= decisions.WELL_EXPLAINED
+    rules = [
+        decided("well_explained", "best", likely, decisions.WELL_EXPLAINED, "explained" if explained else "gusts asked")
+    ]
+    if not explained:
+        gained = found.fitted[0].evidence - seen.retuned.evidence
+        enough = seen.retuned.evidence + decisions.GUST_EXPLAINS * gained
+        asked = gusts(seen.case, seen.retuned)
+        further = [entry for entry in asked if entry.evidence > enough]
+        rules += [_gust_rule(entry, seen.retuned.evidence, enough) for entry in asked]
         if further:
             found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
             left, weighed = _weighed(seen, found, beyond)
-    holdout = _holdout(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
-    told: tuple[str, ...] = ()
-    if holdout is not None:
-        weighed, told = partly(holdout, overruled(holdout, weighed, retuned, left), left)
-    doubts = doubt(case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
-    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.sentences, *told)
-    chosen = likeliest(weighed, retuned, beyond)
-    if holdout is not None:
-        chosen = helpful(holdout, chosen)
-        notes = (*notes, *holdout.notes) if chosen is holdout.base else notes
-    return Judged(found, beyond, weighed, chosen, holdout, notes)
+    return found, left, weighed, tuple(rules)
+
+
+def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decision:
+    outcome = "weighed" if gust.evidence > enough else "left out"
+    of = " + ".join(gust.effects)
+    return held_against("gust_explains", of, gust.evidence - nominal, enough - nominal, "nats", outcome)
 
 
 def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
@@ -171,58 +214,42 @@ def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, W
     return left, weigh(found.fitted, seen.retuned, left, score, seen.case.library.frictionless, seen.case.library.steps)
 
 
-def _holdout(seen: Seen, material: Material, effects: Sequence[str] = ()) -> Holdout | None:
+def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tuple[Seen, Holdout | None]:
     """The logs to check on, None where there are none; where lost frames are among the `effects`, theirs are looked for."""
     checked = seen.checked
     if checked is None:
-        return None
+        return seen, None
     if LOST_FRAMES in effects:
         checked = with_losses(checked, linearised(checked, nominal_fit(checked)))[0]
-    return holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
+    holdout = holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
+    return seen.because(*holdout.decisions), holdout
 
 
-def confirmed_by(detection: Detection, found: Search, beyond: Retune | None) -> Detection:
+def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
     """A small gap also needs effects of sure size, or parameters, that explain it: without a gap, evidence of x nats has a chance of
-    exp(-x) at most."""
-    if detection.largest > decisions.PLAIN_TO_SEE:
-        return detection
+    exp(-x) at most, and the larger of both chances is that of so large a gap without one."""
+    detection = seen.detection
+    small = detection.largest <= decisions.PLAIN_TO_SEE
+    size = decided(
+        "plain_to_see", "logs", detection.largest, decisions.PLAIN_TO_SEE, "must be explained" if small else "a gap"
+    )
+    if not small:
+        return seen.because(size)
     explained = [entry.evidence for entry in found.fitted if entry.effects and found.sure]
     explained += [] if beyond is None else [beyond.score]
     best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
-    return replace(detection, p=max(detection.p, float(np.exp(-max(best, 0.0)))))
+    p = max(detection.p, float(np.exp(-max(best, 0.0))))
+    return replace(seen.because(size, _false_alarm("what explains it", p)), detection=replace(detection, p=p))
 
 
-def borne_out(detection: Detection, judged: Judged) -> Detection:
-    """A small gap whose explanations do not hold, be it on the hold-out, is explained by nothing: evidence of 0 nats."""
-    return (
-        replace(detection, p=1.0)
-        if detection.largest <= decisions.PLAIN_TO_SEE and judged.weighed.nameless
-        else detection
-    )
+def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:
+    """Whether a gap stands: a small one does not whose explanations do not hold, be it on the hold-out. Its chance stays what it is."""
+    small = seen.detection.largest <= decisions.PLAIN_TO_SEE
+    stands = not (small and weighed.nameless)
+    named = max(weighed.retune, *weighed.probabilities, 0.0)
+    outcome = "no gap: nothing that was found holds" if not stands else "stands"
+    rule = held_against("borne_out", "what explains it", named, weighed.unknown, "probability", outcome)
+    return (seen.because(rule) if small else seen), stands
 
 
-def nominal_fit(case: Case) -> Fit:
-    """The plant re-tuned within its spread, with the process noise that then remains."""
-    hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
-    found = fit(case, hypothesis, rounds=ROUNDS)
-    for turn in range(ROUNDS):
-        if found is None:
-            raise BadInput(
-                "plant",
-                "diagnosis",
-                "states that leave all bounds",
-                "a plant that can follow these logs",
-                "check units",
-            )
-        refined_noise = process_noise_of(case, found, FIRST_STEP if turn < 2 else 0.1)
-        settled = bool(
-            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED
-        )
-        found = fit(case, refined_noise, rounds=ROUNDS)
-        if settled and found is not None:
-            break
-    assert found is not None
-    return found
-
-
-__all__ = ["Material", "diagnose", "nominal_fit"]
+__all__ = ["Material", "diagnose"]

@@ -1,7 +1,8 @@
 """What goes through a diagnosis: the logs that it is given, what is seen of a gap, how that is judged, and the answer."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,22 @@ from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import Diagnosis, Firmware
 from records.log import RunLog
 from records.plant import Plant
+from records.reasons import Decision, Note
 from records.table import ControllerTable
+
+
+class Exit(Enum):
+    """The ends of the path, by the word that diagnosis.json has for each as `verdict_reason`."""
+
+    NOTHING_SEEN = "nothing_seen"  # the logs are as those of the plant as stated
+    TOO_LITTLE_SEEN = "too_little_seen"  # they are, and most of the library would not show in them
+    YIELDING_EXPLAINS = "yielding_explains"  # axes that creep or give near rest, which is no gap, leave none
+    UNEXPLAINED = "unexplained"  # a small gap that neither an effect of sure size nor parameters explain
+    NOT_BORNE_OUT = "not_borne_out"  # a small gap whose explanations do not hold
+    EFFECT_ADDED = "effect_added"
+    PARAMETERS_ALONE = "parameters_alone"
+    NAMED_NOT_ADDED = "named_not_added"  # the likeliest effect predicts the hold-out no better
+    UNKNOWN_EFFECT = "unknown_effect"
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +50,7 @@ class Material:
     holdout_names: Sequence[str]
     used: Sequence[NDArray[np.bool_] | None]
     firmware: Firmware | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     tables: Sequence[ControllerTable | None] = ()
     names: Sequence[str] = ()
 
@@ -42,7 +58,7 @@ class Material:
 @dataclass(frozen=True, eq=False)
 class Seen:
     """What is seen before any cause is looked for: the plant re-tuned within its spread, the looks at the library beside it, the fit with
-    lost frames, and what all that says of a gap; `checked` are the logs to check on."""
+    lost frames, and what all that says of a gap; `checked` are the logs to check on, `decisions` the rules that had a say so far."""
 
     case: Case
     checked: Case | None
@@ -51,6 +67,11 @@ class Seen:
     score_tests: tuple[ScoreTest, ...]
     lossy: Fit | None
     detection: Detection
+    decisions: tuple[Decision, ...] = ()
+
+    def because(self, *further: Decision) -> "Seen":
+        """The same with further rules that had a say."""
+        return replace(self, decisions=(*self.decisions, *further))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +84,7 @@ class Judged:
     weighed: Weighed
     chosen: FittedHypothesis
     holdout: Holdout | None
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 @dataclass(frozen=True, eq=False)

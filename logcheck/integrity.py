@@ -17,6 +17,7 @@ from logcheck.stamps import Timing, timing, timing_findings
 from logcheck.values import Excitation, Saturation, excitations, saturations, value_findings
 from records.errors import BadInput
 from records.log import RunLog
+from records.reasons import Note
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 
@@ -45,9 +46,14 @@ class Integrity:
         return tuple(finding for finding in self.findings if finding.severity == REFUSE)
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """Every finding as one sentence that names its log."""
-        return tuple(f"{finding.log}: {finding.sentence}" for finding in self.findings)
+    def notes(self) -> tuple[Note, ...]:
+        """Every finding as a note, whose sentence names its log."""
+        return tuple(map(_note, self.findings))
+
+
+def _note(finding: Finding) -> Note:
+    where = {"column": finding.column, "start_s": finding.start_s, "end_s": finding.end_s, "rows": finding.rows}
+    return Note(finding.kind, finding.log, where, f"{finding.log}: {finding.sentence}")
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers beyond all bounds are what is looked for

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.log import RunLog
+from records.reasons import Note
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -22,12 +23,12 @@ COARSEST_S = 4e-3  # and no farther: a tenth of the shortest time constant of a 
 
 @dataclass(frozen=True, eq=False)
 class Stretches:
-    """Parts of logs with their names and which of their rows (n,) may be used, and a sentence for each log that was cut."""
+    """Parts of logs with their names and which of their rows (n,) may be used, and a note for each log that was cut."""
 
     logs: tuple[RunLog, ...]
     names: tuple[str, ...]
     used: tuple[Rows, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]) -> Stretches:
@@ -47,15 +48,15 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
         left = mask[places]
         if log is not whole:
             apart = f"{whole.sample_period_s * 1e6:.4g} microseconds apart"
-            notes.append(
-                f"{name}: {len(log.t_s)} of its {len(mask)} rows were looked at, spread evenly, as they are {apart}"
-            )
+            said = f"{name}: {len(log.t_s)} of its {len(mask)} rows were looked at, spread evenly, as they are {apart}"
+            notes.append(Note("thinned", name, {"rows": len(log.t_s), "of_rows": len(mask)}, said))
         if rows == len(log.t_s):
             parts.append((log, name, left))
             continue
         chosen = _chosen(log, rows)
         parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", left[part]) for part in chosen]
-        notes.append(f"{name}: {_kept(log, chosen)}")
+        spans_s = [(float(log.t_s[part.start]), float(log.t_s[part.stop - 1])) for part in chosen]
+        notes.append(Note("stretches", name, {"spans_s": spans_s}, f"{name}: {_kept(log, chosen)}"))
     cut, called, masks = zip(*parts, strict=True)
     return Stretches(cut, called, masks, tuple(notes))
 

@@ -9,10 +9,11 @@ from typing import Any, TypeVar
 from records import checks
 from records.errors import BadInput
 from records.reading import read_json
+from records.reasons import Decision, Note
 
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")
-FURTHER = "error_responses"  # a key that CONTRACT.md does not ask for, and that earlier files lack
+FURTHER = ("error_responses", "verdict_reason", "decisions", "note_records")  # keys that a file may lack
 SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
 T = TypeVar("T")
 
@@ -117,7 +118,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Agreement:
-    """How well one output's predictions agree with its readings, each figure by bar ("nominal", "before", "after").
+    """How well one output's predictions agree with its readings, each figure by model variant ("nominal", "before", "after").
 
     `margin` is the tolerance in the output's unit, None where no rule gives one; `inside_margin` the shares of time within it.
     A figure that the data leave undefined is absent.
@@ -134,7 +135,8 @@ class Agreement:
 class ClosedLoop:
     """Flights of the log's own controller code on each model, against the logs: rms by output and input of what differs.
 
-    `rms_floor` is what unrest and rounding alone make of it; `fraction` as for Shrinkage, over the outputs. `diverged` names the bars
+    `rms_floor` is what process noise and rounding alone make of it; `fraction` as for Shrinkage, over the outputs.
+    `diverged` names the variants
     whose flight left the log's; their rms says no more than that it is large. `logs` are those that were flown again.
     """
 
@@ -168,7 +170,11 @@ class Shrinkage:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All of diagnosis.json; `firmware` is None where no log names a table, `shrinkage` where there is no hold-out log."""
+    """All of diagnosis.json; `firmware` is None where no log names a table, `shrinkage` where there is no hold-out log.
+
+    `verdict_reason` names the exit of the engine that was taken, `decisions` every rule that had a say on the way there, in order.
+    `notes` are sentences, and `note_records` what each was made from, in the same order.
+    """
 
     verdict: str
     false_alarm_probability: float | None
@@ -184,6 +190,9 @@ class Diagnosis:
     shrinkage: Shrinkage | None = None
     next_experiment: Mapping[str, Any] | None = None
     notes: tuple[str, ...] = ()
+    verdict_reason: str | None = None
+    decisions: tuple[Decision, ...] = ()
+    note_records: tuple[Note, ...] = ()
 
 
 def diagnosis_text(diagnosis: Diagnosis) -> str:
@@ -205,7 +214,7 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
     """A diagnosis from the content of its file; raises BadInput."""
     checks.schema(content, f"{where}: schema", SCHEMA)
     names = [_json_name(field.name) for field in fields(Diagnosis)]
-    checks.keys(content, where, ("schema", *(name for name in names if name != FURTHER)), (FURTHER,))
+    checks.keys(content, where, ("schema", *(name for name in names if name not in FURTHER)), FURTHER)
     p = content["false_alarm_probability"]
     diagnosis = Diagnosis(
         verdict=checks.text(content["verdict"], f"{where}: verdict"),
@@ -214,7 +223,7 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
         when=_list(Span, content, "when", where),
         regions=_list(Region, content, "regions", where),
         bands=_list(Band, content, "bands", where),
-        error_responses=_list(ErrorResponse, content, FURTHER, where) if FURTHER in content else (),
+        error_responses=_list(ErrorResponse, content, "error_responses", where),
         firmware=_optional(Firmware, content, "firmware", where),
         effects=_list(Hypothesis, content, "effects", where),
         unknown=_record(Unknown, content["unknown"], f"{where}: unknown"),
@@ -224,6 +233,9 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
         if content["next_experiment"] is None
         else checks.table(content["next_experiment"], f"{where}: next_experiment"),
         notes=_texts(content["notes"], f"{where}: notes"),
+        verdict_reason=_or_none(checks.text)(content.get("verdict_reason"), f"{where}: verdict_reason"),
+        decisions=_list(Decision, content, "decisions", where),
+        note_records=_list(Note, content, "note_records", where),
     )
     _check(diagnosis, where)
     return diagnosis
@@ -268,7 +280,8 @@ def _optional(kind: type[T], content: Mapping[str, Any], key: str, where: str) -
 
 
 def _list(kind: type[T], content: Mapping[str, Any], key: str, where: str) -> tuple[T, ...]:
-    entries = content[key]
+    """Records under a key; none where a key is absent that may be."""
+    entries = content.get(key, [])
     if not isinstance(entries, list):
         raise BadInput(key, where, repr(entries)[:60], "a list", "write [] where there is none")
     return tuple(_record(kind, entry, f"{where}: {key}[{index}]") for index, entry in enumerate(entries))
@@ -335,6 +348,7 @@ _READ: Mapping[str, Callable[[Any, str], Any]] = {
         (tuple[str, ...], _texts),
         (tuple[float, float] | None, _or_none(_interval)),
         (Mapping[str, float], _numbers_by_name),
+        (Mapping[str, Any], checks.table),
         (Mapping[str, Estimate], _estimates),
         (Mapping[str, Agreement], _agreements),
         (ClosedLoop | None, _or_none(lambda value, where: _record(ClosedLoop, value, where))),

@@ -1,6 +1,6 @@
 """Reasons to name nothing: logs that contradict each other, a plant that knows nothing of its logs, parameters that must be others'."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,83 +8,134 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.decide.contradiction import Contradiction, contradiction, parted_gain
 from diagnosis.decide.weighing import Weighed
+from diagnosis.decisions import decided
 from diagnosis.detect.instants import is_event
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.search.beam import Search
 from diagnosis.validate.misfit import ignorance
+from records.reasons import Decision, Note
 
 ROUNDS = 4  # of a fit to all logs together
+FORBIDS, TELLS, NOTHING = "no cause is named", "is told", "nothing"
 
 
 @dataclass(frozen=True)
 class Doubt:
-    """Sentences that go with the diagnosis, and whether they forbid to name a cause."""
+    """Notes that go with the diagnosis, the rules that were asked, and whether they forbid to name a cause."""
 
-    sentences: tuple[str, ...]
+    notes: tuple[Note, ...]
+    decisions: tuple[Decision, ...]
     forbids: bool
 
     def applied(self, weighed: Weighed) -> Weighed:
         """The probabilities with what is doubted given to the unknown."""
-        return (
-            weighed
-            if not self.forbids or weighed.unknown >= decisions.UNNAMED
-            else weighed.with_unknown(decisions.UNNAMED)
-        )
+        if not self.forbids or weighed.unknown >= decisions.UNNAMED:
+            return weighed
+        return weighed.with_unknown(decisions.UNNAMED)
+
+
+@dataclass(frozen=True)
+class _Objection:
+    """What one rule says: its record, its note where it has something to tell, and whether it forbids to name a cause."""
+
+    decision: Decision
+    note: Note | None = None
+    forbids: bool = False
 
 
 def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
     """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs, `worse` how many times
     as large the hold-out's mean square error is with what would be named."""
     best = found.fitted[0]
-    gain = best.evidence - found.nominal.evidence
-    sentences, forbids = [], False
-    apart = contradiction(case, best.fit)
-    if apart is not None and apart.gain > max(decisions.CONTRADICTION, decisions.CONTRADICTION_SHARE * gain):
-        apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
-    if apart is not None and apart.gain > decisions.CONTRADICTION:
-        sentences.append(_contradiction(apart, names))
-        forbids = apart.gain > decisions.CONTRADICTION_SHARE * gain
-    errors = ignorance(case, best.fit.hypothesis)
-    if errors and min(errors.values()) > decisions.KNOWS_NOTHING:
-        told = ", ".join(f"{name} {value:.2g}" for name, value in errors.items())
-        sentences.append(
-            "this plant does not fit these logs at all: whatever is added to it, its predictions over 1 s are no better than holding "
-            f"the last reading (error over that of holding: {told}); check that they belong together, columns, signs and units"
-        )
-        forbids = True
-    if worse > decisions.REFUTED and not any(
-        is_event(case.library.effects[name]) for name in weighed.fitted[0].effects
-    ):
-        named = " + ".join(weighed.fitted[0].effects)
-        sentences.append(
-            f"the hold-out refutes {named}: with it, predictions are {np.sqrt(worse):.2f} times as far off as without"
-        )
-        forbids = True
-    furthest = float(np.max(np.abs(best.fit.hypothesis.theta), initial=0.0))
-    if furthest > decisions.ANOTHER_PLANT and weighed.unknown > 0.5:
-        sentences.append(
-            f"these may be logs of another plant: beside every effect a parameter stays {furthest:.0f} standard deviations from what "
-            "the plant file states"
-        )
-    return Doubt(tuple(sentences), forbids)
+    objections = (
+        *_contradicted(case, best, best.evidence - found.nominal.evidence, names),
+        *_unknowing(case, best),
+        *_refuted(case, weighed, worse),
+        _of_another_plant(best, weighed),
+    )
+    notes = tuple(entry.note for entry in objections if entry.note is not None)
+    return Doubt(notes, tuple(entry.decision for entry in objections), any(entry.forbids for entry in objections))
 
 
-def contradicting(case: Case, hypothesis: Hypothesis, names: Sequence[str]) -> tuple[str, ...]:
-    """Which of logs that seem to be of the plant as `hypothesis`, without a gap, contradicts the others; nothing where none does."""
+def contradicting(
+    case: Case, hypothesis: Hypothesis, names: Sequence[str]
+) -> tuple[tuple[Note, ...], tuple[Decision, ...]]:
+    """Which of logs that seem to be of the plant as `hypothesis`, without a gap, contradicts the others, and the rule that says so;
+    nothing where none does."""
     together = fit(case, hypothesis, rounds=ROUNDS)
     apart = None if together is None else contradiction(case, together)
-    if together is None or apart is None or apart.gain <= decisions.CONTRADICTION:
-        return ()
-    apart = replace(apart, gain=min(apart.gain, parted_gain(case, together)))
-    return (_contradiction(apart, names),) if apart.gain > decisions.CONTRADICTION else ()
-
-
-def _contradiction(apart: Contradiction, names: Sequence[str]) -> str:
-    name = names[apart.index] if apart.index < len(names) else f"log {apart.index + 1}"
-    moved = ", ".join(f"{what} {by:+.1f}" for what, by in apart.moved)
-    return (
-        f"these logs contradict each other: {name} would be {apart.gain:.0f} nats likelier with numbers of its own ({moved}, in units "
-        "of their spread), so one plant in one state did not make them all; diagnose them apart"
+    if together is None or apart is None:
+        return (), ()
+    if apart.gain > decisions.CONTRADICTION:
+        apart = replace(apart, gain=min(apart.gain, parted_gain(case, together)))
+    told = apart.gain > decisions.CONTRADICTION
+    decision = decided(
+        "contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, TELLS if told else NOTHING
     )
+    return ((_contradiction(apart, names),) if told else ()), (decision,)
+
+
+def _contradicted(case: Case, best: FittedHypothesis, gain: float, names: Sequence[str]) -> Iterator[_Objection]:
+    """Logs that one plant in one state did not make; where that is much of the gap, they forbid a name."""
+    apart = contradiction(case, best.fit)
+    if apart is None:
+        return
+    if apart.gain > max(decisions.CONTRADICTION, decisions.CONTRADICTION_SHARE * gain):
+        apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
+    told = apart.gain > decisions.CONTRADICTION
+    forbids = told and apart.gain > decisions.CONTRADICTION_SHARE * gain
+    outcome = FORBIDS if forbids else TELLS if told else NOTHING
+    yield _Objection(
+        decided("contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, outcome),
+        _contradiction(apart, names) if told else None,
+        forbids,
+    )
+
+
+def _unknowing(case: Case, best: FittedHypothesis) -> Iterator[_Objection]:
+    """A plant whose predictions are no better than holding the last reading."""
+    errors = ignorance(case, best.fit.hypothesis)
+    if errors:
+        least = min(errors, key=lambda name: errors[name])
+        forbids = errors[least] > decisions.KNOWS_NOTHING
+        outcome = FORBIDS if forbids else NOTHING
+        yield _Objection(
+            decided("knows_nothing", least, errors[least], decisions.KNOWS_NOTHING, outcome),
+            Note("knows_nothing", "plant", errors) if forbids else None,
+            forbids,
+        )
+
+
+def _refuted(case: Case, weighed: Weighed, worse: float) -> Iterator[_Objection]:
+    """A name with which the hold-out is predicted far worse; events, which are others in each log, are not asked."""
+    if worse > 0.0:
+        names = weighed.fitted[0].effects
+        forbids = worse > decisions.REFUTED and not any(is_event(case.library.effects[name]) for name in names)
+        of = " + ".join(names)
+        outcome = FORBIDS if forbids else NOTHING
+        yield _Objection(
+            decided("refuted", of, worse, decisions.REFUTED, outcome),
+            Note("refuted", of, {"mean_square_ratio": worse}) if forbids else None,
+            forbids,
+        )
+
+
+def _of_another_plant(best: FittedHypothesis, weighed: Weighed) -> _Objection:
+    """A parameter that is far off beside every effect."""
+    furthest = float(np.max(np.abs(best.fit.hypothesis.theta), initial=0.0))
+    told = furthest > decisions.ANOTHER_PLANT and weighed.unknown > 0.5
+    return _Objection(
+        decided("another_plant", "plant", furthest, decisions.ANOTHER_PLANT, TELLS if told else NOTHING),
+        Note("another_plant", "plant", {"deviations": furthest}) if told else None,
+    )
+
+
+def _log(apart: Contradiction, names: Sequence[str]) -> str:
+    return names[apart.index] if apart.index < len(names) else f"log {apart.index + 1}"
+
+
+def _contradiction(apart: Contradiction, names: Sequence[str]) -> Note:
+    return Note("contradiction", _log(apart, names), {"gain_nats": apart.gain, "moved": dict(apart.moved)})

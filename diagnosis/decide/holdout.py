@@ -8,6 +8,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.decide.prior import at_its_end
 from diagnosis.decide.weighing import Weighed
+from diagnosis.decisions import decided, held_against
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import seen_in_readings, unfitted
@@ -19,6 +20,7 @@ from diagnosis.search.retune import Retune
 from diagnosis.validate.prediction import WINDOW_S
 from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage
 from records.diagnosis import Shrinkage
+from records.reasons import Decision, Note
 from records.table import ControllerTable
 
 
@@ -31,7 +33,8 @@ class Holdout:
     names: Sequence[str]
     tables: Sequence[ControllerTable | None]
     base: FittedHypothesis
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    decisions: tuple[Decision, ...] = ()
     kept: dict[FittedHypothesis, tuple[Predicted, ...]] = field(default_factory=dict)
 
     def predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
@@ -64,83 +67,102 @@ def holdout_of(
     trial = Holdout(case, names, tables, retuned)
     predicted = trial.predicted(retuned)
     stated, before = (error(case, predicted, variant) for variant in ("nominal", "before"))
-    if not 0.0 < stated < decisions.HELPS * before:  # a plant that predicts no row has no error
-        return trial
-    found = unfitted(training, retuned.fit.hypothesis.process_noise)
+    better = 0.0 < stated < decisions.HELPS * before  # a plant that predicts no row has no error
+    ratio = stated / before if before > 0.0 else float("nan")
+    told = decided("as_stated", "plant", ratio, decisions.HELPS, "as stated" if better else "re-tuned")
+    found = unfitted(training, retuned.fit.hypothesis.process_noise) if better else None
     if found is None:
-        return trial
-    further = 100.0 * (float(np.sqrt(before / stated)) - 1.0)
-    told = f"re-tuned within its spread the plant predicts the hold-out {further:.2g} % worse than as stated"
-    notes = (f"{told}, so its parameters stay as stated",)
-    return Holdout(case, names, tables, FittedHypothesis((), found, evidence(found)), notes)
+        return replace(trial, decisions=(told,))
+    notes = (Note("stated_predicts_better", "plant", {"worse": float(np.sqrt(before / stated)) - 1.0}),)
+    return Holdout(case, names, tables, FittedHypothesis((), found, evidence(found)), notes, (told,))
 
 
-def overruled(holdout: Holdout, weighed: Weighed, stated: FittedHypothesis, left: float) -> Weighed:
+def overruled(
+    holdout: Holdout, weighed: Weighed, stated: FittedHypothesis, left: float
+) -> tuple[Weighed, tuple[Decision, ...]]:
     """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found.
 
     What has a size at the end of its range is not asked: it may predict well, and is not what it is called.
     """
     if not weighed.fitted or weighed.unknown < weighed.probabilities[0]:
-        return weighed
-    first = weighed.fitted[0]
-    if left > decisions.LITTLE_LEFT * (first.evidence - stated.evidence) or any(
-        at_its_end(name, first) for name in first.effects
-    ):
-        return weighed
+        return weighed, ()
+    first, of = weighed.fitted[0], named(weighed)
+    enough = decisions.LITTLE_LEFT * (first.evidence - stated.evidence)
+    little = left <= enough and not any(at_its_end(name, first) for name in first.effects)
+    asked = held_against("little_left", of, left, enough, "nats", "hold-out asked" if little else "unknown stays")
+    if not little:
+        return weighed, (asked,)
     gone = holdout.shrinkage(holdout.predicted(first)).fraction
-    return (
-        weighed
-        if gone is None or gone < decisions.NEARLY_ALL_GONE
-        else weighed.with_unknown(min(1.0 - gone, weighed.unknown))
-    )
+    nearly = gone is not None and gone >= decisions.NEARLY_ALL_GONE
+    share = float("nan") if gone is None else gone
+    told = decided("nearly_all_gone", of, share, decisions.NEARLY_ALL_GONE, "unknown overruled" if nearly else "stays")
+    weighed = weighed.with_unknown(min(1.0 - gone, weighed.unknown)) if gone is not None and nearly else weighed
+    return weighed, (asked, told)
 
 
-def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[str, ...]]:
+def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
     """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown; or
     hardly takes any of it, maybe none: NOT_BORNE_OUT. `left` are the nats that forms still gain beside it. Where parameters alone are
     likelier no name is asked."""
     if weighed.nameless or not weighed.fitted or weighed.retune > weighed.probabilities[0]:
-        return weighed, ()
-    first = weighed.fitted[0]
+        return weighed, (), ()
+    first, of = weighed.fitted[0], named(weighed)
     told = holdout.shrinkage(holdout.predicted(first))
-    far = _leaves_most(holdout, first, told, left)
-    if told.fraction is None or not (far or _idle(holdout, first, told)):
-        return weighed, ()
+    leaves, far = _leaves_most(holdout, first, told, left)
+    hardly, idle = _idle(holdout, first, told)
+    asked = (*leaves, *hardly)
+    if told.fraction is None or not (far or idle):
+        return weighed, (), asked
     gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else max(told.fraction_ci95[1], 0.0)
-    share = f"{100.0 * gone:.0f} % of the hold-out's error away, {100.0 * most:.0f} % at most"
-    note = f"{' + '.join(first.effects)} takes {share}: something else is missing"
+    note = Note("something_else_missing", of, {"gone": gone, "gone_at_most": most})
     unknown = min(1.0 - gone, decisions.UNNAMED) if far else decisions.NOT_BORNE_OUT
-    return weighed.with_unknown(max(unknown, weighed.unknown)), (note,)
+    return weighed.with_unknown(max(unknown, weighed.unknown)), (note,), asked
 
 
-def _idle(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage) -> bool:
+def _idle(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage) -> tuple[tuple[Decision, ...], bool]:
     """Whether a hypothesis surely takes less than IDLE of the error away, and not surely HARDLY: a way of the training logs alone.
 
     Events, each of which is another one in each log, and the steps of a sensor, which make no prediction better, are not asked.
     """
     if any(seen_in_readings(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
-        return False
+        return (), False
+    if told.fraction_ci95 is None:
+        return (), False
+    low, high = told.fraction_ci95
+    idle = low <= decisions.HARDLY and high < decisions.IDLE
+    of = " + ".join(fitted.effects)
+    outcome = "unknown gains" if idle else "stays"
     return (
-        told.fraction_ci95 is not None
-        and told.fraction_ci95[0] <= decisions.HARDLY
-        and told.fraction_ci95[1] < decisions.IDLE
-    )
+        decided("hold_out_gone_at_least", of, low, decisions.HARDLY, outcome),
+        decided("hold_out_gone_at_most", of, high, decisions.IDLE, outcome),
+    ), idle
 
 
-def _leaves_most(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage, left: float) -> bool:
+def _leaves_most(
+    holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage, left: float
+) -> tuple[tuple[Decision, ...], bool]:
     """Whether a hypothesis surely leaves most of the error, far above what the sensors leave.
 
     Where forms see next to nothing beside it, air as restless as it takes it to be may be all that is left. Events are not asked, nor
     what happens at random: lost frames, gusts.
     """
     if any(name == LOST_FRAMES or is_gust(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
-        return False
+        return (), False
     floor = _floor(holdout.case, fitted, told)
     floor = floor if left > decisions.LEFT_NATS else _in_air(holdout.case, fitted, floor)
     far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
-    return far >= decisions.FAR_ABOVE_FLOOR and (
-        told.fraction_ci95 is None or told.fraction_ci95[1] <= decisions.PARTLY_GONE
-    )
+    above, of = far >= decisions.FAR_ABOVE_FLOOR, " + ".join(fitted.effects)
+    if told.fraction_ci95 is None:
+        return (
+            decided("floors_left", of, far, decisions.FAR_ABOVE_FLOOR, "unknown gains" if above else "stays"),
+        ), above
+    most = told.fraction_ci95[1]
+    leaves = above and most <= decisions.PARTLY_GONE
+    outcome = "unknown gains" if leaves else "stays"
+    return (
+        decided("floors_left", of, far, decisions.FAR_ABOVE_FLOOR, outcome),
+        decided("partly_gone", of, most, decisions.PARTLY_GONE, outcome),
+    ), leaves
 
 
 def _floor(case: Case, fitted: FittedHypothesis, told: Shrinkage) -> dict[str, float]:
@@ -179,18 +201,35 @@ def worse(holdout: Holdout, weighed: Weighed) -> float:
     return error(holdout.case, predicted, "after") / _without(holdout, predicted)
 
 
-def helpful(holdout: Holdout, first: FittedHypothesis) -> FittedHypothesis:
+def helpful(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
     """What is to be added if it lowers the hold-out's error, else the plant without it."""
     predicted = holdout.predicted(first)
-    helps = error(holdout.case, predicted, "after") < decisions.HELPS * _without(holdout, predicted)
-    return first if helps else holdout.base
+    after, without = error(holdout.case, predicted, "after"), _without(holdout, predicted)
+    helps = after < decisions.HELPS * without
+    ratio = after / without if without > 0.0 else float("inf")
+    outcome = "added" if helps else "nothing added"
+    of = " + ".join(first.effects) or "parameters"
+    return first if helps else holdout.base, (decided("helps", of, ratio, decisions.HELPS, outcome),)
 
 
-def likeliest(weighed: Weighed, stated: FittedHypothesis, beyond: Retune | None) -> FittedHypothesis:
+def likeliest(
+    weighed: Weighed, stated: FittedHypothesis, beyond: Retune | None
+) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
     """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`."""
-    if weighed.fitted and sum(weighed.probabilities) > max(weighed.unknown, weighed.retune):
-        return weighed.fitted[0]
-    return beyond.fitted if beyond is not None and weighed.retune > weighed.unknown else stated
+    known, rival = sum(weighed.probabilities), max(weighed.unknown, weighed.retune)
+    if weighed.fitted and known > rival:
+        return weighed.fitted[0], (
+            held_against("named_over_unknown", named(weighed), known, rival, "probability", "named"),
+        )
+    retuned = beyond is not None and weighed.retune > weighed.unknown
+    outcome = "parameters" if retuned else "unknown"
+    told = held_against("named_over_unknown", named(weighed), known, rival, "probability", outcome)
+    return beyond.fitted if beyond is not None and retuned else stated, (told,)
+
+
+def named(weighed: Weighed) -> str:
+    """The effects of the most probable hypothesis; "nothing" where none was fitted."""
+    return " + ".join(weighed.fitted[0].effects) if weighed.fitted else "nothing"
 
 
 def _without(holdout: Holdout, predicted: Sequence[Predicted]) -> float:

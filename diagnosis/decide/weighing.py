@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
+from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import seen_in_readings
+from records.reasons import Decision
 
 Array = NDArray[np.float64]
 KEPT = 12
@@ -25,6 +27,7 @@ class Weighed:
     unknown: float
     retune: float
     scale: float
+    decisions: tuple[Decision, ...] = ()
 
     @property
     def nameless(self) -> bool:
@@ -80,9 +83,19 @@ def weigh(
     weights /= weights.sum()
     weights = capped(weights)
     order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
+    of = " + ".join(first.effects)
+    rules = (
+        held_against("forms_left", of, left, expected, "nats", "unknown likelier" if left > expected else "explained"),
+        held_against("told_apart", of, best - nominal.evidence, scale, "nats", "from none of it"),
+    )
     chosen = tuple(named[index] for index in order)
     return Weighed(
-        chosen, tuple(float(weights[index]) for index in order), float(weights[-1]), float(weights[-2]), scale
+        chosen,
+        tuple(float(weights[index]) for index in order),
+        float(weights[-1]),
+        float(weights[-2]),
+        scale,
+        rules,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.decisions import held_against
 from diagnosis.detect.forms import Form, forms
 from diagnosis.detect.instants import target_of
 from diagnosis.detect.linearisation import Linearisation, Scores
@@ -19,6 +20,7 @@ from diagnosis.fit.gauss_newton import Fit, away, prior_chi_squared, size_scale
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
 from jobs.thread_map import thread_map
+from records.reasons import Decision
 
 Array = NDArray[np.float64]
 MEAN_GAIN = 0.5  # of white innovations
@@ -41,6 +43,7 @@ class Detection:
     tail: Tail
     largest: float
     by_form: FormScores
+    decisions: tuple[Decision, ...] = ()
 
 
 def detect(
@@ -65,15 +68,26 @@ def detect(
     outside += [] if lossy is None else [lossy.log_posterior - linearisation.fit.log_posterior]
     largest = max([*events, *outside, float(np.max(seen, initial=0.0))])
     tail = tail_of(np.max(np.concatenate([null / usual[:, None], null_events]), axis=0))
-    numbers = len(away(linearisation.fit.hypothesis, linearisation.fit.free))
-    prior_tail = chi_squared_tail(
-        numbers, prior_chi_squared(case, linearisation.fit.hypothesis, linearisation.fit.free)
-    )
-    p = min(
-        1.0,
-        3.0 * min(tail.probability(largest - decisions.ALLOWED_GAIN), prior_tail, moved_tail(case, linearisation.fit)),
-    )
-    return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)))
+    chances = {
+        "largest_gain": tail.probability(largest - decisions.ALLOWED_GAIN),
+        "parameters_together": _prior_tail(case, linearisation.fit),
+        "parameter_furthest": moved_tail(case, linearisation.fit),
+    }
+    p = min(1.0, len(chances) * min(chances.values()))
+    rules = tuple(_rule(name, chance, len(chances)) for name, chance in chances.items())
+    return Detection(p, tail, largest, FormScores(tuple(found), by_form, null_forms.mean(axis=1)), rules)
+
+
+def _rule(name: str, chance: float, tests: int) -> Decision:
+    """One of so many tests of "no gap"; each has its share of the level (Bonferroni)."""
+    limit = decisions.ALARM / tests
+    return held_against(name, "logs", chance, limit, decisions.ALARM.unit, "gap" if chance <= limit else "no gap")
+
+
+def _prior_tail(case: Case, found: Fit) -> float:
+    """The chance that all numbers that the plant file states went together so far from there."""
+    count = len(away(found.hypothesis, found.free))
+    return chi_squared_tail(count, prior_chi_squared(case, found.hypothesis, found.free))
 
 
 def form_scores(linearisation: Linearisation) -> FormScores:

@@ -1,4 +1,4 @@
-"""Sentences that go with a diagnosis: which parameters moved, what looks alike and why, what these data could not have shown."""
+"""What is to be known beside a diagnosis: which parameters moved, what looks alike and why, what these data could not have shown."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,17 +12,13 @@ from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
 from diagnosis.library.effect_library import is_gust
-
-HIDDEN = "effects of the library would go unseen in these logs"
-UNSEEN = "too little excitation to see"
-UNFOLLOWED = "not looked for, as no filter knows where a rotor stands in its turn"
-IMITATION = "a re-tune of the plant's own parameters imitates these, so these data cannot tell them"
+from records.reasons import Note
 
 
 def notes_of(
     case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis, weighed: Weighed | None
-) -> tuple[str, ...]:
-    """All sentences."""
+) -> tuple[Note, ...]:
+    """All notes of what was `chosen`; sentences.py says them."""
     return (
         *_presliding(case, chosen),
         *_moved(case, chosen),
@@ -33,37 +29,39 @@ def notes_of(
     )
 
 
-def _presliding(case: Case, chosen: FittedHypothesis) -> Iterator[str]:
+def _presliding(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
     """What is supposed of friction near rest: found in these logs, or stated in the plant file as known exactly."""
     for name, values in chosen.fit.hypothesis.effects.items():
         effect = case.library.effects[name]
         if not effect.names_a_gap and case.stated_sd[name] == dict.fromkeys(values, 0.0):
             size = effect.size
-            how = effect.story[0].lower() + effect.story[1:-1]
-            yield f"{effect.place}, no gap: {how} ({size.symbol} {values[size.symbol]:.2g} {size.unit})"
+            told = {"story": effect.story, "symbol": size.symbol, "value": values[size.symbol], "unit": size.unit}
+            yield Note("presliding_friction", effect.place, told)
 
 
-def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[str]:
+def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     theta = chosen.fit.hypothesis.theta
     p = coefficients(case, case.library.plain, chosen.fit.hypothesis.with_effects({}))  # what cannot be negative is not
     for index in moved_parameters(case, theta, decisions.MOVED_FAR):
         place = int(case.free[index])
-        yield (
-            f"parameter {names[place]} is {theta[index]:+.1f} standard deviations from its stated value: "
-            f"{p[place]:.4g} instead of {case.library.bound.p[place]:.4g}"
-        )
+        stated = float(case.library.bound.p[place])
+        told = {"deviations": float(theta[index]), "value": float(p[place]), "stated": stated}
+        yield Note("moved_parameter", names[place], told)
     for entry in moved_effects(chosen.fit, decisions.MOVED_FAR):
         symbol, stated = entry.parameter.symbol, entry.stated or 0.0
         sd = case.stated_sd[entry.effect][symbol]
         value = chosen.fit.hypothesis.effects[entry.effect][symbol]
-        yield (
-            f"{symbol} of {entry.effect} is {(value - stated) / sd:+.1f} standard deviations from its stated value: "
-            f"{value:.4g} instead of {stated:.4g}"
-        )
+        of_effect: dict[str, str | float] = {
+            "symbol": symbol,
+            "deviations": (value - stated) / sd,
+            "value": value,
+            "stated": stated,
+        }
+        yield Note("moved_effect", entry.effect, of_effect)
 
 
-def _twins(case: Case, weighed: Weighed | None) -> Iterator[str]:
+def _twins(case: Case, weighed: Weighed | None) -> Iterator[Note]:
     if weighed is None or not weighed.fitted:
         return
     first = weighed.fitted[0]
@@ -73,59 +71,50 @@ def _twins(case: Case, weighed: Weighed | None) -> Iterator[str]:
                 effects = case.library.effects
                 reason = effects[own].twins.get(name) or effects[name].twins.get(own)
                 if reason:
-                    yield f"{own} and {name}: {reason}"
+                    yield Note("twins", own, {"other": name, "reason": reason})
 
 
-def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[str]:
-    hidden = sorted(
-        entry.effect
-        for entry in score_tests
-        if entry.absorbed > decisions.IMITATED and entry.effect not in chosen.effects
-    )
-    if hidden:
-        kinds = [f"{place} {', '.join(name.split('.')[1] for name in names)}" for place, names in _by_place(hidden)]
-        yield f"{IMITATION}: {'; '.join(kinds)}"
+def _imitated(score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[Note]:
+    imitated = [entry.effect for entry in score_tests if entry.absorbed > decisions.IMITATED]
+    others = sorted(name for name in imitated if name not in chosen.effects)
+    if others:
+        kinds = {place: [name.split(".")[1] for name in names] for place, names in _by_place(others).items()}
+        yield Note("imitated", "plant", {"effects": kinds})
 
 
-def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[str]:
-    """How large effects could be without being seen: a sentence for each place, the largest in units of its reference size first."""
+def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothesis) -> Iterator[Note]:
+    """How large effects could be without being seen: a note for each place, the largest in units of its reference size first."""
     unseen = hidden(case, score_tests)
     imitated = {entry.effect for entry in score_tests if entry.absorbed > decisions.IMITATED}
     if cannot_tell(case, score_tests):
-        whole = len(judged(case, score_tests))
-        yield f"{len(unseen)} of {whole} {HIDDEN} at the size that they may well have"
+        yield Note("hidden", "library", {"hidden": len(unseen), "effects": len(judged(case, score_tests))})
     said = {
         name: ratio
         for name, ratio in unseen.items()
         if name not in imitated and name not in chosen.fit.hypothesis.effects
     }
-    for place, names in _by_place(sorted(said, key=lambda name: (-said[name], name))):
-        sizes = {name.split(".")[1]: _up_to(case, name, said[name]) for name in names}
-        never = ", ".join(kind for kind, size in sizes.items() if size is None)
-        parts = [f"{never} of any size"] if never else []
-        parts += [f"{kind} below {size}" for kind, size in sizes.items() if size is not None]
-        yield f"{UNSEEN} at the {place}: {'; '.join(parts)}"
+    for place, names in _by_place(sorted(said, key=lambda name: (-said[name], name))).items():
+        yield Note("unseen", place, {name.split(".")[1]: _up_to(case, name, said[name]) for name in names})
 
 
-def _unfollowed(case: Case) -> Iterator[str]:
+def _unfollowed(case: Case) -> Iterator[Note]:
     names = [name for name, effect in case.library.effects.items() if not (effect.repeats or is_gust(name))]
     if names:
-        yield f"{UNFOLLOWED}: {', '.join(names)}"
+        yield Note("unfollowed", "library", {"effects": names})
 
 
-def _up_to(case: Case, name: str, ratio: float) -> str | None:
+def _up_to(case: Case, name: str, ratio: float) -> dict[str, str | float] | None:
     """The size below which an effect hides, `ratio` times its reference; None where that is beyond all that it can have."""
     size = case.library.effects[name].size
     away = ratio * size_scale(size)
     if away >= size.upper - size.lower:
         return None
-    unit = "" if size.unit == "-" else f" {size.unit}"
-    return f"{size.symbol} = {(size.zero or 0.0) + away:.3g}{unit}"
+    return {"symbol": size.symbol, "value": (size.zero or 0.0) + away, "unit": size.unit}
 
 
-def _by_place(names: Sequence[str]) -> list[tuple[str, list[str]]]:
+def _by_place(names: Sequence[str]) -> dict[str, list[str]]:
     """Names by their place, in the order in which each place first comes."""
     places: dict[str, list[str]] = {}
     for name in names:
         places.setdefault(name.split(".")[0], []).append(name)
-    return list(places.items())
+    return places

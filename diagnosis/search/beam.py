@@ -7,6 +7,7 @@ from itertools import chain
 import numpy as np
 
 from diagnosis import decisions
+from diagnosis.decisions import decided
 from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
@@ -17,6 +18,9 @@ from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
 from jobs.thread_map import thread_map
+from records.reasons import Decision
+
+TOLD = 4  # hypotheses left out that are told of
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,7 @@ class Search:
     sure: bool
     linearisation: Linearisation
     score_tests: tuple[ScoreTest, ...]
+    decisions: tuple[Decision, ...] = ()
 
     def of(self, effects: Iterable[str]) -> FittedHypothesis | None:
         """The hypothesis of exactly these effects."""
@@ -94,7 +99,27 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
-    return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests)
+    rules = _rules(found, certain, fitted[0])
+    return Search(tuple(fitted), first, bool(certain), begun.linearisation, begun.score_tests, rules)
+
+
+def _rules(
+    found: Mapping[frozenset[str], FittedHypothesis], certain: Sequence[FittedHypothesis], best: FittedHypothesis
+) -> tuple[Decision, ...]:
+    """Of the best, and of all that would be better but for a size that may be zero: how far its least size is from zero."""
+    better = [entry for entry in found.values() if entry not in certain and entry.evidence > best.evidence]
+    asked = sorted(better, key=lambda entry: -entry.evidence)[:TOLD]
+    asked += [best] if best.effects else []
+    return tuple(
+        decided(
+            "size_from_zero",
+            " + ".join(entry.effects),
+            min(certainties(entry.fit).values(), default=float("nan")),
+            decisions.CERTAIN,
+            "left out: its size may be zero" if certain and entry not in certain else "kept",
+        )
+        for entry in asked
+    )
 
 
 def _worth(score_tests: Sequence[ScoreTest]) -> set[str]:

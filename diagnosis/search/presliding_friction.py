@@ -4,19 +4,23 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from diagnosis import decisions
+from diagnosis.decisions import held_against
 from diagnosis.detect.score_tests import FRICTIONS
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from records.reasons import Decision
 from sim.effect import Effect, Values
 
 FOLD = 2.0  # from one size that is tried to the next
 
 
-def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> Case:
-    """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first; else the same.
+def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> tuple[Case, tuple[Decision, ...]]:
+    """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best
+    first; else the same; with the rules that
+    were asked.
 
     They must then be YIELDING_GAIN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
@@ -27,17 +31,25 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
         ((fitted.evidence + gained, fitted, hypothesis) for fitted, hypothesis, gained in asked if gained > 0.0),
         key=lambda entry: -entry[0],
     )
-    best, yields = found[0].evidence + decisions.YIELDING_GAIN + further, dict[str, Values]()
+    needed_nats = decisions.YIELDING_GAIN + further
+    best, yields, rules = found[0].evidence + needed_nats, dict[str, Values](), list[Decision]()
     for _, fitted, hypothesis in promising[: decisions.YIELDING_FITTED]:
         ended = fit(case, hypothesis, rounds=4)
+        if ended is not None:
+            rules.append(_rule(fitted, evidence(ended) - found[0].evidence, needed_nats))
         if ended is not None and evidence(ended) > best:
             best = evidence(ended)
             beside = fitted.fit.hypothesis.effects
             yields = {name: values for name, values in ended.hypothesis.effects.items() if name not in beside}
     if not yields:
-        return case
+        return case, tuple(rules)
     exact = {name: dict.fromkeys(values, 0.0) for name, values in yields.items()}
-    return replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact})
+    return replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact}), tuple(rules)
+
+
+def _rule(beside: FittedHypothesis, gain: float, limit: float) -> Decision:
+    of = " + ".join(beside.effects) or "plant"
+    return held_against("axes_yield", of, gain, limit, "nats", "axes yield" if gain > limit else "axes stick")
 
 
 def needed(case: Case, best: FittedHypothesis) -> bool:

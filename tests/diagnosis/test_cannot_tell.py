@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.diagnose import Material, diagnose
-from diagnosis.explain.notes import IMITATION, UNFOLLOWED, UNSEEN
+from diagnosis.explain.sentences import sentence
 from records.diagnosis import Diagnosis
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -62,16 +62,19 @@ def test_the_run_to_record_next_is_one_that_shows_more(hover: Diagnosis) -> None
 
 def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> None:
     # Truth: a drag with the square of a speed of 0.2 deg/s, and a stop never reached, leave no trace at any size; a delay leaves a bound.
-    told = {note.split(" at the ")[1].split(":")[0]: note for note in hover.notes if note.startswith(UNSEEN)}
+    unseen = [note for note in hover.note_records if note.kind == "unseen"]
+    told = {note.subject: sentence(note) for note in unseen}
     assert {"azimuth", "elevation", "tail_input"} <= set(told)
     never = told["azimuth"].split(" of any size")[0]
     assert "quadratic_drag" in never
     assert "upper_stop" in never
     assert "delay below tau = " in told["main_input"]
-    assert len(told) == len([note for note in hover.notes if note.startswith(UNSEEN)])
-    assert len([note for note in hover.notes if note.startswith(IMITATION)]) == 1
+    assert len(told) == len(unseen)
+    assert len([note for note in hover.note_records if note.kind == "imitated"]) == 1
     # Truth: a rotor turns six radians from row to row, from where nobody knows.
-    assert f"{UNFOLLOWED}: main_rotor.imbalance, tail_rotor.imbalance" in hover.notes
+    (unfollowed,) = [note for note in hover.note_records if note.kind == "unfollowed"]
+    assert unfollowed.numbers["effects"] == ["main_rotor.imbalance", "tail_rotor.imbalance"]
+    assert tuple(map(sentence, hover.note_records)) == hover.notes
 
 
 def test_a_locked_axis_shows_nothing_of_itself(plant: BoundPlant) -> None:
@@ -80,7 +83,7 @@ def test_a_locked_axis_shows_nothing_of_itself(plant: BoundPlant) -> None:
     diagnosis = diagnosed(plant, flown(plant, reference, ("elevation",)))
     assert diagnosis.verdict in ("no gap", "cannot tell")
     assert diagnosis.found == ()
-    (elevation,) = [note for note in diagnosis.notes if note.startswith(f"{UNSEEN} at the elevation")]
+    unseen = {note.subject: note.numbers for note in diagnosis.note_records if note.kind == "unseen"}
     for kind in ("quadratic_drag", "cable_spring", "centre_of_gravity"):
-        assert kind in elevation.split(" of any size")[0]
-    assert not any(note.startswith(f"{UNSEEN} at the tail_input") and "delay" in note for note in diagnosis.notes)
+        assert unseen["elevation"][kind] is None  # of any size
+    assert "delay" not in unseen.get("tail_input", {})

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.contradiction import contradiction
-from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.gauss_newton import log_prior, prior_chi_squared
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library

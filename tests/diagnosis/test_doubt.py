@@ -8,7 +8,7 @@ import pytest
 from diagnosis.decide.contradiction import contradiction
 from diagnosis.decide.doubt import UNNAMED, Doubt, contradicting
 from diagnosis.decide.weighing import Weighed
-from diagnosis.diagnose import nominal_fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from diagnosis.validate.misfit import ignorance

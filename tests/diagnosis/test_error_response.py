@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.error_response import error_responses
 from diagnosis.explain.maps import band_map
 from diagnosis.explain.spectra import averages, coherence
 from diagnosis.fit.gauss_newton import unfitted
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant

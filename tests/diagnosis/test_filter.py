@@ -7,9 +7,9 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.diagnose import nominal_fit
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
 from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library

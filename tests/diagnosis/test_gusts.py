@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.gusts import gust_sd, gusts

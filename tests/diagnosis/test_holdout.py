@@ -7,9 +7,10 @@ import pytest
 from diagnosis.decide.holdout import Holdout, partly, worse
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
-from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Result

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog

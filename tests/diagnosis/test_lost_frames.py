@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
-from diagnosis.diagnose import nominal_fit
 from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import lost_frames

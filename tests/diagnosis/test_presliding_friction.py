@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.diagnose import Material, diagnose
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.presliding_friction import needed, yielding

@@ -9,11 +9,11 @@ from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
 from diagnosis.fit.low_process_noise import with_low_process_noise
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.effect_library import effect_library

@@ -6,9 +6,9 @@ import pytest
 from diagnosis.decide.unknown import Suspect
 from diagnosis.detect.detection import FormScores, form_scores
 from diagnosis.detect.linearisation import Linearisation, linearised
-from diagnosis.diagnose import nominal_fit
 from diagnosis.explain.curve import shape_of
 from diagnosis.explain.sparse import Term, form_text, sparse_form, suggestion
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant

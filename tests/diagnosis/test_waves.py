@@ -6,7 +6,8 @@ import pytest
 from diagnosis.detect.instants import target_of
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.waves import likely_waves, wave_starts
-from diagnosis.diagnose import Material, diagnose, nominal_fit
+from diagnosis.diagnose import Material, diagnose
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.wiring import demand_wiring, likelier_wiring
-from diagnosis.diagnose import nominal_fit
 from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput

@@ -50,8 +50,8 @@ def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_mo
         assert log.seq is not None
         np.testing.assert_array_equal(log.seq, rows)
     assert all(earlier.t_s[-1] < later.t_s[0] for earlier, later in pairwise(parts))
-    assert [note.split(":")[0] for note in found.notes] == ["long"]
-    assert "1000000 rows" in found.notes[0]
+    assert [note.subject for note in found.notes] == ["long"]
+    assert "1000000 rows" in str(found.notes[0].said)
 
 
 def test_rows_far_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_seen() -> None:
@@ -71,7 +71,7 @@ def test_rows_far_denser_than_a_plant_needs_are_thinned_and_all_of_the_log_is_se
     np.testing.assert_array_equal(seen.y, y[rows])
     assert seen.u[7] == pytest.approx(0.1 * y[rows[7] : rows[8]].mean(axis=0))
     assert seen.seq is None
-    assert found.notes == (
+    assert tuple(note.said for note in found.notes) == (
         "dense: 18868 of its 1000000 rows were looked at, spread evenly, as they are 60 microseconds apart",
     )
 
@@ -86,7 +86,7 @@ def test_a_long_dense_log_is_thinned_to_what_a_plant_needs_and_shown_by_stretche
     assert [log.sample_period_s for log in found.logs] == pytest.approx([0.004] * 8, rel=1e-4)
     assert found.logs[0].t_s[0] == 0.0
     assert found.logs[-1].t_s[-1] == pytest.approx(t_s[-1], abs=0.02)
-    assert "as 8 stretches" in found.notes[1]
+    assert "as 8 stretches" in str(found.notes[1].said)
 
 
 def test_a_log_with_an_output_that_was_never_measured_is_cut_without_warnings(recwarn: pytest.WarningsRecorder) -> None:
@@ -99,7 +99,7 @@ def test_a_log_with_an_output_that_was_never_measured_is_cut_without_warnings(re
 def test_a_single_stretch_is_called_one() -> None:
     logs = [log_of(6000) for _ in range(20)]
     found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
-    assert all("as 1 stretch: " in note for note in found.notes)
+    assert all("as 1 stretch: " in str(note.said) for note in found.notes)
 
 
 def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:

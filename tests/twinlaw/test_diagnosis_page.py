@@ -68,6 +68,7 @@ GAP = Diagnosis(
     shrinkage=SHRINKAGE,
     next_experiment={"name": "wide azimuth sweep", "expected": {"azimuth.tilt": 0.01}},
     notes=("log a.csv: 3 rows are missing",),
+    note_records=(Note("missing_rows", "a", {"rows": 3}, "log a.csv: 3 rows are missing"),),
 )
 
 
@@ -162,7 +163,7 @@ def test_an_empty_record_still_makes_a_page() -> None:
 
 
 def test_names_from_a_log_are_escaped() -> None:
-    assert "<b>" not in text_of(replace(GAP, notes=("<b>bold</b>",)))
+    assert "<b>" not in text_of(replace(GAP, note_records=(Note("missing_rows", "a", {}, "<b>bold</b>"),)))
 
 
 def test_the_curves_show_where_the_stated_plant_errs_most() -> None:

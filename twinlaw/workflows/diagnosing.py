@@ -19,6 +19,7 @@ from records.files import demand_writable, remove_all, write_atomic
 from records.log import RunLog, load_log
 from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
+from records.reasons import Note
 from records.table import ControllerTable
 from records.units import unit_suffix
 from replay.firmware import FirmwareReplay
@@ -132,13 +133,15 @@ def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> Controller
 
 def _firmware(
     paths: Sequence[Path], replays: Sequence[FirmwareReplay | None]
-) -> tuple[Firmware | None, tuple[str, ...]]:
-    """What running the controller's code again shows, of the first log where it differs, and a sentence for every log that it tells of."""
+) -> tuple[Firmware | None, tuple[Note, ...]]:
+    """What running the controller's code again shows, of the first log where it differs, and a note for every log that it tells of."""
     found = [(path.name, replay) for path, replay in zip(paths, replays, strict=True) if replay is not None]
     if not found:
         return None, ()
     worst = min((replay for _, replay in found), key=lambda replay: (replay.bit_exact, replay.replayed))
-    return worst.record(), tuple(f"{name}: {replay.sentence}" for name, replay in found if replay.sentence)
+    return worst.record(), tuple(
+        Note("firmware", name, {}, f"{name}: {replay.sentence}") for name, replay in found if replay.sentence
+    )
 
 
 def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:

@@ -17,6 +17,7 @@ from identification.search.methods import Search
 from identification.stages.estimate import Estimate
 from identification.stages.logs import best_fit, fits_of_logs, prediction_tests, without_readings
 from identification.stages.staged import check_setup, identify_stage, in_order, title
+from logcheck.finding import EXCLUDE, Finding
 from logcheck.integrity import LogIntegrity, demand, examine
 from records import checks
 from records.errors import BadInput
@@ -96,17 +97,17 @@ def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
     everything = {**inputs.logs, **inputs.holdout}
     found = examine(list(inputs.logs.values()), bound, holdout=list(inputs.holdout.values()), names=list(everything))
     demand(found)
-    usable = {entry.name: _usable(everything[entry.name], entry, found.notes) for entry in found.logs}
+    usable = {entry.name: _usable(everything[entry.name], entry, found.findings) for entry in found.logs}
     logs, holdout = ({name: usable[name] for name in some} for some in (inputs.logs, inputs.holdout))
-    return replace(inputs, logs=logs, holdout=holdout, notes=found.notes)
+    return replace(inputs, logs=logs, holdout=holdout, notes=tuple(note.said for note in found.notes if note.said))
 
 
-def _usable(log: RunLog, looked: LogIntegrity, notes: Sequence[str]) -> RunLog:
+def _usable(log: RunLog, looked: LogIntegrity, findings: Sequence[Finding]) -> RunLog:
     """The log without the readings that are to be left out; raises BadInput where none would be left."""
     kept = without_readings(log, looked.excluded)
     if not np.any(np.isfinite(kept.y)):
-        got = next(note for note in notes if note.startswith(f"{looked.name}: ") and "left out" in note)
-        raise BadInput("log", looked.name, got.partition(": ")[2], "a row that can be used", "leave this log out")
+        first = next(entry for entry in findings if entry.log == looked.name and entry.severity == EXCLUDE)
+        raise BadInput("log", looked.name, first.sentence, "a row that can be used", "leave this log out")
     return kept
 
 

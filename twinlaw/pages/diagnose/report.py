@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from diagnosis.explain.curve import Shape
-from diagnosis.explain.notes import HIDDEN, UNSEEN
+from diagnosis.explain.sentences import sentence, unseen_effects
 from records.diagnosis import Diagnosis, Hypothesis
 from sim.places import Places
 from twinlaw.pages.block_diagram import block_diagram
@@ -27,7 +27,7 @@ from twinlaw.pages.page import Page, Section, Table
 
 ALWAYS, SELDOM = 3, 0.01  # the first few causes are always shown, further ones from this probability
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
-MOVED = " standard deviations from its stated value: "  # in a note about a parameter
+UNSEEN, HIDDEN, MOVED = "unseen", "hidden", "moved_parameter"  # kinds of notes
 
 __all__ = ["Predicted", "diagnosis_page", "verdict_sentence"]
 
@@ -104,7 +104,7 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
     """The verdict on a gap for which no effect was added: other parameters, an effect that did not help, or none that fits."""
     unknown, first = diagnosis.unknown, diagnosis.effects[0] if diagnosis.effects else None
     retuned = parameters_alone(diagnosis)
-    moved = [note.partition(" is ")[0].removeprefix("parameter ") for note in diagnosis.notes if MOVED in note]
+    moved = [note.subject for note in diagnosis.note_records if note.kind == MOVED]
     if moved and retuned > max(unknown.probability, first.probability if first else 0.0):
         return f"The rig has other parameters than the plant file states, and nothing else is missing: {listed(moved)}."
     where = f" in {words(unknown.place)}" if unknown.place else ""
@@ -216,19 +216,19 @@ def _next(diagnosis: Diagnosis) -> Section | None:
 
 def _unseen(diagnosis: Diagnosis) -> Section | None:
     """What the notes say of effects that hide in these logs, by place."""
-    rows = [_parts(note) for note in diagnosis.notes if note.startswith(UNSEEN)]
+    notes = diagnosis.note_records
+    rows = [
+        (note.subject.replace("_", " "), unseen_effects(note).replace("_", " "))
+        for note in notes
+        if note.kind == UNSEEN
+    ]
     if not rows:
         return None
-    told = [f"{note}." for note in diagnosis.notes if HIDDEN in note]
+    told = [f"{sentence(note)}." for note in notes if note.kind == HIDDEN]
     told.append("At each place, what may be there and would not have shown, and below which size; the largest first.")
     return Section("What these logs could not have shown", told, (Table(rows, ("place", "effects")),))
 
 
-def _parts(note: str) -> tuple[str, str]:
-    place, _, effects = note.removeprefix(f"{UNSEEN} at the ").partition(": ")
-    return place.replace("_", " "), effects.replace("_", " ")
-
-
 def _notes(diagnosis: Diagnosis) -> Section | None:
-    others = plain_notes([note for note in diagnosis.notes if not note.startswith(UNSEEN) and HIDDEN not in note])
+    others = plain_notes([note for note in diagnosis.note_records if note.kind not in (UNSEEN, HIDDEN)])
     return Section("Notes", others) if others else None

@@ -44,7 +44,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
         yield f"hold-out: {diagnosis.shrinkage.fraction:.0%} of the removable error gone{within}"
     if diagnosis.firmware is not None:
         yield f"firmware: {firmware_in_words(diagnosis.firmware)}"
-    yield from plain_notes(diagnosis.notes)
+    yield from plain_notes(diagnosis.note_records)
 
 
 def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:

@@ -1,10 +1,11 @@
 """The words of a diagnosis: names, numbers and probabilities as a person who knows only the rig reads them."""
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 
+from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Hypothesis
+from records.reasons import Note
 
 # By the unit at the end of a name: how a person reads it.
 _SHOWN = {
@@ -27,7 +28,6 @@ _CLASSES = {
     "inertia": "an inertia",
 }
 _SIGNALS = {"1": "nothing (it is constant)", "t": "the time"}
-_NATS = re.compile(r"(\d+) nats likelier")  # which say nothing to a reader
 LISTED = 3  # names in one cell
 USUAL = 0.5  # chance from which a gap is no larger than usual
 LEAST_CHANCE = 1e-6  # smaller ones are said to be below it: no model of noise is good for more
@@ -75,9 +75,9 @@ def shown(name: str) -> tuple[str, str, float]:
     return name, "", 1.0
 
 
-def plain_notes(notes: Sequence[str]) -> list[str]:
+def plain_notes(notes: Sequence[Note]) -> list[str]:
     """Each note once, in words that need no statistics."""
-    return list(dict.fromkeys(_NATS.sub(r"e^\1 times likelier", note) for note in notes))
+    return list(dict.fromkeys(map(plain_sentence, notes)))
 
 
 def plain_unit(unit: str) -> str:

@@ -1,0 +1,37 @@
+"""The plant alone, fitted: what every other hypothesis is compared with."""
+
+import numpy as np
+
+from diagnosis import decisions
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
+from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from records.errors import BadInput
+
+ROUNDS = 4
+SETTLED = 0.05
+
+
+def nominal_fit(case: Case) -> Fit:
+    """The plant re-tuned within its spread, with the process noise that then remains."""
+    hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
+    found = fit(case, hypothesis, rounds=ROUNDS)
+    for turn in range(ROUNDS):
+        if found is None:
+            raise BadInput(
+                "plant",
+                "diagnosis",
+                "states that leave all bounds",
+                "a plant that can follow these logs",
+                "check units",
+            )
+        refined_noise = process_noise_of(case, found, FIRST_STEP if turn < 2 else 0.1)
+        settled = bool(
+            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED
+        )
+        found = fit(case, refined_noise, rounds=ROUNDS)
+        if settled and found is not None:
+            break
+    assert found is not None
+    return found

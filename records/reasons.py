@@ -1,0 +1,31 @@
+"""Why an answer is what it is: the rules that had a say, and what else is to be known of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A rule that had a say: its name, of what it asked, the value that it found, the limit that it held this against, both in `unit`,
+    and what followed; None for a value or a limit that is no finite number."""
+
+    rule: str
+    of: str
+    value: float | None
+    limit: float | None
+    unit: str
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Note:
+    """Something to be known beside an answer: what kind of thing, of what, and its numbers, each with its unit in the name or beside it.
+
+    `said` is the sentence where whoever found it made one; else the sentence follows from the kind.
+    """
+
+    kind: str
+    subject: str
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    said: str | None = None
