@@ -23,17 +23,19 @@ from records.diagnosis import (
     Unknown,
 )
 from records.plant import load_plant
+from records.reasons import Decision, Note
 from sim.bind import bind
 from twinlaw.pages.diagnose.pictures import curves, worst_of_the_retuned, worst_span
 from twinlaw.pages.diagnose.report import Predicted, diagnosis_page, verdict_sentence
 from twinlaw.pages.diagnose.retune import Moved, moved_most
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.summary import summary_text
+from twinlaw.pages.diagnose.why import why_text
 from twinlaw.pages.diagnose.words import class_in_words, plain_notes
 from twinlaw.pages.page import page_text
 
 ROOT = Path(__file__).resolve().parents[2]
-MOVED = "parameter J_A is +12.0 standard deviations from its stated value: 0.0213 instead of 0.0133"
+MOVED = Note("moved_parameter", "J_A", {"deviations": 12.0, "value": 0.0213, "stated": 0.0133})
 STORIES = {"azimuth.cable_spring": "the cable to the board pulls the arm back."}
 
 SHRINKAGE = Shrinkage(
@@ -149,7 +151,7 @@ def test_the_page_needs_no_network_and_no_script() -> None:
         ({"found": (), "unknown": Unknown(0.0)}, "most likely cable spring of the azimuth (93.0 %); but"),
         ({"found": (), "effects": (), "unknown": Unknown(0.97)}, "no effect of the library can be named"),
         (
-            {"found": (), "effects": (), "unknown": Unknown(0.01), "notes": (MOVED,)},
+            {"found": (), "effects": (), "unknown": Unknown(0.01), "note_records": (MOVED,)},
             "nothing else is missing: J_A.",
         ),
     ],
@@ -337,10 +339,11 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
         "depends on psi and the direction in which psi moves"
     )
     assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
-    kept = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
-    assert plain_notes([kept, kept]) == [kept]
-    (plain,) = plain_notes(["these logs contradict each other: b would be 250 nats likelier with numbers of its own"])
-    assert plain.endswith("b would be e^250 times likelier with numbers of its own")
+    kept = Note("something_else_missing", "a.b", {"gone": 0.05, "gone_at_most": 0.09})
+    said = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
+    assert plain_notes([kept, kept]) == [said]
+    (plain,) = plain_notes([Note("contradiction", "b", {"gain_nats": 250.0, "moved": {"K_M": 4.2}})])
+    assert "b would be e^250 times likelier with numbers of its own (K_M +4.2," in plain
 
 
 def test_an_answer_many_times_the_models_is_told_without_powers_of_ten() -> None:
@@ -360,3 +363,29 @@ def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> Non
     assert drawn.count("logarithmic scale") == 2
     labels = re.findall(r"<text[^>]*>([\d.]+)</text>", drawn)
     assert labels.count("10") == labels.count("0.1") == 2
+
+
+RULES = (
+    Decision("false_alarm", "logs", 4e-13, 0.01, "probability", "a cause is looked for"),
+    Decision("borne_out", "what explains it", 0.23, 0.34, "probability", "no gap: nothing that was found holds"),
+)
+
+
+def test_why_an_answer_is_what_it_is_shows_every_rule_in_order_on_page_and_terminal() -> None:
+    traced = replace(GAP, decisions=RULES, verdict_reason="effect_added")
+    page, told = text_of(traced), why_text(traced)
+    assert page.index("Why this answer") < page.index("false alarm") < page.index("borne out")
+    assert told.startswith("gap: effect_added\n")
+    for number in ("4e-13", "0.34", "a cause is looked for"):
+        assert number in page
+        assert number in told
+
+
+def test_a_gap_that_nothing_explains_keeps_its_chance_and_is_not_called_as_small_as_usual() -> None:
+    # Truth: a chance of 4e-13 is not what a rig as stated shows, whatever the verdict.
+    small = Diagnosis("no gap", 4e-13, verdict_reason="not_borne_out", decisions=RULES)
+    page, told = text_of(small), summary_text(small)
+    for text in (page, told):
+        assert "as small as on a rig" not in text
+        assert "nothing that would explain it holds where it was checked" in text
+        assert "below 1e-06" in text

@@ -18,6 +18,7 @@ from records.files import write_atomic
 from twinlaw.cli import console, options
 from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.diagnose.summary import summary_text
+from twinlaw.pages.diagnose.why import why_text
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnosing import diagnose_logs, widths, writable
 from twinlaw.workflows.diagnosing_each import HEADING, answers, facts, questions, rows
@@ -26,9 +27,12 @@ SCHEMA = "diagnoses/1"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --holdout, --each, --workers, --cluster, --out, --json, LOG ..."""
+    """--plant, --holdout, --each, --why, --workers, --cluster, --out, --json, LOG ..."""
     options.plant(parser)
     parser.add_argument("--each", action="store_true", help="explain every log, or every case of a folder, by itself")
+    parser.add_argument(
+        "--why", action="store_true", help="print every rule that had a say, in order, instead of the answer"
+    )
     sweeping.workers(parser, "with --each: ")
     options.out(parser)
     options.as_json(parser)
@@ -45,8 +49,13 @@ def run(chosen: argparse.Namespace) -> int:
             remedy = "add --each to explain every log in it by itself, or name its logs to explain them together"
             raise BadInput("run log", str(path), "a folder", "a log", remedy)
     result = diagnose_logs(chosen.plant, chosen.logs, holdout, chosen.out)
-    told = summary_text(result.diagnosis, moved_most(result), widths(result))
-    print(diagnosis_text(result.diagnosis) if chosen.json else told, end="")
+    if chosen.json:
+        told = diagnosis_text(result.diagnosis)
+    elif chosen.why:
+        told = why_text(result.diagnosis)
+    else:
+        told = summary_text(result.diagnosis, moved_most(result), widths(result))
+    print(told, end="")
     return 0
 
 

@@ -12,6 +12,7 @@ from twinlaw.pages.diagnose.firmware import differs, firmware_first, firmware_in
 from twinlaw.pages.diagnose.pictures import Predicted, curves, maps, shape_section
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
+from twinlaw.pages.diagnose.why import SMALL, reason_in_words, why_section
 from twinlaw.pages.diagnose.words import (
     alarm_in_words,
     class_in_words,
@@ -63,6 +64,7 @@ def diagnosis_page(
         answers_section(diagnosis),
         None if amiss else firmware,
         _unseen(diagnosis),
+        why_section(diagnosis),
         _notes(diagnosis),
     ]
     return Page(
@@ -80,6 +82,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _plant_sentence(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "no gap" and diagnosis.verdict_reason in SMALL:
+        return f"No gap is told. {reason_in_words(diagnosis)}"
     if diagnosis.verdict == "no gap":
         tuned = " once its parameters are re-tuned within what it states of them" if lowered(diagnosis) else ""
         return f"The plant file explains these logs{tuned}: nothing is missing that they could show."
@@ -133,7 +137,7 @@ def _place(diagnosis: Diagnosis, places: Places) -> Section:
     gap = diagnosis.verdict == "gap"
     shares = {entry.place: entry.share for entry in diagnosis.places} if gap else {}
     p = diagnosis.false_alarm_probability
-    told = "" if p is None else alarm_in_words(diagnosis.verdict, p)
+    told = "" if p is None else alarm_in_words(diagnosis, p)
     alarm = f"{told[:1].upper()}{told[1:]}." if told else ""
     lit = "The rig as blocks, from the commands on the left to the sensors on the right"
     lit += "; the warmer a block, the more of the gap lies there." if shares else "."

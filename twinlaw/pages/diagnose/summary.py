@@ -7,6 +7,7 @@ from twinlaw.cli import console
 from twinlaw.pages.diagnose.answers import surest_answer
 from twinlaw.pages.diagnose.firmware import firmware_first, firmware_in_words
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
+from twinlaw.pages.diagnose.why import SMALL, reason_in_words
 from twinlaw.pages.diagnose.words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
 
 MOST = 5
@@ -27,7 +28,9 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     elif diagnosis.verdict == "gap":
         yield f"gap (chance of so large a gap without one: {chance(p)})"
     else:
-        yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis.verdict, p)}"
+        yield f"{diagnosis.verdict}: {alarm_in_words(diagnosis, p)}"
+        if diagnosis.verdict_reason in SMALL:
+            yield reason_in_words(diagnosis)
     if diagnosis.verdict == "gap":
         yield console.table(_rows(diagnosis, moved, widths))
     if diagnosis.unknown.form:

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
-from records.diagnosis import Hypothesis
+from records.diagnosis import Diagnosis, Hypothesis
 from records.reasons import Note
 
 # By the unit at the end of a name: how a person reads it.
@@ -130,9 +131,9 @@ def sized(
     return lines
 
 
-def alarm_in_words(verdict: str, p: float) -> str:
+def alarm_in_words(diagnosis: Diagnosis, p: float) -> str:
     """What the chance of a false alarm says."""
-    if verdict != "gap":
+    if diagnosis.verdict != "gap" and p > decisions.ALARM:
         usual = "what remains is as small as on a rig that is as the plant file states, with its sensors"
         return usual if p >= USUAL else f"{usual}: {percent(p)} of such rigs show as much"
     return (
