@@ -117,4 +117,4 @@ def test_times_of_a_calendar_count_from_the_run_s_start_and_others_stay() -> Non
     assert same is log
     assert moved.t_s == pytest.approx(log.t_s - log.t_s[0], abs=1e-6)
     assert [note.subject for note in notes] == ["two"]
-    assert "1700000005 s" in notes[0]
+    assert "1700000005 s" in str(notes[0].said)
