@@ -10,11 +10,11 @@ from codegen.law import generate_law
 from controllers.controller import Controller
 from controllers.equation_controller import EquationController
 from controllers.table import CONTROLLERS
-from records import checks
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
-from records.reading import read_json
 from records.table import ControllerTable, parse_table
+from records.text import checks
+from records.text.reading import read_json
 
 _AGAIN = "design it again with `twinlaw design`"
 

@@ -28,9 +28,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from design.pole_placement import FREE_DEGREES, ORDER
-from records import checks
 from records.errors import BadInput
 from records.table import AXES, BothAxes
+from records.text import checks
 from sim.bind import BoundPlant
 
 DEFAULTS: Mapping[str, float] = {

@@ -7,7 +7,7 @@ import numpy as np
 
 from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
-from records.units import unit_suffix
+from records.text.units import unit_suffix
 
 LEAST_S, LEAST_ROWS = 0.2, 5
 USUAL_PERCENT = 99.0

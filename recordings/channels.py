@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
-from records.units import dimension, unit_suffix
+from records.text.units import dimension, unit_suffix
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from records.errors import BadInput
 from records.log import RunLog, sidecar_text
-from records.units import unit_of
+from records.text.units import unit_of
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 

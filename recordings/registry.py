@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from records import checks
 from records.errors import BadInput
-from records.reading import read_toml
+from records.text import checks
+from records.text.reading import read_toml
 
 REGISTRY = Path(__file__).with_name("registry.toml")
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records import checks
 from records.errors import BadInput
+from records.text import checks
 
 Array = NDArray[np.float64]
 ROUNDING = 1e-6  # numbers of a file are rounded: so far may a smallest eigenvalue lie below zero

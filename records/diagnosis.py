@@ -6,10 +6,10 @@ from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from records import checks
 from records.errors import BadInput
-from records.reading import read_json
 from records.reasons import Decision, Note
+from records.text import checks
+from records.text.reading import read_json
 
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")

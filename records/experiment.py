@@ -9,11 +9,11 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from records import checks
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log_csv import read_rows, rows_text
-from records.reading import read_toml
+from records.text import checks
+from records.text.log_csv import read_rows, rows_text
+from records.text.reading import read_toml
 
 SCHEMA = "experiment/1"
 MOUNTS = ("upright", "turned")

@@ -10,12 +10,12 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from records import checks
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
-from records.log_csv import read_rows, rows_text
-from records.reading import read_toml
 from records.source import Source, parse_source, source_table
+from records.text import checks
+from records.text.log_csv import read_rows, rows_text
+from records.text.reading import read_toml
 
 SCHEMA = "run-log/1"
 LOOPS = ("open", "closed")

@@ -7,11 +7,11 @@ from typing import Any
 
 import tomlkit
 
-from records import checks
 from records.correlation import Correlation, parse_correlation
 from records.errors import BadInput
-from records.reading import read_toml
-from records.units import dimensions, unit_suffix
+from records.text import checks
+from records.text.reading import read_toml
+from records.text.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
 PLANTS = Path(__file__).resolve().parent.parent / "plants"  # what the project comes with

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from records import checks
 from records.errors import BadInput
+from records.text import checks
 
 _TEXTS = ("dataset", "record", "repository", "commit", "licence")
 

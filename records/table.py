@@ -22,9 +22,9 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from records import checks
 from records.errors import BadInput
-from records.reading import read_json
+from records.text import checks
+from records.text.reading import read_json
 
 SCHEMA = "controller-table/1"
 AXES = ("elevation", "azimuth")

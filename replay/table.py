@@ -6,8 +6,8 @@ from pathlib import Path
 from records.errors import BadInput
 from records.law_table import SCHEMA
 from records.log import RunLog
-from records.reading import read_json
 from records.table import ControllerTable, load_table
+from records.text.reading import read_json
 from replay.firmware import FirmwareReplay, replay_firmware
 
 TABLE_NAME = "controller.json"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.plant import Parameter, Plant
-from records.units import dimensions
+from records.text.units import dimensions
 from sim.composition.build import model_with, paths_with
 from sim.composition.table import Entries, plain_values, read_effects
 from sim.effect import coefficient

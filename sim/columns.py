@@ -1,7 +1,7 @@
 """Columns of a plant's run logs, derived from its equations."""
 
 from records.log import LogColumns
-from records.units import unit_suffix
+from records.text.units import unit_suffix
 from sim.model import Model
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy
 
-from records.units import unit_suffix
+from records.text.units import unit_suffix
 from sim.model import TIME, Axis, Model
 from sim.places import Edit
 

@@ -26,7 +26,7 @@ from jobs.thread_map import begin
 from records.errors import BadInput
 from records.files import write_atomic
 from records.plant import Plant
-from records.reading import read_text
+from records.text.reading import read_text
 from sim.added_effects import combined, redundant
 from sim.added_effects import library as all_effects
 from sim.bind import BoundPlant, bind, named_values

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 from records.log import LogColumns
 from records.plant import Plant
-from records.units import dimensions
+from records.text.units import dimensions
 
 Array = NDArray[np.float64]
 MODEL = "lateral_directional"

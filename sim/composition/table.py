@@ -4,10 +4,10 @@ import difflib
 from collections.abc import Mapping
 from typing import Any
 
-from records import checks
 from records.errors import BadInput
 from records.plant import Parameter, parameter_entry
-from records.units import dimensions
+from records.text import checks
+from records.text.units import dimensions
 from sim.effect import Effect, EffectParameter
 from sim.effects import effects_for
 from sim.model import Model

@@ -13,7 +13,7 @@ from recordings.mdf4_channels import read_mdf4
 from recordings.mdf4_export import mdf4_bytes
 from records.errors import BadInput
 from records.log import RunLog, facts_of_sidecar, save_log
-from records.units import unit_of
+from records.text.units import unit_of
 from sim.columns import log_columns
 from sim.plants import MODELS
 from twinlaw.command import main

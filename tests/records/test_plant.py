@@ -8,7 +8,7 @@ import pytest
 
 from records.errors import BadInput
 from records.plant import load_plant, parse_plant, plant_text
-from records.units import dimension, dimensions, label
+from records.text.units import dimension, dimensions, label
 from sim.bind import bind
 
 PLANTS = Path(__file__).parents[2] / "plants"

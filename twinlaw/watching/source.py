@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from records.live import LiveRow
-from records.units import unit_suffix
+from records.text.units import unit_suffix
 from sim.bind import BoundPlant
 
 DEG = 57.29577951308232

@@ -17,11 +17,11 @@ from records.diagnosis import Firmware, diagnosis_text
 from records.errors import BadInput
 from records.files import demand_writable, remove_all, write_atomic
 from records.log import RunLog, load_log
-from records.log_csv import rows_text
 from records.plant import load_plant, plant_text
 from records.reasons import Note
 from records.table import ControllerTable
-from records.units import unit_suffix
+from records.text.log_csv import rows_text
+from records.text.units import unit_suffix
 from replay.firmware import FirmwareReplay
 from replay.table import replay_log, table_of
 from sim.added_effects import library, without_effects

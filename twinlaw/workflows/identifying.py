@@ -19,7 +19,6 @@ from identification.stages.logs import best_fit, fits_of_logs, prediction_tests,
 from identification.stages.staged import check_setup, identify_stage, in_order, title
 from logcheck.finding import EXCLUDE, Finding
 from logcheck.integrity import LogIntegrity, demand, examine
-from records import checks
 from records.errors import BadInput
 from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
 from records.experiment import Experiment, load_experiment
@@ -27,7 +26,8 @@ from records.files import write_atomic
 from records.log import RunLog, load_log
 from records.plant import SCHEMA as PLANT_SCHEMA
 from records.plant import coefficient_names, plant_text
-from records.reading import read_toml
+from records.text import checks
+from records.text.reading import read_toml
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from twinlaw.cli import console, options

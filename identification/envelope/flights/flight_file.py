@@ -11,11 +11,11 @@ from identification.envelope.flights.conditions import condition_of
 from identification.envelope.flights.flight import CONTROLS, INPUTS, OUTPUTS, STATES, USES, Flight
 from identification.envelope.flights.look import demand_sound
 from identification.margins import MARGINS
-from records import checks
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log_csv import read_rows, rows_text
-from records.reading import read_toml
+from records.text import checks
+from records.text.log_csv import read_rows, rows_text
+from records.text.reading import read_toml
 
 Array = NDArray[np.float64]
 

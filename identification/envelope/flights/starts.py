@@ -17,9 +17,9 @@ from typing import Any
 
 from identification.envelope.flights.flight import STATES, Flight
 from identification.margins import MARGINS
-from records import checks
 from records.errors import BadInput
-from records.reading import read_toml
+from records.text import checks
+from records.text.reading import read_toml
 
 SCHEMA = "starts/1"
 Starts = Mapping[str, Mapping[str, float]]  # value by state, by flight

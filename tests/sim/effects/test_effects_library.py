@@ -4,7 +4,7 @@ import pytest
 import sympy
 
 from records.plant import load_plant
-from records.units import dimension
+from records.text.units import dimension
 from sim.composition.build import model_with
 from sim.effects import effects_for
 from sim.model import Model

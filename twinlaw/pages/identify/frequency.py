@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from identification.frequency.models.elements import StateSpaces, state_space_with_sd
 from identification.frequency.result import FrequencyIdentification, Pair, TimeCheck
-from records.units import label
+from records.text.units import label
 from twinlaw.pages.identify.summary import HEADING, estimate_rows
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, SKY, Curve, Panel, grid

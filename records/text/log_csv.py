@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
-from records.reading import read_text
+from records.text.reading import read_text
 
 Array = NDArray[np.float64]
 
