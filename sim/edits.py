@@ -12,6 +12,8 @@ from sim.places import Edit
 
 Expression = Any
 NOTHING = 1e-30  # beside the square of the sharpest corner
+SHARP = 1e-9  # V: the least width of a corner of what arrives of an input
+SETTLING_S = 0.008  # the shortest time in which a strain settles
 EDGE_S = 0.02  # how long a step in time takes: a bend is integrated well and has derivatives, a jump has none
 
 
@@ -102,6 +104,15 @@ def knee(expression: Expression, width: Expression) -> Expression:
     """
     beyond = positive(expression - width)
     return beyond + (positive(expression + width) - beyond) ** 2 * width / (4 * (width**2 + NOTHING))
+
+
+def strain_rate(velocity: Expression, z: sympy.Symbol, z_0: Expression) -> Expression:
+    """z' = (v - |v| z / z_0) / sqrt(1 + (|v| T / z_0)^2), T = SETTLING_S: the strain of what gives way until |z| = z_0 (Dahl 1968).
+
+    Without the root it would, at a fast sweep, where z has long been at its end, be too stiff for the step of a sample.
+    """
+    rate = sympy.Abs(velocity) / z_0
+    return (velocity - rate * z) / sympy.sqrt(1 + (SETTLING_S * rate) ** 2)
 
 
 def lever(model: Model, name: str) -> Expression:

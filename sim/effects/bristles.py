@@ -11,9 +11,8 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import NOTHING, axis_of, short, sign_of, with_axis, with_state
+from sim.edits import NOTHING, axis_of, short, sign_of, strain_rate, with_axis, with_state
 from sim.effect import Effect, EffectParameter
-from sim.effects.hysteresis import strain_rate
 from sim.model import Model, symbol
 
 

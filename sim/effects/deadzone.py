@@ -7,9 +7,8 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import knee
+from sim.edits import SHARP, knee
 from sim.effect import Effect, EffectParameter
-from sim.effects.saturation import SHARP
 from sim.model import Model
 
 

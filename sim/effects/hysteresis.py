@@ -2,20 +2,17 @@
 
 (1)  z' = v - |v| z / z_0,   torque - k z            (Bouc-Wen's form, Dahl's model: z stays within +-z_0)
 (2)  the same with k = b / z_0 and a small z_0: a bearing before it slides
-(3)  z' = (v - |v| z / z_0) / sqrt(1 + (|v| T / z_0)^2),  T = SETTLING_S
 
-Eq (3) is what is integrated: at a fast sweep, where z has long been at its end, (1) would be too stiff for the step of a sample.
+What is integrated is edits.strain_rate, which is (1) but for a sweep too fast for the step of a sample.
 """
 
 from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_state, with_torque
+from sim.edits import axis_of, short, strain_rate, with_state, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
-
-SETTLING_S = 0.008  # the shortest time in which z settles
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -64,9 +61,3 @@ def _edit(model: Model, stiffness: sympy.Expr, z_0: sympy.Symbol, axis: str, wha
     z = symbol(f"{what}_{axis}_{model.places.axes[axis].length_unit}")
     model = with_state(model, z, strain_rate(axis_of(model, axis).velocity, z, z_0))
     return with_torque(model, axis, -stiffness * z)
-
-
-def strain_rate(velocity: sympy.Expr, z: sympy.Symbol, z_0: sympy.Expr) -> sympy.Expr:
-    """z' of eq (3)."""
-    rate = sympy.Abs(velocity) / z_0
-    return (velocity - rate * z) / sympy.sqrt(1 + (SETTLING_S * rate) ** 2)

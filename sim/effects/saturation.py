@@ -7,13 +7,12 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import knee
+from sim.edits import SHARP, knee
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 
 NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent
 
-SHARP = 1e-9  # V: the least width of a corner
 # Of a corner, as a share of where it lies.
 ROUNDING = EffectParameter("w", "1", 0.0, 0.35, 0.0, None, (0.2,), refining=True)
 
