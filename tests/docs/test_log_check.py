@@ -3,6 +3,7 @@
 import ast
 import re
 
+from diagnosis.result import Exit
 from tests.test_project import ROOT
 
 PAGE = (ROOT / "docs" / "log-check.md").read_text(encoding="utf-8")
@@ -37,3 +38,8 @@ def words_of_the_replay() -> set[str]:
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in files]
     texts = [node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)]
     return {text for text in texts if isinstance(text, str) and WORD.fullmatch(text)}
+
+
+def test_the_page_names_every_exit() -> None:
+    table = PAGE.partition("## Exits of a diagnosis")[2].partition("\n## ")[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", table, flags=re.MULTILINE)) == {entry.value for entry in Exit}
