@@ -11,7 +11,7 @@ from tests.law_tables import ce150_table
 from twinlaw.command import main
 from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.proving import with_proofs
-from twinlaw.workflows.stages import demand
+from twinlaw.workflows.verifying import demand
 from verification.proofs import Proof, Subject
 from verification.proofs.tools import Tool
 

@@ -326,7 +326,7 @@ from pathlib import Path
 from records.log import load_log
 from sim.columns import log_columns
 from toolchain.cache import CACHE_DIR
-from twinlaw.workflows.stages import load_bound
+from twinlaw.workflows.reading import load_bound
 from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.replay import live_rows
 

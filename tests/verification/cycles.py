@@ -16,7 +16,7 @@ from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
 from twinlaw.workflows.arithmetics import ARITHMETICS
-from twinlaw.workflows.stages import design_controller
+from twinlaw.workflows.designing import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus
 
 STEPS = 100_000

@@ -19,7 +19,8 @@ from twinlaw.pages.compare.plots import figure_plot
 from twinlaw.pages.compare.report import page_text, verdict
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.comparing import compare_controllers, demand_equal, eq26_errors
-from twinlaw.workflows.stages import STEPS, load_bound
+from twinlaw.workflows.reading import load_bound
+from twinlaw.workflows.verifying import STEPS
 from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
 from verification.comparison.manoeuvres import FIGURES

@@ -21,7 +21,7 @@ from records.plant import plant_text
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.stages import load_bound
+from twinlaw.workflows.reading import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

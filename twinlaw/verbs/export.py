@@ -10,10 +10,8 @@ from pathlib import Path
 from recordings.mdf4_export import mdf4_bytes
 from records.errors import BadInput
 from records.files import write_atomic
-from records.log import load_log, plant_of_log
-from sim.columns import log_columns
-from sim.plants import MODELS
 from twinlaw.cli import options
+from twinlaw.workflows.reading import load_known_log
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,11 +26,7 @@ def run(chosen: argparse.Namespace) -> int:
     out: Path = chosen.out or chosen.log.with_suffix(".mf4")
     if out.suffix != ".mf4":
         raise BadInput("--out", str(out), f"a name that ends in {out.suffix!r}", "NAME.mf4", "call it .mf4")
-    plant = plant_of_log(chosen.log)
-    if plant not in MODELS:
-        where = f"{chosen.log.with_suffix('.toml')}: plant"
-        raise BadInput("plant", where, repr(plant), f"one of {', '.join(MODELS)}", "name a known plant")
-    log = load_log(chosen.log, log_columns(MODELS[plant]()))
+    log = load_known_log(chosen.log)
     write_atomic(out, mdf4_bytes(log))
     told = {"mf4": str(out), "rows": len(log.t_s)}
     print(json.dumps(told) if chosen.json else f"{out}  {len(log.t_s)} rows")

@@ -29,7 +29,7 @@ from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, ai
 from twinlaw.pages.page import page_text
 from twinlaw.workflows.identify_proof import proven
 from twinlaw.workflows.identifying import Wishes, free_names, identify, looked_at, read_inputs, read_limits
-from twinlaw.workflows.stages import load_bound
+from twinlaw.workflows.reading import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -14,7 +14,9 @@ from records.log import save_log
 from twinlaw.cli import console, options
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_facts, tracking_rows
 from twinlaw.workflows.arithmetics import ARITHMETICS
-from twinlaw.workflows.stages import design_controller, fly_double, fly_host, halved_step, load_bound
+from twinlaw.workflows.designing import design_controller
+from twinlaw.workflows.flying import fly_double, fly_host, halved_step
+from twinlaw.workflows.reading import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

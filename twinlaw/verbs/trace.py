@@ -12,7 +12,7 @@ from codegen.traceability.origin import Trace, names, trace
 from controllers.loading import load_scheduled
 from design.settings import read_settings
 from twinlaw.cli import console, options
-from twinlaw.workflows.stages import load_bound
+from twinlaw.workflows.reading import load_bound
 
 POINT_HEADING = ("Psi", "u_M0, u_T0", "designed", "fitted", "difference")
 PARAMETER_HEADING = ("parameter", "value", "sd", "unit", "influence", "source")

@@ -21,7 +21,8 @@ from sim.runs.stepped import SteppedPlant
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
-from twinlaw.workflows.stages import board_url, load_bound
+from twinlaw.workflows.boards import board_url
+from twinlaw.workflows.reading import load_bound
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,47 @@
+"""From a controller's table to C, to the firmware image, and to the image's description for calibration tools."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from codegen.protocol_source import protocol_source
+from codegen.traceability.a2l import ImageMap, a2l_text, under
+from controllers import loading
+from records.files import write_atomic
+from records.law_table import FlownTable
+from records.protocol import PROTOCOL
+from records.table import ControllerTable
+from rig.programming.image import FirmwareImage, build_firmware
+from toolchain.dwarf import variable_members
+from toolchain.elf import image_symbols
+from twinlaw.cli.console import stage
+
+_WHERE = "firmware.elf"
+_LIMITS = ("elevation_limits", "azimuth_limits")
+
+
+def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
+    """Generate law and protocol and write them to `folder`; returns the law's texts by file name."""
+    with stage("generating C"):
+        law = loading.generate(table, arithmetic)
+        for name, text in {**law, **protocol_source(PROTOCOL)}.items():
+            write_atomic(folder / name, text)
+    return law
+
+
+def build_image(law: Mapping[str, str], folder: Path) -> FirmwareImage:
+    """Compile and link the firmware around the law; leaves firmware.elf and firmware.bin in `folder`."""
+    with stage("building the firmware for the STM32G071"):
+        return build_firmware(law, folder)
+
+
+def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
+    """The .a2l text of an image built from `table`; raises BadInput for one without debug information."""
+    symbols = image_symbols(elf, _WHERE)
+    limits = [
+        member
+        for name in _LIMITS
+        if name in symbols  # a law whose limits are part of the code has no place for them
+        for member in under(name, variable_members(elf, _WHERE, name))
+    ]
+    signals = variable_members(elf, _WHERE, "main.path")
+    return a2l_text(table, arithmetic, ImageMap(signals, limits, symbols["LAW_TABLE_DIGEST"].address))

@@ -1,0 +1,79 @@
+"""Design as the verbs run it: a plant file goes in, a controller's table and the report on it come out."""
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from controllers import loading
+from controllers.table import CONTROLLERS
+from design.report import DesignReport
+from design.settings import read_settings
+from design.table import design, report_on
+from records.errors import BadInput, VerificationFailed
+from records.law_table import LawTable
+from records.table import ControllerTable
+from records.verification import PoleMigration
+from sim.bind import BoundPlant
+from twinlaw.cli.console import stage
+from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.reading import load_bound
+
+
+@dataclass(frozen=True)
+class Designed:
+    """A plant with the controller that was designed for it and the report on it."""
+
+    bound: BoundPlant
+    table: ControllerTable
+    report: DesignReport
+
+
+def design_controller(plant: Path, arithmetic: str = "float32") -> Designed:
+    """Design at all operating points, fit, and judge as flown in `arithmetic`; raises BadInput for an unusable plant or table."""
+    with stage("designing at the operating points, fitting, judging"), _computable(plant):
+        bound = load_bound(plant)
+        table, report = design(bound, read_settings(bound), ARITHMETICS[arithmetic].rounding)
+    return Designed(bound, table, report)
+
+
+def design_other(plant: Path, name: str, arithmetic: str = "float32") -> LawTable[Any]:
+    """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
+    row = CONTROLLERS[name]
+    loading.demand_arithmetic(name, arithmetic)
+    with stage(f"designing {row.title}"), _computable(plant):
+        bound = load_bound(plant)
+        table: LawTable[Any] = row.design(bound, read_settings(bound))
+    return table
+
+
+@contextlib.contextmanager
+def _computable(plant: Path) -> Iterator[None]:
+    """Raise BadInput naming the plant where its numbers overflow, or leave nothing to solve."""
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            yield
+    except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
+        got = f"numbers that cannot be computed with ({error})"
+        remedy = "look for a wrong power of ten among the parameters"
+        raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
+
+
+def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:
+    """The report's poles as verification.json states them."""
+    return tuple(PoleMigration(**entry) for entry in report.pole_entries())
+
+
+def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "float32") -> tuple[PoleMigration, ...]:
+    """Poles of a table that exists already, flown in `arithmetic` on this plant; raises BadInput when the table is for another plant."""
+    if table.plant != bound.plant.name:
+        what = f"a table for {table.plant!r}"
+        raise BadInput(
+            "controller table", table.digest[:16], what, f"one for {bound.plant.name!r}", "give its plant with --plant"
+        )
+    with stage("closing the loop at all angles"):
+        settings = read_settings(bound)
+        return poles_of(report_on(bound, settings, table, ARITHMETICS[arithmetic].rounding))

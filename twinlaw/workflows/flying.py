@@ -1,0 +1,60 @@
+"""Flights of the simulated plant under a table's law, in double precision or as generated."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from controllers import loading
+from records.law_table import FlownTable
+from records.log import RunLog
+from records.table import ControllerTable
+from sim.bind import BoundPlant
+from sim.halving import StepError, step_error
+from sim.loop import fly, fly_law
+from sim.manoeuvres import flight
+from sim.tracking import Tracking, tracking
+from twinlaw.cli.console import stage
+from verification.flown_law import FlownLaw
+from verification.host_law import HostLaw
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight's log, how well it followed its references, and the counters of the board's line (none without a board)."""
+
+    log: RunLog
+    tracking: tuple[Tracking, ...]
+    counters: Mapping[str, int]
+
+
+def fly_double(bound: BoundPlant, table: FlownTable) -> Flight:
+    """Fly the plant under the table's law in double precision."""
+    whole = flight(bound, table.sample_period_s)
+    with stage("flying the law in double precision"):
+        if isinstance(table, ControllerTable):
+            log = fly_law(bound, table, whole)
+        else:
+            log = fly(bound, loading.row_of(table).float_law(table), whole, table_digest=table.digest)
+    return Flight(log, tracked(log), {})
+
+
+def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> Flight:
+    """Fly the plant under the table's generated law, compiled for this computer."""
+    law = HostLaw(loading.generate(table, arithmetic), arithmetic)
+    with stage(f"flying the generated law in {arithmetic}"):
+        log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
+    return Flight(log, tracked(log), {})
+
+
+def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
+    """The step-halving check of that flight: how large the error of one integration step a sample is."""
+    with stage("flying it with steps of half the length"):
+        whole = flight(bound, table.sample_period_s)
+        if isinstance(table, ControllerTable):
+            return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
+        law = FlownLaw(loading.generate(table, "float32"))  # must outlive the flights
+        return step_error(bound, whole.t_s, whole.x0, law.controller(whole.t_s.size), reference=whole.reference_rad)
+
+
+def tracked(log: RunLog) -> tuple[Tracking, ...]:
+    """How well each output followed its reference."""
+    return tuple(tracking(log, output) for output in log.columns.outputs)

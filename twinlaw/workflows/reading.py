@@ -1,0 +1,24 @@
+"""Plants and logs as the verbs read them."""
+
+from pathlib import Path
+
+from records.errors import BadInput
+from records.log import RunLog, load_log, plant_of_log
+from records.plant import load_plant
+from sim.bind import BoundPlant, bind
+from sim.columns import log_columns
+from sim.plants import MODELS
+
+
+def load_bound(path: Path) -> BoundPlant:
+    """Read a plant file and bind it to its equations; raises BadInput."""
+    return bind(load_plant(path))
+
+
+def load_known_log(path: Path) -> RunLog:
+    """Read a run log of any plant that the table of models has; raises BadInput."""
+    plant = plant_of_log(path)
+    if plant not in MODELS:
+        where = f"{path.with_suffix('.toml')}: plant"
+        raise BadInput("plant", where, repr(plant), f"one of {', '.join(MODELS)}", "name a known plant")
+    return load_log(path, log_columns(MODELS[plant]()))

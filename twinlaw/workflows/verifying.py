@@ -1,0 +1,120 @@
+"""Verification as the verbs run it: twin, host and target step by step in every arithmetic, bounds and cost."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from codegen.law import generate_law
+from records.errors import VerificationFailed
+from records.table import ControllerTable
+from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
+from rig.emulator.board import EmulatedBoard
+from rig.flight.target_law import TargetLaw
+from rig.programming.image import FirmwareImage, build_firmware
+from sim.bind import BoundPlant
+from twinlaw.cli.console import stage
+from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.reading import load_known_log
+from verification.equality import BatchStepper, compare
+from verification.host_law import HostLaw
+from verification.ranges import Motion
+from verification.replay import Replay, replay_of, replayed_equality
+from verification.static_bound import kept_bound
+from verification.stimuli import Stimulus
+
+STEPS = 100_000
+
+
+def verify_table(
+    bound: BoundPlant,
+    table: ControllerTable,
+    poles: Sequence[PoleMigration],
+    law: Mapping[str, str],
+    image: FirmwareImage,
+    recorded: Sequence[Replay] = (),
+    steps: int = STEPS,
+    arithmetic: str = "float32",
+) -> Verification:
+    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
+    checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
+    for other in ARITHMETICS:
+        if other not in checks:
+            texts = generate_law(table, other)
+            with stage(f"building the firmware in {other} as well"):
+                built = build_firmware(texts)
+            checks[other] = _check(bound, table, other, texts, built, (), steps)
+    ordered = [checks[name] for name in ARITHMETICS]
+    return Verification(
+        table_digest=table.digest,
+        equality=tuple(row for check in ordered for row in check.equality),
+        self_tests=tuple(row for check in ordered for row in check.self_tests),
+        rounding=checks[arithmetic].rounding,
+        poles=tuple(poles),
+        target=tuple(check.cost for check in ordered),
+        roundings={name: checks[name].rounding for name in ARITHMETICS},
+    )
+
+
+@dataclass(frozen=True)
+class _Check:
+    """What was found of a table in one arithmetic."""
+
+    equality: tuple[Equality, ...]
+    self_tests: tuple[SelfTest, ...]
+    rounding: RoundingBound
+    cost: TargetCost
+
+
+def _check(
+    bound: BoundPlant,
+    table: ControllerTable,
+    arithmetic: str,
+    law: Mapping[str, str],
+    image: FirmwareImage,
+    recorded: Sequence[Replay],
+    steps: int,
+) -> _Check:
+    """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
+    chosen = ARITHMETICS[arithmetic]
+    twin, host = chosen.twin(table), HostLaw(law, arithmetic)
+    target = TargetLaw(EmulatedBoard(image.elf), arithmetic)
+    stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
+    equality = [equal_steps(one, other, stimuli) for one, other in ((twin, host), (host, target))]
+    replayed = (replayed_equality(replay, host) for replay in recorded)
+    equality += [row for row in replayed if row is not None]
+    with stage(f"proving a bound on rounding in {arithmetic}"):
+        rounding = chosen.bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
+    with stage("bounding cycles and stack from the image"):
+        cost = kept_bound(image.elf, "law_step")
+    tests = (("host", host.self_test()), ("target", target.self_test()))
+    return _Check(
+        equality=tuple(equality),
+        self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
+        rounding=rounding,
+        cost=TargetCost(
+            arithmetic=arithmetic,
+            cycles_min=target.cycles_min,
+            cycles_max=target.cycles_max,
+            cycles_bound=cost.cycles_bound,
+            stack_bytes=cost.stack_bytes,
+            flash_bytes=image.sizes.flash_bytes,
+            ram_bytes=image.sizes.ram_bytes,
+        ),
+    )
+
+
+def demand(verification: Verification) -> None:
+    """Raise VerificationFailed naming every check that did not hold."""
+    if not verification.passed:
+        raise VerificationFailed("; ".join(verification.failures))
+
+
+def equal_steps(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus]) -> Equality:
+    """Both laws stepped over the same stimuli, bits compared."""
+    with stage(f"stepping {one.name} and {other.name} side by side"):
+        return compare(one, other, stimuli).equality
+
+
+def recorded_replay(path: Path, table: ControllerTable, arithmetic: str = "float32") -> Replay:
+    """A run log of any known plant, to be replayed in an arithmetic; raises BadInput."""
+    return replay_of(load_known_log(path), table, path, arithmetic)
