@@ -9,7 +9,7 @@ from codegen.fixed.formats import law_formats
 from codegen.law import generate_law
 from records.errors import BadInput
 from records.table import ControllerTable
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from verification.fixed_stimuli import words_from_floats
 from verification.host_law import HostLaw
 
@@ -38,7 +38,7 @@ class Replayed:
         return float(np.mean(~self.differs.any(axis=1)))
 
 
-def replayed(flight: Flight, table: ControllerTable) -> Replayed:
+def replayed(flight: ReplayedLog, table: ControllerTable) -> Replayed:
     """The law as it most likely flew: in float32, unless fixed point agrees where that does not."""
     in_float32 = replayed_in_float32(flight, table)
     if not in_float32.differs.any():
@@ -50,7 +50,7 @@ def replayed(flight: Flight, table: ControllerTable) -> Replayed:
     return in_fixed if in_fixed.agreeing > max(FLOWN_IN_FIXED, in_float32.agreeing) else in_float32
 
 
-def replayed_in_float32(flight: Flight, table: ControllerTable) -> Replayed:
+def replayed_in_float32(flight: ReplayedLog, table: ControllerTable) -> Replayed:
     """Bit for bit; a sample that the log lacks does not differ."""
     outputs = _run(table, FLOAT32, _given(flight).astype(np.float32).view(np.uint32))
     u_V = outputs.view(np.float32).astype(float)
@@ -58,7 +58,7 @@ def replayed_in_float32(flight: Flight, table: ControllerTable) -> Replayed:
     return Replayed(FLOAT32, u_V, differs & ~np.isnan(flight.logged_V))
 
 
-def replayed_in_fixed(flight: Flight, table: ControllerTable) -> Replayed:
+def replayed_in_fixed(flight: ReplayedLog, table: ControllerTable) -> Replayed:
     """Word for word; raises BadInput for a table that no words can hold."""
     formats = law_formats(table)
     outputs = _run(table, FIXED, words_from_floats(_given(flight), formats.angle_places))
@@ -67,7 +67,7 @@ def replayed_in_fixed(flight: Flight, table: ControllerTable) -> Replayed:
     return Replayed(FIXED, u_V, differs & ~np.isnan(flight.logged_V), 2.0**-formats.voltage_places)
 
 
-def _given(flight: Flight) -> Array:
+def _given(flight: ReplayedLog) -> Array:
     return np.hstack([flight.reference_rad, flight.angle_rad])
 
 

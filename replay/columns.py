@@ -9,7 +9,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from replay.law import Channel
 from replay.variants import Variant
 
@@ -50,7 +50,7 @@ def given_columns() -> Iterator[Variant]:
         yield Variant(INPUT_SIGN, "columns", sentence, partial(replace, signs=signs))
 
 
-def constant_inputs(flight: Flight, names: Sequence[str]) -> Iterator[Variant]:
+def constant_inputs(flight: ReplayedLog, names: Sequence[str]) -> Iterator[Variant]:
     """Inputs that stand still in the log, whatever the law answers."""
     still = [float(column[0]) if np.nanmin(column) == np.nanmax(column) else None for column in flight.logged_V.T]
     if all(value is None for value in still):

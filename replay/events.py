@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from replay.flight import Flight, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
+from replay.flight import ReplayedLog, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
 from replay.law import FLOAT64, Fold, ReplayLaw, Setup, number_type
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ class _Hypothesis:
 class Workshop:
     """Makes followers of one flight; what several setups have in common is made once."""
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: ReplayedLog) -> None:
         self.flight = flight
         self._inputs: dict[object, NDArray[Any]] = {}
         self._answers: dict[object, tuple[Array, Array]] = {}
@@ -219,7 +219,7 @@ class Follower:
         return self._wanted[first:behind].copy(), self._slack[first:behind].copy()
 
 
-def _inputs(flight: Flight, setup: Setup) -> Array:
+def _inputs(flight: ReplayedLog, setup: Setup) -> Array:
     """What the law was given (n, 4): references and angles, each as late as the setup says."""
     folds = zip(flight.angle_rad.T, flight.steps_rad, setup.folds, strict=True)
     folded = [_folded(*column)[:, np.newaxis] for column in folds]
@@ -241,7 +241,7 @@ def _folded(angle_rad: Array, step_rad: float, fold: Fold | None) -> Array:
     return np.asarray(np.round((angle_rad - around * fold.span_rad) / step_rad) * step_rad)
 
 
-def _wanted(flight: Flight, setup: Setup) -> tuple[Array, Array]:
+def _wanted(flight: ReplayedLog, setup: Setup) -> tuple[Array, Array]:
     """What the law should have answered (n, 2) in V, and how exactly that is known (n, 2)."""
     logged, slack = flight.logged_V, flight.half_step_V
     as_float32 = logged.astype(np.float32).astype(float)

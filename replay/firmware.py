@@ -17,7 +17,7 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
-from replay.flight import Flight, flight_of, has_replayable_columns
+from replay.flight import ReplayedLog, flight_of, has_replayable_columns
 from replay.search import LOG_ROUNDING, channel_cause, explain
 
 NOT_FOUND = "not_found"
@@ -107,7 +107,7 @@ def _demand_own(log: RunLog, table: ControllerTable) -> None:
 
 
 def _in_fixed_point(
-    flight: Flight, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...]
+    flight: ReplayedLog, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...]
 ) -> FirmwareReplay:
     """What is told of a log whose law computed in fixed point: the table's own firmware, what lies behind it, or no cause."""
     rows = np.flatnonzero(run.differs.any(axis=1))
@@ -123,7 +123,7 @@ def _in_fixed_point(
 
 
 def _behind_fixed(
-    flight: Flight, table: ControllerTable, residuals: tuple[Residual, ...], at_s: float | None
+    flight: ReplayedLog, table: ControllerTable, residuals: tuple[Residual, ...], at_s: float | None
 ) -> FirmwareReplay | None:
     """A law in fixed point of whose words none is in the log, as something behind it changed them all."""
     try:
@@ -134,7 +134,7 @@ def _behind_fixed(
 
 
 def _behind_words(
-    flight: Flight, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...], at_s: float | None
+    flight: ReplayedLog, table: ControllerTable, run: Replayed, residuals: tuple[Residual, ...], at_s: float | None
 ) -> FirmwareReplay | None:
     behind_it = channel_cause(flight, table, run.u_V, run.word_V)
     if behind_it is None:
@@ -143,7 +143,7 @@ def _behind_words(
     return FirmwareReplay(True, False, at_s, behind_it.name, sentence, residuals)
 
 
-def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ...]:
+def _residuals(log: RunLog, flight: ReplayedLog, run: Replayed) -> tuple[Residual, ...]:
     present = ~np.isnan(flight.logged_V[:, 0])
     result = []
     columns = (flight.logged_V[present].T, run.u_V[present].T, run.differs[present].T)
@@ -155,7 +155,7 @@ def _residuals(log: RunLog, flight: Flight, run: Replayed) -> tuple[Residual, ..
     return tuple(result)
 
 
-def _hint(flight: Flight, table: ControllerTable, run: Replayed, row: int) -> str:
+def _hint(flight: ReplayedLog, table: ControllerTable, run: Replayed, row: int) -> str:
     """What is striking about the first row that differs, or about the log's references."""
     if row > 0 and _meets_limit(table, run, row):
         return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"

@@ -22,7 +22,7 @@ PRINT_MARGIN = 1.0 + 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class ReplayedLog:
     """Samples k = 0..n-1: references and angles (n, 2) in rad, logged inputs (n, 2) in V, their rounding `half_step_V` (n, 2).
 
     A sample that the log lacks has NaN everywhere; where it lacks too many (`lacking`), rows stand as they come.
@@ -53,7 +53,7 @@ def has_replayable_columns(log: RunLog) -> bool:
     return len(log.columns.inputs) == 2 and len(names) == 2 and all(name in log.extra for name in names)
 
 
-def flight_of(log: RunLog, table: ControllerTable) -> Flight:
+def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
     """The log on its control samples; rows that are missing by sequence number or by time are put in as NaN."""
     references = np.column_stack([log.extra[reference_name(output)] for output in log.columns.outputs])
     samples, lacking = _samples(log)
@@ -61,7 +61,7 @@ def flight_of(log: RunLog, table: ControllerTable) -> Flight:
     n = int(samples[-1]) + 1
     u_V, reference_rad, angle_rad = (_spread(column, samples, n) for column in columns)
     written = tuple(printing(column) for block in columns for column in block.T)
-    return Flight(
+    return ReplayedLog(
         t_s=np.interp(np.arange(n), samples, log.t_s),
         reference_rad=reference_rad,
         angle_rad=angle_rad,
@@ -77,7 +77,7 @@ def flight_of(log: RunLog, table: ControllerTable) -> Flight:
     )
 
 
-def readings(flight: Flight) -> tuple[Flight, ...]:
+def readings(flight: ReplayedLog) -> tuple[ReplayedLog, ...]:
     """The flight as logged and, where its angles were written with few digits, as the whole encoder counts they stand for.
 
     Counts become angles in two ways: multiplied in double precision and then rounded, or in float32 as the firmware does.
@@ -141,7 +141,7 @@ def advanced(values: Array, lead: int) -> Array:
     return result
 
 
-def candidates_for_missing(flight: Flight, block: tuple[int, int]) -> Sequence[Array]:
+def candidates_for_missing(flight: ReplayedLog, block: tuple[int, int]) -> Sequence[Array]:
     """What the law may have been given in up to two missing samples: counts near the line between their neighbours.
 
     Each candidate is (samples, 4): references, then angles; nothing for longer gaps or gaps at an end.
@@ -164,7 +164,7 @@ def candidates_for_missing(flight: Flight, block: tuple[int, int]) -> Sequence[A
     return [np.hstack([r, angle]) for r in _references_between(flight, block) for angle in angles]
 
 
-def candidates_for_unmeasured(flight: Flight, sample: int) -> Sequence[Array]:
+def candidates_for_unmeasured(flight: ReplayedLog, sample: int) -> Sequence[Array]:
     """What the law may have measured in a sample whose angles the log lacks: counts near the line between known ones.
 
     Each candidate is (1, 4): the sample's references, then angles; those that are known stay as they are.
@@ -184,7 +184,7 @@ def candidates_for_unmeasured(flight: Flight, sample: int) -> Sequence[Array]:
     return [np.hstack([flight.reference_rad[sample], angles])[np.newaxis] for angles in grid]
 
 
-def _references_between(flight: Flight, block: tuple[int, int]) -> list[Array]:
+def _references_between(flight: ReplayedLog, block: tuple[int, int]) -> list[Array]:
     """References of the missing samples: as before, as after, or on the line between."""
     first, behind = block
     before, after = flight.reference_rad[first - 1], flight.reference_rad[behind]

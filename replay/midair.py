@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from design.law import polynomial
 from records.table import ControllerTable
 from replay.events import Workshop
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from replay.law import ReplayLaw, Setup
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     return None
 
 
-def _telling_row(flight: Flight, table: ControllerTable) -> int | None:
+def _telling_row(flight: ReplayedLog, table: ControllerTable) -> int | None:
     """The first row before which references were known for SETTLED time constants, and HISTORY rows are whole and off the limits."""
     n = len(flight.t_s)
     longest_s = max(table.elevation.prefilter_time_constant_s, table.azimuth.prefilter_time_constant_s)
@@ -74,7 +74,7 @@ def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
     return result
 
 
-def _state(law: ReplayLaw, inputs: NDArray[Any], flight: Flight, table: ControllerTable, row: int) -> Any:
+def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: ControllerTable, row: int) -> Any:
     """The state before `row`."""
     first, ahead_rad = row - HISTORY, []
     state = law.start(inputs[0, 2:])

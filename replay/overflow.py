@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from records.table import ControllerTable
 from replay import law
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from replay.law import Channel, Fold, Overflow, ReplayLaw, Setup
 from replay.variants import Variant, grid_step, steps_in_words
 
@@ -47,7 +47,7 @@ class Wrap:
     span: float
 
 
-def output_wraps(own_V: Array, logged_V: Array, flight: Flight) -> Iterator[Variant]:
+def output_wraps(own_V: Array, logged_V: Array, flight: ReplayedLog) -> Iterator[Variant]:
     """The range in which the logged inputs (n, 2) wrap round, read off against what the law answers (n, 2)."""
     names, digits_V = flight.input_names, np.nanmax(flight.half_step_V, axis=0)
     steps = [grid_step(column) for column in logged_V.T]
@@ -120,7 +120,7 @@ def _lower_end(logged_V: Array, span: float) -> float | None:
     return None
 
 
-def sums_that_overflow(table: ControllerTable, flight: Flight, inputs: NDArray[np.float32]) -> Iterator[Variant]:
+def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDArray[np.float32]) -> Iterator[Variant]:
     """The law's own sum, or its command before the limits, in an integer that is too narrow.
 
     Its end lies between the greatest number before the first difference and that in it.
@@ -201,7 +201,7 @@ def _between(before: float, reached: float, per_unit: float) -> float | None:
     return end if end <= reached else None
 
 
-def angles_that_wrap(flight: Flight) -> Iterator[Variant]:
+def angles_that_wrap(flight: ReplayedLog) -> Iterator[Variant]:
     """Encoder counts in an integer that is too narrow, for the angles of the log that leave its range."""
     for bits in ANGLE_BITS:
         for name, low, saturates, how in ANGLE_OVERFLOWS:

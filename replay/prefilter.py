@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from replay.law import AXES, ReplayLaw, Setup
 from replay.variants import Variant
 
@@ -22,7 +22,7 @@ DIGITS = (1, 2, 3, 4, 6)
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-def fitted_prefilters(table: ControllerTable, flight: Flight, inputs: NDArray[Any]) -> Iterator[Variant]:
+def fitted_prefilters(table: ControllerTable, flight: ReplayedLog, inputs: NDArray[Any]) -> Iterator[Variant]:
     """Both axes with the time constants that fit the log best, rounded to few digits, then to more; none where no reference moves.
 
     `inputs` (n, 4) are what the law was given. Elevation is fitted to u_M alone, azimuth then to u_T, on which both act.
@@ -43,7 +43,7 @@ def fitted_prefilters(table: ControllerTable, flight: Flight, inputs: NDArray[An
         yield Variant("other_prefilter", "prefilter", sentence, partial(_with_constants, constants_s=constants_s))
 
 
-def _window(flight: Flight) -> int | None:
+def _window(flight: ReplayedLog) -> int | None:
     moved = np.flatnonzero(np.any(np.diff(flight.reference_rad, axis=0) != 0.0, axis=1))
     return None if not moved.size else min(int(moved[0]) + SPAN, len(flight.t_s))
 

@@ -24,7 +24,7 @@ from replay.events import (
     Trace,
     Workshop,
 )
-from replay.flight import Flight, readings
+from replay.flight import ReplayedLog, readings
 from replay.law import FLOAT32, ReplayLaw, Setup, channel_agrees
 from replay.lone import lone_variants
 from replay.midair import begins_in_flight
@@ -88,7 +88,7 @@ class Explanation:
         return sum(kinds[kind] for kind in MIMICS) <= MANY
 
 
-def explain(flight: Flight, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> Told | None:
+def explain(flight: ReplayedLog, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> Told | None:
     """The simplest firmware that leaves no difference: the table's law with incidents, one change, a fused build, two changes.
 
     None where none was found.
@@ -145,7 +145,7 @@ def _lone(shop: Workshop, table: ControllerTable) -> list[Variant]:
     ]
 
 
-def channel_cause(flight: Flight, table: ControllerTable, own_V: Array, word_V: float) -> Variant | None:
+def channel_cause(flight: ReplayedLog, table: ControllerTable, own_V: Array, word_V: float) -> Variant | None:
     """What lies between answers (n, 2) of the table's law, computed elsewhere in words of `word_V`, and the log; None: unknown."""
     names, base = flight.input_names, Setup(table)
     single = [
@@ -188,7 +188,7 @@ def _is_fused(shop: Workshop, table: ControllerTable) -> bool:
     return bool(np.all(np.isnan(wanted) | (np.abs(outputs - wanted) <= slack)))
 
 
-def _told(flight: Flight, found: Sequence[Explanation]) -> Told:
+def _told(flight: ReplayedLog, found: Sequence[Explanation]) -> Told:
     """The cheapest explanation in words; those of equal cost and another name are its alternatives."""
     best = min(found, key=lambda explanation: explanation.cost)
     repeats = _repeats(flight, best)
@@ -224,7 +224,7 @@ def _other_ways(best: Explanation, found: Sequence[Explanation]) -> str:
     return f"; or it {others[0]}{more}"
 
 
-def _repeats(flight: Flight, found: Explanation) -> float | None:
+def _repeats(flight: ReplayedLog, found: Explanation) -> float | None:
     """The chance of a plant that rested whenever its law was not run, where each such sample is the row before once more; else None."""
     if found.changes or set(found.trace.kinds()) != {SAMPLE_LOST}:
         return None
@@ -237,7 +237,7 @@ def _repeats(flight: Flight, found: Explanation) -> float | None:
     return float((1.0 - moving.mean()) ** len(lost)) if moving.size else 1.0
 
 
-def _repeated(flight: Flight, found: Explanation) -> Told:
+def _repeated(flight: ReplayedLog, found: Explanation) -> Told:
     incidents = found.trace.incidents
     at_s = flight.t_s[incidents[0].first]
     sentence = (
@@ -248,7 +248,7 @@ def _repeated(flight: Flight, found: Explanation) -> Told:
     return Told(REPEATED_ROW, sentence, times, (SAMPLE_LOST,))
 
 
-def _incident_clause(flight: Flight, kind: str, count: int, found: Explanation) -> str:
+def _incident_clause(flight: ReplayedLog, kind: str, count: int, found: Explanation) -> str:
     first = next(entry for entry in found.trace.incidents if entry.kind == kind)
     at = f"at {flight.t_s[first.first]:.6g} s"
     times = at if count == 1 else f"{count} times, first {at}"
@@ -257,14 +257,14 @@ def _incident_clause(flight: Flight, kind: str, count: int, found: Explanation) 
     return f"{INCIDENT_SENTENCES[kind]} {times}{share}"
 
 
-def _rounded_only(flight: Flight) -> Told:
+def _rounded_only(flight: ReplayedLog) -> Told:
     if not flight.inputs_are_rounded:
         return Told(None, None)
     sentence = f"the log rounded its inputs ({_digits(flight)}); the replay agrees with all of these digits"
     return Told(LOG_ROUNDING, sentence)
 
 
-def _digits(flight: Flight) -> str:
+def _digits(flight: ReplayedLog) -> str:
     written = Counter(str(entry) for entry in flight.printings[:2])
     return " and ".join(written)
 
@@ -283,7 +283,7 @@ def _lost_in_gap(shop: Workshop, base: Setup) -> Told | None:
     return Told(MISSING_ROWS, sentence)
 
 
-def _too_few_rows(flight: Flight) -> Told | None:
+def _too_few_rows(flight: ReplayedLog) -> Told | None:
     """The log holds too few of the law's samples: what it saw in the others, and so its state, is not known."""
     if not flight.lacking:
         return None

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from records.table import ControllerTable, Polynomial
 from replay import law
-from replay.flight import Flight
+from replay.flight import ReplayedLog
 from replay.law import AXES, Channel, Gains, Setup
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Variant:
     change: Change
 
 
-def variants(table: ControllerTable, flight: Flight, others: Sequence[ControllerTable]) -> list[Variant]:
+def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[ControllerTable]) -> list[Variant]:
     """All single variants that this table and this log allow and that may come in pairs, the plain ones first."""
     limits = _limits_found(table, flight)
     return [
@@ -139,7 +139,7 @@ def _backward_gain(time_constant_s: float, sample_period_s: float) -> float:
     return sample_period_s / (time_constant_s + sample_period_s)
 
 
-def _limits_found(table: ControllerTable, flight: Flight) -> dict[str, dict[str, float]]:
+def _limits_found(table: ControllerTable, flight: ReplayedLog) -> dict[str, dict[str, float]]:
     """Limits read off the log, by axis: extremes at which it stays, or beyond the stated ones."""
     found: dict[str, dict[str, float]] = {}
     for axis, u_V in zip(AXES, flight.logged_V.T, strict=True):
@@ -183,7 +183,7 @@ def _limited_behind(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
     return replace(setup, channel=replace(setup.channel, low_V=(low[0], low[1]), high_V=(high[0], high[1])))
 
 
-def _quantised(flight: Flight, limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
+def _quantised(flight: ReplayedLog, limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
     """Grids on which all logged voltages lie: that of the firmware's own PWM, and whatever the log shows."""
     steps = [grid_step(u_V) for u_V in flight.logged_V.T]
     if not any(steps) or (flight.inputs_are_rounded and all(_is_decimal(step) for step in steps)):

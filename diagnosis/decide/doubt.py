@@ -18,8 +18,8 @@ from diagnosis.search.beam import Search
 from diagnosis.validate.misfit import ignorance
 from records.reasons import Decision, Note
 
-ROUNDS = 4  # of a fit to all logs together
-FORBIDS, TELLS, NOTHING = "no cause is named", "is told", "nothing"
+JOINT_ROUNDS = 4  # of a fit to all logs together
+FORBIDS, TELLS, UNCHANGED = "no cause is named", "is told", "nothing"
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def contradicting(
 ) -> tuple[tuple[Note, ...], tuple[Decision, ...]]:
     """Which of logs that seem to be of the plant as `hypothesis`, without a gap, contradicts the others, and the rule that says so;
     nothing where none does."""
-    together = fit(case, hypothesis, rounds=ROUNDS)
+    together = fit(case, hypothesis, rounds=JOINT_ROUNDS)
     apart = None if together is None else contradiction(case, together)
     if together is None or apart is None:
         return (), ()
@@ -73,7 +73,7 @@ def contradicting(
         apart = replace(apart, gain=min(apart.gain, parted_gain(case, together)))
     told = apart.gain > decisions.CONTRADICTION
     decision = decided(
-        "contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, TELLS if told else NOTHING
+        "contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, TELLS if told else UNCHANGED
     )
     return ((_contradiction(apart, names),) if told else ()), (decision,)
 
@@ -87,7 +87,7 @@ def _contradicted(case: Case, best: FittedHypothesis, gain: float, names: Sequen
         apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
     told = apart.gain > decisions.CONTRADICTION
     forbids = told and apart.gain > decisions.CONTRADICTION_SHARE * gain
-    outcome = FORBIDS if forbids else TELLS if told else NOTHING
+    outcome = FORBIDS if forbids else TELLS if told else UNCHANGED
     yield _Objection(
         decided("contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, outcome),
         _contradiction(apart, names) if told else None,
@@ -101,7 +101,7 @@ def _unknowing(case: Case, best: FittedHypothesis) -> Iterator[_Objection]:
     if errors:
         least = min(errors, key=lambda name: errors[name])
         forbids = errors[least] > decisions.KNOWS_NOTHING
-        outcome = FORBIDS if forbids else NOTHING
+        outcome = FORBIDS if forbids else UNCHANGED
         yield _Objection(
             decided("knows_nothing", least, errors[least], decisions.KNOWS_NOTHING, outcome),
             Note("knows_nothing", "plant", errors) if forbids else None,
@@ -115,7 +115,7 @@ def _refuted(case: Case, weighed: Weighed, worse: float) -> Iterator[_Objection]
         names = weighed.fitted[0].effects
         forbids = worse > decisions.REFUTED and not any(is_event(case.library.effects[name]) for name in names)
         of = " + ".join(names)
-        outcome = FORBIDS if forbids else NOTHING
+        outcome = FORBIDS if forbids else UNCHANGED
         yield _Objection(
             decided("refuted", of, worse, decisions.REFUTED, outcome),
             Note("refuted", of, {"mean_square_ratio": worse}) if forbids else None,
@@ -128,7 +128,7 @@ def _of_another_plant(best: FittedHypothesis, weighed: Weighed) -> _Objection:
     furthest = float(np.max(np.abs(best.fit.hypothesis.theta), initial=0.0))
     told = furthest > decisions.ANOTHER_PLANT and weighed.unknown > 0.5
     return _Objection(
-        decided("another_plant", "plant", furthest, decisions.ANOTHER_PLANT, TELLS if told else NOTHING),
+        decided("another_plant", "plant", furthest, decisions.ANOTHER_PLANT, TELLS if told else UNCHANGED),
         Note("another_plant", "plant", {"deviations": furthest}) if told else None,
     )
 

@@ -12,7 +12,7 @@ from diagnosis.detect.forms import Form
 
 Array = NDArray[np.float64]
 LIMITS = (".saturation", ".slew_limit")
-OWN = 1e-3  # share of a form that must not be a mixture of those taken already
+LEAST_OWN_SHARE = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def class_gain(by_form: FormScores, members: Sequence[int]) -> float:
     cost, total = decisions.NATS_PER_FORM + float(np.log(len(members))), 0.0
     for _ in range(min(decisions.MOST_FORMS, len(chosen))):
         left = np.diag(gram)
-        gains = np.where(left > OWN, 0.5 * score**2 / np.maximum(left, OWN), 0.0) / usual
+        gains = np.where(left > LEAST_OWN_SHARE, 0.5 * score**2 / np.maximum(left, LEAST_OWN_SHARE), 0.0) / usual
         best = int(np.argmax(gains))
         if gains[best] < cost:
             break

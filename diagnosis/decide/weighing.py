@@ -14,7 +14,7 @@ from diagnosis.fit.gauss_newton import seen_in_readings
 from records.reasons import Decision
 
 Array = NDArray[np.float64]
-KEPT = 12
+RANKED = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def weigh(
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
     weights = capped(weights)
-    order = np.argsort(-weights[:-2], kind="stable")[:KEPT]
+    order = np.argsort(-weights[:-2], kind="stable")[:RANKED]
     of = " + ".join(first.effects)
     rules = (
         held_against("forms_left", of, left, expected, "nats", "unknown likelier" if left > expected else "explained"),

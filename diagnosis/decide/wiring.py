@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
 from jobs.thread_map import thread_map
 from records.errors import BadInput
@@ -122,7 +122,7 @@ def _rewired(case: Case, wiring: Wiring) -> Case:
     return case.with_flights([_read_otherwise(case, flight, wiring) for flight in case.flights])
 
 
-def _read_otherwise(case: Case, flight: Flight, wiring: Wiring) -> Flight:
+def _read_otherwise(case: Case, flight: FilteredLog, wiring: Wiring) -> FilteredLog:
     filter_input, count = flight.filter_input, len(wiring.outputs)
     places = [*wiring.outputs, *range(count, filter_input.y.shape[1])]
     signs = np.array([*wiring.output_signs, *_rate_signs(case, wiring)])

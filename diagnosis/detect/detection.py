@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decisions import held_against
 from diagnosis.detect.forms import Form, forms
-from diagnosis.detect.instants import target_of
+from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import Linearisation, Scores
 from diagnosis.detect.replicas import Tail, replicas, tail_of
 from diagnosis.detect.score_tests import ScoreTest
@@ -155,7 +155,7 @@ def _events(case: Case, linearisation: Linearisation, drawn: Array) -> tuple[lis
     Each gain counts in units of what that step or pulse usually gains without a gap: rounding at rest looks like steps.
     """
     library = case.library
-    targets = {target_of(case, library.effects[name]) for name in library.candidates}
+    targets = {disturbed_by(case, library.effects[name]) for name in library.candidates}
     known = sorted(target for target in targets if target is not None)
     pairs = thread_map(lambda target: _pulses(linearisation, drawn, target), known)
     return [seen for seen, _ in pairs], np.array([np.zeros(drawn.shape[1]), *(null for _, null in pairs)])

@@ -12,7 +12,7 @@ from diagnosis.filter.kalman import Disturbances
 Array = NDArray[np.float64]
 COUNT, AT_ONCE = 660, 220  # some 0.5 % apart: 25 steps further a rounding must still fall alike
 SMALLEST, LARGEST = 0.004, 0.12  # of the input's range
-APART = 1.004
+STEPS_APART = 1.004
 
 
 def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
@@ -29,7 +29,7 @@ def likely_steps(linearisation: Linearisation, place: str) -> list[float]:
     found: list[float] = []
     for index in np.argsort(-gains).tolist():
         step = float(steps[index])
-        if all(max(step, other) > APART * min(step, other) for other in found):
+        if all(max(step, other) > STEPS_APART * min(step, other) for other in found):
             found.append(step)
         if len(found) == decisions.MOST_INPUT_STEPS:
             break

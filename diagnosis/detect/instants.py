@@ -15,7 +15,7 @@ TIMES = ("t_0", "t_1", "t_s")
 def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect whose shapes are instants: the best of a grid; empty for effects without instants."""
     names = [parameter.symbol for parameter in effect.parameters if not parameter.is_size]
-    target = target_of(linearisation.case, effect)
+    target = disturbed_by(linearisation.case, effect)
     if target is None or not is_event(effect):
         return []
     times_s, scores = linearisation.steps(target)
@@ -82,7 +82,7 @@ def _peaks(power: Array, most: int = decisions.MOST_INSTANTS) -> list[int]:
     return order
 
 
-def target_of(case: Case, effect: Effect) -> int | None:
+def disturbed_by(case: Case, effect: Effect) -> int | None:
     """The state, or after the states the output, that an effect disturbs."""
     library, model = case.library, case.library.bound.model
     for axis in model.axes:

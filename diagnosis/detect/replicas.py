@@ -15,7 +15,7 @@ from diagnosis.hypothesis.hypothesis import noise_of
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
-SEED = 20
+REPLICA_SEED = 20
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ def tail_of(largest: Array) -> Tail:
 
 def replicas(linearisation: Linearisation, count: int = decisions.REPLICAS) -> Array:
     """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(REPLICA_SEED)
     flights = range(len(linearisation.filter_inputs))
     parts = thread_map(
-        lambda index: _flight(linearisation, index, count, np.random.default_rng((SEED, index))), flights
+        lambda index: _flight(linearisation, index, count, np.random.default_rng((REPLICA_SEED, index))), flights
     )
     drawn = rng.standard_normal((linearisation.slopes.shape[1], count))
     spread = linearisation.case.spread

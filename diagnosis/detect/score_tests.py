@@ -22,7 +22,7 @@ from jobs.thread_map import thread_map
 from sim.effect import Effect, Values
 
 Array = NDArray[np.float64]
-SMALL = 0.05
+SMALL_SIZE = 0.05
 FRICTIONS = ("coulomb", "load_friction", "friction_asymmetry")
 
 
@@ -164,10 +164,10 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
             continue
         unit = size_scale(effect.size)
         absent = {parameter.symbol: parameter.first for parameter in effect.parameters}
-        small = {**absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL * unit}
+        small = {**absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL_SIZE * unit}
         runs = passes(case, hypothesis.with_effects({**hypothesis.effects, name: small}))
         if runs is not None:
-            scores = linearisation.scores_of(((stacked(runs) - linearisation.w) / SMALL)[:, None])
+            scores = linearisation.scores_of(((stacked(runs) - linearisation.w) / SMALL_SIZE)[:, None])
             found += _score_tests(case, {name: small}, scores, np.array([unit]))
     return found
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.detect.instants import target_of
+from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step
 from diagnosis.filter.filter_input import FilterInput
@@ -21,7 +21,7 @@ APART_RAD_S = 0.3
 
 def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect that swings as a sine: its likeliest waves, each as sine and as cosine; empty for other effects."""
-    target = target_of(linearisation.case, effect) if swings(effect) else None
+    target = disturbed_by(linearisation.case, effect) if swings(effect) else None
     if target is None:
         return []
     if "rate" in effect.parameter:

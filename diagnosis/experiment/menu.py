@@ -16,7 +16,7 @@ WIDEST_RAD = 2.0  # of a wide sweep, where the axis has no stops before
 STOPS = 0.85  # share of the way to a stop that a plan uses
 DITHER = 0.1  # of the inputs' range
 DITHER_HZ = (0.3, 0.7, 1.1, 1.7, 2.6, 3.9, 6.0)
-SEED = 3
+PLAN_SEED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +173,7 @@ class _Maker:
     def dithered(self) -> Plan:
         """All references still, a multisine on every input."""
         t_s = self._times(10.0)
-        rng = np.random.default_rng(SEED)
+        rng = np.random.default_rng(PLAN_SEED)
         phases = rng.uniform(0.0, 2.0 * np.pi, (len(DITHER_HZ), len(self._span)))
         waves = np.sin(2.0 * np.pi * np.array(DITHER_HZ)[:, None] * t_s[:, None, None] + phases).sum(axis=1)
         dither = DITHER * self._span * waves / np.abs(waves).max(axis=0)

@@ -23,15 +23,18 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
-LEAST = 0.02  # of probability that a hypothesis must have, and that must be at stake
+LEAST_AT_STAKE = 0.02  # of probability that a hypothesis must have, and that must be at stake
 LEADING = 3
-SURE, ENOUGH = 5.0, 3.0  # standard deviations: more than these tell no more, fewer than these tell nothing
+SURELY_APART, ENOUGH_APART = (
+    5.0,
+    3.0,
+)  # standard deviations: more than these tell no more, fewer than these tell nothing
 EFFORT = 0.2  # of what a sure separation is worth, for an experiment of effort 1
-BEYOND = 0.05  # likewise, for each factor of ten beyond SURE: no model is so right that the noise alone decides
-LIMITS = 0.3  # likewise for one that leaves the limits
+BEYOND = 0.05  # likewise, for each factor of ten beyond SURELY_APART: no model is so right that the noise alone decides
+NEAR_LIMITS_SHARE = 0.3  # likewise for one that leaves the limits
 LONGEST_PERIOD_S = 0.02
 INPUT_FLOOR = 0.02  # of an input's range: less than that is no outcome to look for
-NOTHING = "none of the menu"
+NO_EXPERIMENT = "none of the menu"
 OUTPUT_FLOOR = 3.0  # encoder steps, likewise
 
 
@@ -52,13 +55,13 @@ class Trial:
 def next_experiment(case: Case, weighed: Weighed) -> Mapping[str, Any] | None:
     """The run that separates most of what is undecided, with the outcome to expect; None where nothing is, or nothing can be flown."""
     ranked = zip(weighed.fitted, weighed.probabilities, strict=True)
-    leading = [(fitted, probability) for fitted, probability in ranked if probability > LEAST][:LEADING]
+    leading = [(fitted, probability) for fitted, probability in ranked if probability > LEAST_AT_STAKE][:LEADING]
     pairs = {
         (a, b): leading[a][1] * leading[b][1]
         for a, b in combinations(range(len(leading)), 2)
         if set(leading[a][0].effects) != set(leading[b][0].effects)
     }
-    if sum(pairs.values()) < LEAST:
+    if sum(pairs.values()) < LEAST_AT_STAKE:
         return None
     fitted = [fitted for fitted, _ in leading]
     period_s = period_of(case)
@@ -88,7 +91,7 @@ def _trial(
             return None
         for b in (b for one, b in pairs if one == a):
             other = missed(data, fitted[b].fit, plan, process_noise)
-            z[a, b] = 2.0 * SURE if other is None else float(np.sqrt(max(other - own, 0.0)))
+            z[a, b] = 2.0 * SURELY_APART if other is None else float(np.sqrt(max(other - own, 0.0)))
     return Trial(plan, good, z)
 
 
@@ -109,25 +112,25 @@ def _worth(trial: Trial, pairs: Mapping[tuple[int, int], float]) -> tuple[float,
     """What a trial decides, in units of the probability at stake, less its effort; then the separation itself."""
     stake = sum(pairs.values())
     decided = sum(p * _decided(trial.z[pair]) for pair, p in pairs.items()) / stake
-    cost = EFFORT * trial.plan.effort + (0.0 if trial.within_limits else LIMITS)
+    cost = EFFORT * trial.plan.effort + (0.0 if trial.within_limits else NEAR_LIMITS_SHARE)
     return decided - cost, min(trial.z.values())
 
 
 def _decided(z: float) -> float:
-    return min(z / SURE, 1.0) ** 2 + BEYOND * float(np.log10(max(z / SURE, 1.0)))
+    return min(z / SURELY_APART, 1.0) ** 2 + BEYOND * float(np.log10(max(z / SURELY_APART, 1.0)))
 
 
 def _told(
     case: Case, best: Trial, fitted: Sequence[FittedHypothesis], pairs: Mapping[tuple[int, int], float]
 ) -> Mapping[str, Any]:
-    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], SURE) ** 2)
+    first = max(pairs, key=lambda pair: pairs[pair] * min(best.z[pair], SURELY_APART) ** 2)
     names = [_name(entry) for entry in fitted]
     apart = best.z[first]
     split = {True: list[str](), False: list[str]()}
     for a, b in pairs:
-        split[best.z[a, b] >= ENOUGH].append(f"{names[a]} from {names[b]}")
+        split[best.z[a, b] >= ENOUGH_APART].append(f"{names[a]} from {names[b]}")
     return {
-        "experiment": best.plan.name if split[True] else NOTHING,
+        "experiment": best.plan.name if split[True] else NO_EXPERIMENT,
         "instruction": best.plan.instruction if split[True] else "no run of this rig's menu tells what is left apart",
         "separates": split[True],
         "does_not_separate": split[False],
@@ -146,7 +149,7 @@ def _outcome(case: Case, trial: Trial, pair: tuple[int, int], names: Sequence[st
     """The expected outcome in one sentence with numbers."""
     a, b = pair
     apart = trial.z[pair]
-    if apart < ENOUGH:
+    if apart < ENOUGH_APART:
         return (
             f"no run of the menu tells {names[a]} from {names[b]}: the best of them ({trial.plan.name}) leaves them "
             f"{apart:.1f} standard deviations of the noise apart"

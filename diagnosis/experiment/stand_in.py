@@ -20,7 +20,7 @@ from sim.kernel.reference import Reference, reference
 Array = NDArray[np.float64]
 INTEGRAL_S = 1.0  # T_i
 INPUT_SHARE = 0.2  # s_u, of the inputs' range
-SMALL = 1e-9  # weight of every other state, in squares of its own size
+SMALL_WEIGHT = 1e-9  # weight of every other state, in squares of its own size
 ANTI_WINDUP_S = 1.0  # of error that z may hold, in s_y
 
 
@@ -109,7 +109,7 @@ def _gains(
     sampled = expm(period_s * whole)
     F, G = sampled[: n + k, : n + k], sampled[: n + k, n + k :]
     scale = 1.0 + np.abs(rest.x0[kept])
-    Q = np.diag(np.concatenate([SMALL / scale**2, 1.0 / (size * INTEGRAL_S) ** 2]))
+    Q = np.diag(np.concatenate([SMALL_WEIGHT / scale**2, 1.0 / (size * INTEGRAL_S) ** 2]))
     Q[rows, rows] += 1.0 / size**2
     R = np.diag(1.0 / inputs**2)
     try:

@@ -15,7 +15,7 @@ from sim.places import InputPlace
 
 Array = NDArray[np.float64]
 KNOTS, INSTANTS = 21, 201
-RARE = 1.0  # percent of the time that a signal spends beyond the curve's ends
+RARE_PERCENT = 1.0  # percent of the time that a signal spends beyond the curve's ends
 STIFFNESS = np.geomspace(1e-4, 1e4, 33)  # of the curve, in units of what the logs say of a knot
 LOOSE = 1e-6  # of the same, what holds a level and a slope that the plant's own parameters imitate
 
@@ -60,7 +60,7 @@ def shape_of(linearisation: Linearisation, by_form: FormScores, suspect: Suspect
     if not names or any(name not in known[0] for name in names):
         return None
     x, times = [entry[names[0]] for entry in known], names[1] if len(names) > 1 else ""
-    low, high = np.percentile(np.concatenate(x), [RARE, 100.0 - RARE])
+    low, high = np.percentile(np.concatenate(x), [RARE_PERCENT, 100.0 - RARE_PERCENT])
     if high <= low:
         return None
     knots = np.linspace(low, high, INSTANTS if names == ["t"] else KNOTS)
@@ -74,7 +74,7 @@ def shape_of(linearisation: Linearisation, by_form: FormScores, suspect: Suspect
     about = np.eye(len(knots)) - 1.0 / len(knots)
     sd = np.sqrt(np.maximum(np.diag(about @ cov @ about.T), 0.0))
     return Shape(
-        axes[names[0]], knots, about @ curve, sd, target_of(linearisation, target), axes[times] if times else None
+        axes[names[0]], knots, about @ curve, sd, axis_of_target(linearisation, target), axes[times] if times else None
     )
 
 
@@ -85,7 +85,7 @@ def form_of(by_form: FormScores, suspect: Suspect) -> Form:
     return by_form.forms[max(own, key=lambda index: float(found[index]))]
 
 
-def target_of(linearisation: Linearisation, target: int) -> Axis:
+def axis_of_target(linearisation: Linearisation, target: int) -> Axis:
     """What a form adds to: the rate of a state ("d phi_dot/dt" in rad/s^2), or an output ("phi" in rad)."""
     library = linearisation.case.library
     states = len(library.states)

@@ -17,17 +17,17 @@ from numpy.typing import NDArray
 
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step, value_of
-from diagnosis.explain.spectra import BANDS_HZ, TINY, coherence, cross_power, power
+from diagnosis.explain.spectra import BANDS_HZ, NO_POWER, coherence, cross_power, power
 from diagnosis.filter.kalman import Disturbances
 from diagnosis.hypothesis.hypothesis import coefficients
 from records.diagnosis import ErrorResponse
 
 Array = NDArray[np.float64]
 ByFlight = Sequence[Array]
-MEMORY_S = 0.6  # of the filter sought: errors that last longer show as errors of slow answers
+RESPONSE_MEMORY_S = 0.6  # of the filter sought: errors that last longer show as errors of slow answers
 BELIEVED = 0.6  # coherence below which a frequency response is not read (Tischler and Remple 2012)
-SURE = 3.0  # standard deviations that an error must be from none
-HARDLY = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
+SURE_DEVIATIONS = 3.0  # standard deviations that an error must be from none
+LEAST_POWER_SHARE = 1e-3  # of the power of an output's modelled answers: an input that is not there to move it
 
 
 def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
@@ -40,7 +40,7 @@ def error_responses(linearisation: Linearisation) -> tuple[ErrorResponse, ...]:
             continue
         own = {u: [part[:, slot] for part in parts] for u, parts in answers.items()}
         strength = {u: sum(float(np.sum(part[:, 0] ** 2)) for part in parts) for u, parts in own.items()}
-        moving = {u: own[u] for u in own if strength[u] > HARDLY * max(strength.values())}
+        moving = {u: own[u] for u in own if strength[u] > LEAST_POWER_SHARE * max(strength.values())}
         if moving:
             found += _of_output(
                 linearisation, output, moving, [part[:, slot] for part in _by_flight(linearisation, linearisation.w)]
@@ -61,11 +61,11 @@ def _of_output(
     for place, (u, parts) in enumerate(answers.items()):
         own = slice(place * parts[0].shape[1], (place + 1) * parts[0].shape[1])
         at_once = [part[:, 0] for part in parts]
-        read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), TINY)[:, None]
+        read = cross_power(at_once, parts, steps_s).conj() / np.maximum(power(at_once, steps_s), NO_POWER)[:, None]
         for band in np.flatnonzero(believed > BELIEVED).tolist():
             error = complex(read[band] @ taps[own])
             sd = float(np.sqrt((read[band] @ covariance[own, own] @ read[band].conj()).real))
-            if abs(error) > SURE * sd:
+            if abs(error) > SURE_DEVIATIONS * sd:
                 low, high = BANDS_HZ[band : band + 2]
                 yield ErrorResponse(output, u, low, high, abs(error), sd, float(np.angle(error)), float(believed[band]))
 
@@ -87,7 +87,7 @@ def _answers(linearisation: Linearisation, column: int) -> list[Array]:
 
 def _lags_s(step_s: float) -> Array:
     """Lags from none on, doubled from a step to the memory's end."""
-    doublings = int(np.ceil(np.log2(max(MEMORY_S / step_s, 2.0))))
+    doublings = int(np.ceil(np.log2(max(RESPONSE_MEMORY_S / step_s, 2.0))))
     return step_s * np.append(0.0, 2.0 ** np.arange(doublings + 1))
 
 

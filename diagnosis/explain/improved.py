@@ -19,7 +19,7 @@ from records.plant import Parameter, Plant
 from sim.added_effects import with_effects
 
 Array = NDArray[np.float64]
-DIGITS = 9
+CORRELATION_DIGITS = 9
 SOURCE = "re-estimated from logs by twinlaw diagnose"
 
 
@@ -59,7 +59,9 @@ def _correlation(case: Case, fit: Fit) -> Correlation | None:
     count = len(case.free)
     covariance = np.linalg.pinv(fit.information)[:count, :count]
     deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-30))
-    matrix = np.clip(np.round((covariance + covariance.T) / 2.0 / np.outer(deviation, deviation), DIGITS), -1.0, 1.0)
+    matrix = np.clip(
+        np.round((covariance + covariance.T) / 2.0 / np.outer(deviation, deviation), CORRELATION_DIGITS), -1.0, 1.0
+    )
     np.fill_diagonal(matrix, 1.0)
     names = [str(symbol) for symbol in case.library.bound.model.parameter_symbols]
     return Correlation(tuple(names[place] for place in case.free), tuple(tuple(row) for row in matrix.tolist()))

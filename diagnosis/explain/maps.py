@@ -11,7 +11,7 @@ from records.diagnosis import Band, Region, Span
 
 Array = NDArray[np.float64]
 SPANS, REGIONS = 12, 8
-LEAST_SHARE = 0.02
+LEAST_LISTED_SHARE = 0.02
 KNOWN_TO = 0.25  # of a response, to which it must be known for its band to be named
 
 
@@ -26,7 +26,11 @@ def time_map(case: Case, energy: Sequence[Array]) -> tuple[Span, ...]:
     edges = np.linspace(0.0, end, SPANS + 1)
     where = np.concatenate([flight.log.t_s for flight in case.flights])
     shares = _shares(where, np.concatenate(energy), edges)
-    rows = [Span(float(edges[i]), float(edges[i + 1]), share) for i, share in enumerate(shares) if share > LEAST_SHARE]
+    rows = [
+        Span(float(edges[i]), float(edges[i + 1]), share)
+        for i, share in enumerate(shares)
+        if share > LEAST_LISTED_SHARE
+    ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 
 
@@ -64,7 +68,7 @@ def band_map(case: Case, before: Sequence[Array], after: Sequence[Array]) -> tup
     supported = found > 1.0 / (1.0 + 2.0 * (averages(errors[0], steps_s) - 1.0) * KNOWN_TO**2)
     rows = [
         Band(BANDS_HZ[i], BANDS_HZ[i + 1], float(shares[i]), float(found[i]))
-        for i in np.flatnonzero(supported & (shares > LEAST_SHARE)).tolist()
+        for i in np.flatnonzero(supported & (shares > LEAST_LISTED_SHARE)).tolist()
     ]
     return tuple(sorted(rows, key=lambda row: -row.share))
 

@@ -8,7 +8,7 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.search.beam import Search, certainties
 from records.diagnosis import PlaceShare
 
-LEAST = 0.005
+LEAST_PLACE_SHARE = 0.005
 
 
 def place_shares(
@@ -24,7 +24,11 @@ def place_shares(
     for place in retuned_places:
         found[place] += weighed.retune / len(retuned_places)
     total = sum(found.values())
-    kept = {place: share / total for place, share in found.items() if share > LEAST * total} if total > 0.0 else {}
+    kept = (
+        {place: share / total for place, share in found.items() if share > LEAST_PLACE_SHARE * total}
+        if total > 0.0
+        else {}
+    )
     whole = sum(kept.values())
     rows = [PlaceShare(place, share / whole) for place, share in kept.items()]
     return tuple(sorted(rows, key=lambda row: (-row.share, row.place)))

@@ -7,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.decide.unknown import LEAST_OWN_SHARE
 from diagnosis.detect.detection import MEAN_GAIN, FormScores
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
-from diagnosis.explain.curve import target_of
+from diagnosis.explain.curve import axis_of_target
 
 Array = NDArray[np.float64]
 MOST_TERMS = 3
 NATS_PER_TERM = 6.0  # a number, and the choice of its form among some three hundred
-CLEARLY = 0.1  # of the gain so far that a further term must add
-OWN = 1e-3  # share of a form that must not be a mixture of those taken already
+FURTHER_TERM_SHARE = 0.1  # of the gain so far that a further term must add
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ def sparse_form(by_form: FormScores, place: str) -> tuple[Term, ...]:
     (1)  c = G^-1 s,  cov c = G^-1,
 
     with G and s the products of the forms with one another and with the innovations, what the plant's parameters imitate taken out. It ends
-    where a term gains less than NATS_PER_TERM or adds less than CLEARLY. All terms act on the target of the first.
+    where a term gains less than NATS_PER_TERM or adds less than FURTHER_TERM_SHARE. All terms act on the target of the first.
     """
     chosen: list[int] = []
     total = 0.0
     while len(chosen) < MOST_TERMS:
         members = _members(by_form, place, chosen)
         gains = _gains(by_form, chosen, members)
-        if not len(gains) or np.max(gains) < max(NATS_PER_TERM, CLEARLY * total):
+        if not len(gains) or np.max(gains) < max(NATS_PER_TERM, FURTHER_TERM_SHARE * total):
             break
         total += float(np.max(gains))
         chosen.append(members[int(np.argmax(gains))])
@@ -67,7 +67,7 @@ def suggestion(linearisation: Linearisation, by_form: FormScores, place: str) ->
     terms = sparse_form(by_form, place)
     if not terms:
         return None
-    target = target_of(linearisation, terms[0].target)
+    target = axis_of_target(linearisation, terms[0].target)
     return f"{target.name} gains {form_text(terms)} {target.unit}"
 
 
@@ -107,4 +107,6 @@ def _gains(by_form: FormScores, chosen: Sequence[int], members: Sequence[int]) -
         share = np.linalg.solve(gram[np.ix_(chosen, chosen)], cross)
         left, pull = norm - np.sum(cross * share, axis=0), pull - share.T @ score[list(chosen)]
     usual = np.maximum(1.0, by_form.null_gain[list(members)] / MEAN_GAIN)
-    return np.where(left > OWN * norm, 0.5 * pull**2 / np.maximum(left, OWN * norm), 0.0) / usual
+    return (
+        np.where(left > LEAST_OWN_SHARE * norm, 0.5 * pull**2 / np.maximum(left, LEAST_OWN_SHARE * norm), 0.0) / usual
+    )

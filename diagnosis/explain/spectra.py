@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 BANDS_HZ = (0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
-TINY = 1e-300  # power of a band in which there is nothing
+NO_POWER = 1e-300  # power of a band in which there is nothing
 
 
 def cross_power(one: Sequence[Array], other: Sequence[Array], steps_s: Sequence[float]) -> Complex:
@@ -31,7 +31,7 @@ def power(of: Sequence[Array], steps_s: Sequence[float]) -> Array:
 def coherence(one: Sequence[Array], other: Sequence[Array], steps_s: Sequence[float]) -> Array:
     """gamma^2 by band (bands,): |sum A conj(B)|^2 / (sum |A|^2 sum |B|^2), the spectra averaged over the band; 0 where one is nothing."""
     both = power(one, steps_s) * power(other, steps_s)
-    return np.asarray(np.abs(cross_power(one, other, steps_s)) ** 2 / np.maximum(both, TINY))
+    return np.asarray(np.abs(cross_power(one, other, steps_s)) ** 2 / np.maximum(both, NO_POWER))
 
 
 def averages(of: Sequence[Array], steps_s: Sequence[float]) -> Array:

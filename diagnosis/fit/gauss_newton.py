@@ -15,10 +15,10 @@ from diagnosis.library.input_effects import LOST_FRAMES, share_slopes
 from sim.effect import EffectParameter
 
 Array = NDArray[np.float64]
-ENOUGH = 0.1  # gain of the log posterior below which a fit has ended
+LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
-WIDEST, JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
+WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
 SCATTERS = "jitter"  # the symbol of a number that makes readings less sure (jitter.py)
 OUT_OF_REACH = 1e3  # references
 
@@ -142,7 +142,7 @@ def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) 
     for _ in range(rounds):
         if at is None:
             return None
-        if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < ENOUGH:
+        if damping == 0.0 and 0.5 * float(at.pull @ np.linalg.solve(at.information, at.pull)) < LEAST_STEP_GAIN:
             return at
         for _ in range(DAMPINGS):
             fitted = _linear(case, _moved(case, at, damping), free, at.log_posterior)
@@ -153,7 +153,7 @@ def fit(case: Case, start: Hypothesis, *, rounds: int = 8, shapes: bool = True) 
             return at
         gain, at = fitted.log_posterior - at.log_posterior, fitted
         damping *= 0.2
-        if gain < ENOUGH:
+        if gain < LEAST_STEP_GAIN:
             break
     return at
 
@@ -271,7 +271,7 @@ def _smoothed(case: Case, hypothesis: Hypothesis, entry: Free, known: float) -> 
     if below is None or above is None:
         return np.nan, np.nan
     change = np.concatenate([np.log(one.s / other.s).ravel() for one, other in zip(above, below, strict=True)])
-    change = np.where(np.abs(change) < JUMP, change, 0.0) / (2.0 * reach)
+    change = np.where(np.abs(change) < LAG_JUMP, change, 0.0) / (2.0 * reach)
     return (likelihood(below) - likelihood(above)) / (2.0 * reach), 0.5 * float(change @ change)
 
 

@@ -20,7 +20,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.library.sensor_effects import rates
 from jobs.thread_map import thread_map
 
-FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
+JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
 SHARED = 5.0  # times the variance that fourth differences show, where each reading's scatter is its neighbour's as well: 70 / 14
 
@@ -97,7 +97,7 @@ def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
         (0.0, *(share * tau_s for share in decisions.JITTER_SHARES if share * tau_s < most_s), most_s),
     )
     best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
-    found = coarse | _tried(case, hypothesis, name, [share * best for share in FINELY])
+    found = coarse | _tried(case, hypothesis, name, [share * best for share in JITTER_FINELY])
     best = max(found, key=lambda jitter_s: found[jitter_s])
     return _with(hypothesis, name, best if found[best] > found[0.0] + decisions.LEAST_JITTER_GAIN else 0.0)
 

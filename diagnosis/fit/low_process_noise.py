@@ -14,7 +14,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import process_noise_of
 from diagnosis.hypothesis.case import Case
 
-FIRST_STEP = 0.6
+LOWERED_FIRST_STEP = 0.6
 
 
 def with_low_process_noise(case: Case, found: Fit) -> Fit | None:
@@ -29,7 +29,7 @@ def with_low_process_noise(case: Case, found: Fit) -> Fit | None:
 
 def with_own_process_noise(case: Case, found: Fit) -> Fit | None:
     """A fit found under low process noise with the process noise that its innovations show."""
-    return fit(case, process_noise_of(case, found, FIRST_STEP), rounds=3)
+    return fit(case, process_noise_of(case, found, LOWERED_FIRST_STEP), rounds=3)
 
 
 def _lowest(case: Case) -> list[float]:

@@ -9,15 +9,15 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from records.errors import BadInput
 
-ROUNDS = 4
-SETTLED = 0.05
+NOMINAL_ROUNDS = 4
+SETTLED_NOISE = 0.05
 
 
 def nominal_fit(case: Case) -> Fit:
     """The plant re-tuned within its spread, with the process noise that then remains."""
     hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
-    found = fit(case, hypothesis, rounds=ROUNDS)
-    for turn in range(ROUNDS):
+    found = fit(case, hypothesis, rounds=NOMINAL_ROUNDS)
+    for turn in range(NOMINAL_ROUNDS):
         if found is None:
             raise BadInput(
                 "plant",
@@ -28,9 +28,9 @@ def nominal_fit(case: Case) -> Fit:
             )
         refined_noise = process_noise_of(case, found, FIRST_STEP if turn < 2 else 0.1)
         settled = bool(
-            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED
+            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED_NOISE
         )
-        found = fit(case, refined_noise, rounds=ROUNDS)
+        found = fit(case, refined_noise, rounds=NOMINAL_ROUNDS)
         if settled and found is not None:
             break
     assert found is not None

@@ -8,10 +8,12 @@ from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 
-LEAST, MOST = -5.0, 1.5
+LEAST_NOISE, MOST_NOISE = -5.0, 1.5
 FIRST_STEP = 0.3
 MOST_STEPS = 12
-LITTLE = 0.1  # nats that the top of the parabola, (below - above)^2 / (8 |bend|) higher, must promise to be looked at
+LITTLE_PROMISED = (
+    0.1  # nats that the top of the parabola, (below - above)^2 / (8 |bend|) higher, must promise to be looked at
+)
 
 
 def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
@@ -36,7 +38,7 @@ def _along(case: Case, hypothesis: Hypothesis, value: float, axis: int, step: fl
 
     def at(process_noise: float) -> tuple[Hypothesis, float]:
         changed = hypothesis.process_noise.copy()
-        changed[axis] = float(np.clip(process_noise, LEAST, MOST))
+        changed[axis] = float(np.clip(process_noise, LEAST_NOISE, MOST_NOISE))
         fitted = replace(hypothesis, process_noise=changed)
         return fitted, likelihood_of(case, fitted)
 
@@ -50,7 +52,7 @@ def _along(case: Case, hypothesis: Hypothesis, value: float, axis: int, step: fl
         else:
             below, middle, above = middle, above, at(above[0].process_noise[axis] + step)
     bend = below[1] - 2.0 * middle[1] + above[1]
-    if not (np.isfinite(bend) and bend < 0.0) or (below[1] - above[1]) ** 2 < -8.0 * bend * LITTLE:
+    if not (np.isfinite(bend) and bend < 0.0) or (below[1] - above[1]) ** 2 < -8.0 * bend * LITTLE_PROMISED:
         return middle
     top = at(middle[0].process_noise[axis] + 0.5 * step * (below[1] - above[1]) / bend)
     return top if top[1] > middle[1] else middle

@@ -21,7 +21,7 @@ LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of t
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class FilteredLog:
     """One log as the filter takes it: filter input, start x0 and its variances p0 (states,), axes held; `drive`
     (states,) as in filter.Noise."""
 
@@ -53,7 +53,7 @@ class Case:
     """
 
     library: EffectLibrary
-    flights: tuple[Flight, ...]
+    flights: tuple[FilteredLog, ...]
     slots: tuple[int, ...]
     free: NDArray[np.int64]
     stated: Mapping[str, Values] = field(default_factory=dict)
@@ -88,7 +88,7 @@ class Case:
         signs = [spec.sign for spec in self.library.bound.model.parameters for _ in range(spec.count)]
         return [int(place) for place in self.free if signs[place] != "any"]
 
-    def with_flights(self, flights: Sequence[Flight]) -> "Case":
+    def with_flights(self, flights: Sequence[FilteredLog]) -> "Case":
         """The same plant with other flights."""
         return replace(self, flights=tuple(flights))
 
@@ -121,10 +121,10 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
     return np.asarray(vectors * np.sqrt(np.maximum(values, LEAST_VARIANCE)))
 
 
-def _flight(library: EffectLibrary, log: RunLog, used: NDArray[np.bool_] | None) -> Flight:
+def _flight(library: EffectLibrary, log: RunLog, used: NDArray[np.bool_] | None) -> FilteredLog:
     filter_input = filter_input_of(log, library.bound.plant, library.outputs, used)
     x0, p0 = start_of(library, filter_input, log.locked)
-    return Flight(log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
+    return FilteredLog(log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
 
 
 def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise, Pass
-from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import RUB_S
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary, is_gust, is_lag
 from diagnosis.library.gust_state import gust_state
@@ -60,7 +60,7 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
 
 
 def filter_input_under(
-    case: Case, compiled: CompiledFilter, flight: Flight, effects: Mapping[str, Values]
+    case: Case, compiled: CompiledFilter, flight: FilteredLog, effects: Mapping[str, Values]
 ) -> FilterInput:
     """The flight's filter input with what the effects do on the way of the signals."""
     further = {name: values for name, values in effects.items() if name not in compiled.names}
@@ -71,13 +71,13 @@ def filter_input_under(
 
 @lru_cache(maxsize=32)
 def _sent(
-    library: EffectLibrary, flight: Flight, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]
+    library: EffectLibrary, flight: FilteredLog, effects: tuple[tuple[str, tuple[tuple[str, float], ...]], ...]
 ) -> FilterInput:
     given = {name: dict(values) for name, values in effects}
     return sensed(library, commanded(library, flight.filter_input, given), given)
 
 
-def noise_of(case: Case, compiled: CompiledFilter, flight: Flight, hypothesis: Hypothesis) -> Noise:
+def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> Noise:
     """The filter's noise: on each axis' speed its process noise, on gusts their own, next to none elsewhere."""
     x0, p0 = start_under(compiled, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
@@ -89,7 +89,7 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: Flight, hypothesis: H
     return Noise(q, np.full(max(1, len(compiled.filter.axes)), RUB_S), p0, drive, flight.step_s)
 
 
-def start_under(compiled: CompiledFilter, flight: Flight) -> tuple[Array, Array]:
+def start_under(compiled: CompiledFilter, flight: FilteredLog) -> tuple[Array, Array]:
     """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
     further = compiled.states[len(flight.x0) :]
     own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
@@ -110,7 +110,7 @@ def passes(
     compiled = case.library.compiled(hypothesis.effects)
     p = coefficients(case, compiled, hypothesis)
 
-    def over(flight: Flight) -> Pass | None:
+    def over(flight: FilteredLog) -> Pass | None:
         filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, hypothesis)
         run = compiled.filter.run(

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 
 Array = NDArray[np.float64]
-ROUNDED, TINY = 0.51, 1e-3  # encoder steps that rounding leaves at most; grids of no more than a step have no twin
-ROUGHLY, FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
+ROUNDED, NO_STEP = 0.51, 1e-3  # encoder steps that rounding leaves at most; grids of no more than a step have no twin
+GRID_ROUGHLY, GRID_FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
 
 
 def coarse_step(y: Array, step: float) -> float | None:
@@ -18,10 +18,12 @@ def coarse_step(y: Array, step: float) -> float | None:
     span = float(np.ptp(values))
     if len(values) > decisions.OCCUPIED_SHARE * (span / step + 1.0):
         return None
-    near = _nearest(values, float(np.median(np.diff(values))) * (1.0 + ROUGHLY * AROUND))[0]
-    twin = near / max(near / step - 1.0, TINY)  # meets the same counts, but for rounding
+    near = _nearest(values, float(np.median(np.diff(values))) * (1.0 + GRID_ROUGHLY * AROUND))[0]
+    twin = near / max(near / step - 1.0, NO_STEP)  # meets the same counts, but for rounding
     fine = [
-        _nearest(values, grid * (1.0 + FINELY * AROUND)) for grid in (near, twin) if grid > decisions.COARSE_STEP * step
+        _nearest(values, grid * (1.0 + GRID_FINELY * AROUND))
+        for grid in (near, twin)
+        if grid > decisions.COARSE_STEP * step
     ]
     if not fine:
         return None

@@ -19,7 +19,11 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 Array = NDArray[np.float64]
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
 POLISHING = (0.2, 0.03, 0.005)  # of a step, as shares, in which a likelier one is looked for,
-FINELY = (1e-3, 2e-4, 4e-5)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
+STEP_FINELY = (
+    1e-3,
+    2e-4,
+    4e-5,
+)  # and once the rest fits: some hundred steps of a range tell one to a hundred-thousandth
 LEVELS = np.geomspace(
     0.5, 2.0, 7
 )  # of a friction that holds an axis: where it holds, slopes do not tell what more of it would do
@@ -66,7 +70,7 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The fit with the process noise that then remains."""
     start = with_jitter(case, process_noise_of(case, fitted.fit), fitted.effects)
     for name in fitted.effects:
-        start = _polished(case, start, name, FINELY) if name.endswith("_input.quantization") else start
+        start = _polished(case, start, name, STEP_FINELY) if name.endswith("_input.quantization") else start
     for name in holding(case.library, fitted.effects):
         start = _likeliest(case, start, name, LEVELS)
     found = fit(case, start, rounds=5)

@@ -18,7 +18,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map
 
 FACTORS = (2.0, 1.4, 1.15)  # by which size and time are then tried apart
-ROUNDS = 4
+GUST_ROUNDS = 4
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 
@@ -58,7 +58,7 @@ def _gust(case: Case, nominal: FittedHypothesis, axis: str) -> FittedHypothesis 
     start = _likeliest(case, [low_noise.with_effects({**hypothesis.effects, name: values}) for values in starts])
     for factor in FACTORS:
         start = _likeliest(case, list(_about(with_process_noise(case, start), name, factor)))
-    found = fit(case, start, rounds=ROUNDS)
+    found = fit(case, start, rounds=GUST_ROUNDS)
     return None if found is None else as_fitted(case, found)
 
 

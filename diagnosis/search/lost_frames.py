@@ -27,7 +27,7 @@ from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.fit.gauss_newton import Fit, fit, unfitted
 from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
 from diagnosis.library.input_effects import LOST_FRAMES, lost_with
 from jobs.thread_map import thread_map
@@ -35,10 +35,10 @@ from sim.bind import evaluated
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
-APART = 60  # rows after which the filter has forgotten a frame
+FORGOTTEN_ROWS = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 12, 0.1
-LITTLE = 0.005  # of what losses gain, below which another round is not worth its time
-ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
+LITTLE_GAINED = 0.005  # of what losses gain, below which another round is not worth its time
+LOSS_ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
 SHARES = np.geomspace(1e-3, 0.8, 60)
 OPENING = Lock()
 
@@ -53,7 +53,7 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
         return case, None
     answers = _all_answers(case, linearisation)
     alone = _with_ratios(case, linearisation, answers, 0)
-    if evidence(alone, likely_share(alone)) < decisions.LEAST_LOSS_GAIN:
+    if loss_evidence(alone, likely_share(alone)) < decisions.LEAST_LOSS_GAIN:
         return alone, None
     found, fitted = _settled(case, linearisation, answers)
     theta = linearisation.fit.hypothesis.theta
@@ -67,14 +67,14 @@ def _settled(case: Case, linearisation: Linearisation, answers: Sequence[Array])
     found, fitted = _fitted(case, linearisation, answers)
     if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + decisions.LEAST_LOSS_GAIN:
         return found, None
-    for _ in range(ROUNDS):
+    for _ in range(LOSS_ROUNDS):
         refined_noise = linearised(found, fitted)
         again, better = _fitted(found, refined_noise, _all_answers(found, refined_noise))
         if better is None or better.log_posterior < fitted.log_posterior + decisions.LEAST_LOSS_GAIN:
             break
         more = better.log_posterior - fitted.log_posterior
         found, fitted = again, better
-        if more < LITTLE * (fitted.log_posterior - linearisation.fit.log_posterior):
+        if more < LITTLE_GAINED * (fitted.log_posterior - linearisation.fit.log_posterior):
             break
     return found, fitted
 
@@ -100,7 +100,7 @@ def _fitted(case: Case, linearisation: Linearisation, answers: Sequence[Array]) 
     """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
     found = _with_ratios(case, linearisation, answers, SWEEPS)
     share = likely_share(found)
-    if evidence(found, share) < decisions.LEAST_LOSS_GAIN:
+    if loss_evidence(found, share) < decisions.LEAST_LOSS_GAIN:
         return found, None
     hypothesis = linearisation.fit.hypothesis
     start = hypothesis.with_effects({**hypothesis.effects, LOST_FRAMES: {"p": share}})
@@ -109,10 +109,10 @@ def _fitted(case: Case, linearisation: Linearisation, answers: Sequence[Array]) 
 
 def likely_share(case: Case) -> float:
     """The share p of lost frames with the most evidence."""
-    return float(SHARES[np.argmax([evidence(case, share) for share in SHARES.tolist()])])
+    return float(SHARES[np.argmax([loss_evidence(case, share) for share in SHARES.tolist()])])
 
 
-def evidence(case: Case, share: float) -> float:
+def loss_evidence(case: Case, share: float) -> float:
     """Log evidence of a loss with probability `share` in every frame against none."""
     ratios = np.concatenate([flight.filter_input.lost for flight in case.flights])
     return float(np.sum(np.logaddexp(np.log1p(-share), np.log(share) + ratios[ratios != 0.0])))
@@ -136,7 +136,7 @@ def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Arr
     ends = np.cumsum([flight.filter_input.rows for flight in case.flights])[:-1]
     columns = list(drives(case))
 
-    def judged(flight: Flight, unit: Array, w: Array) -> Flight:
+    def judged(flight: FilteredLog, unit: Array, w: Array) -> FilteredLog:
         before = _hypothesis(flight.filter_input, linearisation.fit.hypothesis)
         ratios, power = _ratios(flight.filter_input.u, columns, unit, w, before, _judged(flight.filter_input), sweeps)
         return replace(flight, filter_input=replace(flight.filter_input, lost=ratios, loss_power=power))
@@ -148,7 +148,8 @@ def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Arr
 
 
 def _unit_answers(case: Case, linearisation: Linearisation, index: int) -> Array:
-    """Answers (rows, APART, slots, drives) of the innovations from a frame's own row on to a unit of each drive's input over that frame."""
+    """Answers (rows, FORGOTTEN_ROWS, slots, drives) of the innovations from a frame's own row on to a unit of each
+    drive's input over that frame."""
     filter_input, run, hypothesis = (
         linearisation.filter_inputs[index],
         linearisation.runs[index],
@@ -160,17 +161,18 @@ def _unit_answers(case: Case, linearisation: Linearisation, index: int) -> Array
     h = np.append(np.diff(filter_input.t_s), 0.0)
     found = []
     for state, gain in drives(case).values():
-        values = np.zeros((len(rows), 1, APART))
-        values[rows, 0, rows % APART] = h * evaluated(model, p[: case.library.own], gain)
+        values = np.zeros((len(rows), 1, FORGOTTEN_ROWS))
+        values[rows, 0, rows % FORGOTTEN_ROWS] = h * evaluated(model, p[: case.library.own], gain)
         found.append(linearisation.filter.response(filter_input, run, values.__getitem__, [state], case.slots))
     return _unfolded(np.stack(found, axis=2))
 
 
 def _unfolded(answers: Array) -> Array:
-    """Answers by frame and lag, 0 beyond the end, from columns (rows, slots, drives, APART) that frames APART rows apart share."""
+    """Answers by frame and lag, 0 beyond the end, from columns (rows, slots, drives, FORGOTTEN_ROWS) that frames
+    FORGOTTEN_ROWS rows apart share."""
     rows = np.arange(len(answers))[:, None]
-    later = rows + np.arange(APART)
-    own = answers[np.minimum(later, len(answers) - 1), :, :, rows % APART]
+    later = rows + np.arange(FORGOTTEN_ROWS)
+    own = answers[np.minimum(later, len(answers) - 1), :, :, rows % FORGOTTEN_ROWS]
     return np.where((later < len(answers))[:, :, None, None], own, 0.0)
 
 
@@ -230,7 +232,7 @@ def _judged_by(
     for name, array in arrays.items():
         setattr(request, name, ffi.cast("void *", array.ctypes.data))
     request.rows, request.inputs, request.drives = len(u), u.shape[1], len(columns)
-    request.slots, request.apart, request.sweeps = w.shape[1], APART, sweeps
+    request.slots, request.apart, request.sweeps = w.shape[1], FORGOTTEN_ROWS, sweeps
     request.fresh, request.first_share = not before.any(), FIRST_SHARE
     return way(request), arrays["found"], arrays["power"]
 

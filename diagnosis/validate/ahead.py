@@ -22,7 +22,7 @@ from sim.columns import log_columns
 
 Array = NDArray[np.float64]
 EVERY_S = 0.05  # between two predictions
-MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
+AHEAD_MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
 GAP_S = 10.0
 # Log10 of the noise on each axis' speed per square root of a second. Calmer air leaves less of an exact twin's gap, and lets a twin that
 # lacks something lose its state: from -1.5 to -2 the first falls by a third to a half, the second grows by a tenth.
@@ -64,7 +64,7 @@ class Lookahead:
         due = self._due(len(self._rows) - len(rows))
         found = self._predicted(due) if due else ()
         newest_s = rows[-1].t_s
-        self._rows = [row for row in self._rows if row.t_s > newest_s - MEMORY_S]
+        self._rows = [row for row in self._rows if row.t_s > newest_s - AHEAD_MEMORY_S]
         self._found = [entry for entry in (*self._found, *found) if entry.t_s > newest_s - GAP_S]
         return found
 

@@ -16,17 +16,17 @@ from diagnosis.validate.prediction import SETTLE_S
 from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
 from records.table import ControllerTable
-from replay.flight import Flight as Samples
+from replay.flight import ReplayedLog as Samples
 from replay.flight import flight_of, has_replayable_columns
 from verification.host_law import HostLaw, host_law
 
 Array = NDArray[np.float64]
 MODEL_VARIANTS = ("nominal", "before", "after")
 SEEDS = (1, 2)  # flights of the floor
-WINDOW_S = 3.0
+BLOCK_S = 3.0
 MOST_SAMPLES = 12_000  # of each log: two minutes at 100 Hz tell what an hour would
 ASTRAY_S = 1.0  # so long in all a flight may be further from the log than the log's own range
-DRAWS, SEED = 500, 7
+REFLIGHT_DRAWS, REFLIGHT_SEED = 500, 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +167,7 @@ def _astray(entry: Reflown, variant: str, outputs: int) -> bool:
 
 
 def _numbers(t_s: Array) -> NDArray[np.int64]:
-    return np.asarray(np.floor((t_s - t_s[0]) / WINDOW_S + 1e-9), dtype=np.int64)
+    return np.asarray(np.floor((t_s - t_s[0]) / BLOCK_S + 1e-9), dtype=np.int64)
 
 
 def _fraction(
@@ -185,8 +185,8 @@ def _fraction(
         return float(np.sum((before - after) / scale)) / removable if removable > 0.0 else None
 
     fraction = share(sums.sum(axis=0))
-    rng = np.random.default_rng(SEED)
-    drawn = [share(sums[rng.integers(0, len(sums), len(sums))].sum(axis=0)) for _ in range(DRAWS)]
+    rng = np.random.default_rng(REFLIGHT_SEED)
+    drawn = [share(sums[rng.integers(0, len(sums), len(sums))].sum(axis=0)) for _ in range(REFLIGHT_DRAWS)]
     known = [value for value in drawn if value is not None]
     if fraction is None or not known:
         return fraction, None

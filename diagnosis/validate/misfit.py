@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.prediction import predictions, windows
 
@@ -28,7 +28,7 @@ def ignorance(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
     return found
 
 
-def _squares(flight: Flight, predicted: Array) -> tuple[Array, Array]:
+def _squares(flight: FilteredLog, predicted: Array) -> tuple[Array, Array]:
     """Squared errors (rows, outputs) of the predictions, and of holding each window's first reading, over the same rows."""
     y = flight.log.y
     held = np.full_like(y, np.nan)

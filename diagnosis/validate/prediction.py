@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise
-from diagnosis.hypothesis.case import Case, Flight
+from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
 from diagnosis.library.effect_library import CompiledFilter
 from sim.effect import Values
@@ -17,7 +17,7 @@ from sim.effect import Values
 Array = NDArray[np.float64]
 WINDOW_S = 1.0
 SETTLE_S = 2.0  # until then the filter cannot tell the speeds well enough
-UNSEEN = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
+UNSEEN_VARIANCE = 1e8  # variance of a reading that the state shall not follow, in squares of its own unit
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Span:
     last: int
 
 
-def predictions(case: Case, flight: Flight, hypothesis: Hypothesis, spans: Sequence[Span] | None = None) -> Array:
+def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: Sequence[Span] | None = None) -> Array:
     """Predicted readings (rows, outputs) of a log by free runs over `spans`, by default its windows of a second.
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
@@ -76,7 +76,7 @@ def windows(t_s: Array) -> list[tuple[int, int]]:
     return [(first, last) for first, last in pairwise(edges) if last - first > 1]
 
 
-def _unforeseen(flight: Flight) -> Flight:
+def _unforeseen(flight: FilteredLog) -> FilteredLog:
     """The flight without what its own readings say of lost frames: a prediction knows only how many are lost."""
     filter_input = flight.filter_input
     return (
@@ -106,7 +106,7 @@ def _unseen(filter_input: FilterInput, begin: int, end: int, outputs: int) -> Fi
         filter_input.t_s[begin:end],
         filter_input.u[begin:end],
         y,
-        r=np.full_like(y, UNSEEN),
+        r=np.full_like(y, UNSEEN_VARIANCE),
         read=y,
         standing=np.ones_like(y),
         single=filter_input.single,

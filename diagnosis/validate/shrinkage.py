@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.agreement import agreements
-from diagnosis.validate.closed_loop import closed_loop
+from diagnosis.validate.closed_loop import MODEL_VARIANTS, closed_loop
 from diagnosis.validate.prediction import predictions, windows
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
 Array = NDArray[np.float64]
-MODEL_VARIANTS = ("nominal", "before", "after")
-DRAWS, SEED = 1000, 7
+BOOTSTRAP_DRAWS, BOOTSTRAP_SEED = 1000, 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +94,11 @@ def _squares(predicted: Sequence[Predicted], variant: str) -> Array:
 
 
 def _drawn(count: int) -> Array:
-    """How often each of `count` windows is drawn, (DRAWS, count), with replacement."""
-    rng = np.random.default_rng(SEED)
-    return np.stack([np.bincount(rng.integers(0, count, count), minlength=count) for _ in range(DRAWS)]).astype(float)
+    """How often each of `count` windows is drawn, (BOOTSTRAP_DRAWS, count), with replacement."""
+    rng = np.random.default_rng(BOOTSTRAP_SEED)
+    return np.stack(
+        [np.bincount(rng.integers(0, count, count), minlength=count) for _ in range(BOOTSTRAP_DRAWS)]
+    ).astype(float)
 
 
 def _fractions(squares: Mapping[str, Array], floor: Array, weights: Array) -> Array:

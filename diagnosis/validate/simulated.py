@@ -12,13 +12,13 @@ from diagnosis.fit.gauss_newton import SCATTERS
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
+from diagnosis.validate.prediction import UNSEEN_VARIANCE
 from sim.composition.build import paths_with
 from sim.effect import Values
 from sim.paths.path import Held, OutputStage, Trace, passed
 from sim.plants import MODELS
 
 Array = NDArray[np.float64]
-UNSEEN = 1e8  # variance of a reading that only asks
 
 
 class Flown:
@@ -128,7 +128,7 @@ class Flown:
             "t_s": np.array([self.t_s, self.t_s]),
             "u": np.zeros((2, inputs)),
             "y": y,
-            "r": np.full((2, outputs), UNSEEN),
+            "r": np.full((2, outputs), UNSEEN_VARIANCE),
             "row": np.arange(2, dtype=np.int64),
             "place": np.tile(np.arange(2, dtype=np.int64)[:, None], (1, outputs)),
             "p": np.ascontiguousarray(p),

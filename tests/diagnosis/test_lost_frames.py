@@ -13,7 +13,7 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.beam import lost_frames
-from diagnosis.search.lost_frames import APART, SWEEPS, _ratios, evidence, likely_share, with_losses
+from diagnosis.search.lost_frames import FORGOTTEN_ROWS, SWEEPS, _ratios, likely_share, loss_evidence, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant
 from sim.paths.input_stages import uniform
@@ -58,7 +58,7 @@ def test_lost_frames_are_told_from_others(plant: BoundPlant, fly: Fly) -> None:
 def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> None:
     case, fitted = losses(plant, fly(41))
     assert fitted is None
-    assert evidence(case, likely_share(case)) < decisions.LEAST_LOSS_GAIN
+    assert loss_evidence(case, likely_share(case)) < decisions.LEAST_LOSS_GAIN
 
 
 def test_a_loop_that_is_late_loses_no_frames(plant: BoundPlant, fly: Fly) -> None:
@@ -79,7 +79,7 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
     rng = np.random.default_rng(5)
     rows, slots, columns = 150, 2, [0, 2]
     u, w = rng.standard_normal((rows, 3)), rng.standard_normal((rows, slots))
-    answers = 0.1 * rng.standard_normal((rows, APART, slots, len(columns)))
+    answers = 0.1 * rng.standard_normal((rows, FORGOTTEN_ROWS, slots, len(columns)))
     before = rng.uniform(0.0, 1.0, rows)
     judged = np.ones(rows, dtype=np.uint8)
     judged[[0, 40, 41]] = 0
@@ -90,7 +90,7 @@ def test_each_frame_s_ratio_is_that_of_its_own_answer() -> None:
         held = arrived[row - 1] - u[row, columns]
         arrived[row] += before[row] * held
         a = (answers[row] @ held)[: rows - row]
-        expected = np.sum(a * (w[row : row + APART] + before[row] * a)) - 0.5 * np.sum(a * a)
+        expected = np.sum(a * (w[row : row + FORGOTTEN_ROWS] + before[row] * a)) - 0.5 * np.sum(a * a)
         np.testing.assert_allclose(found[row], expected if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
         np.testing.assert_allclose(power[row], np.sum(a * a) if judged[row] else 0.0, rtol=1e-9, atol=1e-12)
 
@@ -101,7 +101,7 @@ def answered(u: Array, lost: Array, answers: Array) -> tuple[Array, Array]:
     for row in range(1, len(u)):
         held = lost[row] * (arrived[row - 1] - u[row])
         arrived[row] += held
-        end = min(len(u), row + APART)
+        end = min(len(u), row + FORGOTTEN_ROWS)
         w[row:end, 0] += answers[row, : end - row, 0, 0] * held
     return arrived, w
 
@@ -112,8 +112,8 @@ def test_in_sweeps_every_frame_is_judged_beside_the_others() -> None:
     rows = 200
     u, lost = rng.standard_normal((rows, 1)), np.zeros(rows)
     lost[[20, 22, 23, 90, 91, 150]] = 1.0
-    answers = np.zeros((rows, APART, 1, 1))
-    answers[:, :, 0, 0] = 10.0 * np.exp(-np.arange(APART) / 5.0)
+    answers = np.zeros((rows, FORGOTTEN_ROWS, 1, 1))
+    answers[:, :, 0, 0] = 10.0 * np.exp(-np.arange(FORGOTTEN_ROWS) / 5.0)
     arrived, w = answered(u, lost, answers)
     ratios, _ = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), 10)
     clear = np.append(False, np.abs(arrived[:-1, 0] - u[1:, 0]) > 0.2)
@@ -127,8 +127,8 @@ def test_losses_side_by_side_are_told_apart() -> None:
     rows = 3000
     u, lost = rng.standard_normal((rows, 1)).cumsum(axis=0), rng.uniform(size=rows) < 0.25
     lost[0] = False
-    lags = np.arange(APART)
-    answers = np.zeros((rows, APART, 1, 1))
+    lags = np.arange(FORGOTTEN_ROWS)
+    answers = np.zeros((rows, FORGOTTEN_ROWS, 1, 1))
     answers[:, :, 0, 0] = 5.0 * lags / 3.0 * np.exp(1.0 - lags / 3.0)
     w = rng.standard_normal((rows, 1)) + answered(u, lost.astype(float), answers)[1]
     ratios, power = _ratios(u, [0], answers, w, np.zeros(rows), np.ones(rows, dtype=np.uint8), SWEEPS)

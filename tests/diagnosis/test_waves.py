@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.detect.instants import target_of
+from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.waves import likely_waves, wave_starts
 from diagnosis.diagnose import Material, diagnose
@@ -41,7 +41,7 @@ def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly
     log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, rig_seed=61)
     linearisation = linearised(case := make_case(effect_library(plant), [log]), nominal_fit(case))
     effect = library(plant)["elevation.periodic_torque"]
-    target = target_of(case, effect)
+    target = disturbed_by(case, effect)
     assert target is not None
     likely = likely_waves(linearisation, target)
     begun = {start["rate"] for start in wave_starts(linearisation, effect)}

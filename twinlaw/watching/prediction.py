@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from diagnosis.validate.ahead import EVERY_S, MEMORY_S, Lookahead
+from diagnosis.validate.ahead import AHEAD_MEMORY_S, EVERY_S, Lookahead
 from records.live import LiveRow
 from sim.bind import BoundPlant
 
@@ -14,6 +14,6 @@ def ready_lookahead(bound: BoundPlant, locked: Sequence[str]) -> Lookahead:
     """
     lookahead = Lookahead(bound, locked)
     u, y = (tuple(0.0 for _ in names) for names in (bound.model.inputs, bound.model.outputs))
-    lookahead.take([LiveRow(k * EVERY_S, u, y, ()) for k in range(round(MEMORY_S / EVERY_S))])
+    lookahead.take([LiveRow(k * EVERY_S, u, y, ()) for k in range(round(AHEAD_MEMORY_S / EVERY_S))])
     lookahead.forget()
     return lookahead

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from diagnosis.validate.ahead import MEMORY_S
+from diagnosis.validate.ahead import AHEAD_MEMORY_S
 from records.errors import BadInput
 from records.live import LiveRow
 from records.log import RunLog
@@ -80,7 +80,7 @@ class LogSource:
         self.anew = True
         self._now_s = float(t_s)
         self._next = next(
-            k for k, row in enumerate(self._rows) if row.t_s >= min(max(0.0, t_s - MEMORY_S), self._end_s)
+            k for k, row in enumerate(self._rows) if row.t_s >= min(max(0.0, t_s - AHEAD_MEMORY_S), self._end_s)
         )
         self._playing = True
 

@@ -8,6 +8,7 @@ from threading import Thread
 
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
+from diagnosis.validate.closed_loop import MODEL_VARIANTS
 from diagnosis.validate.shrinkage import Predicted
 from jobs.thread_map import through_when_interrupted
 from logcheck.clock import from_their_start
@@ -35,7 +36,6 @@ from twinlaw.pages.page import Page, page_text
 
 PAGE = "twinlaw.pages.diagnose.report"
 ANSWER = "diagnosis.json"
-BARS = ("nominal", "before", "after")  # the plant as stated, re-tuned, with what was found
 
 
 def diagnose_logs(plant: Path, logs: Sequence[Path], holdout: Sequence[Path], out: Path) -> Result:
@@ -166,7 +166,10 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
             name=flight.name,
             t_s=flight.t_s,
             measured={output: flight.y[:, place] for place, output in enumerate(outputs)},
-            **{bar: {output: flight.by[bar][:, place] for place, output in enumerate(outputs)} for bar in BARS},
+            **{
+                variant: {output: flight.by[variant][:, place] for place, output in enumerate(outputs)}
+                for variant in MODEL_VARIANTS
+            },
         )
         for flight in result.predicted
     ]
@@ -202,9 +205,9 @@ def prediction_text(predicted: Predicted, outputs: Sequence[str]) -> str:
         stem = output.removesuffix(f"_{unit}") if unit else output
         names.append(output)
         columns.append(predicted.y[:, place])
-        for bar in BARS:
-            names.append(f"{stem}_{bar}_{unit}" if unit else f"{output}_{bar}")
-            columns.append(predicted.by[bar][:, place])
+        for variant in MODEL_VARIANTS:
+            names.append(f"{stem}_{variant}_{unit}" if unit else f"{output}_{variant}")
+            columns.append(predicted.by[variant][:, place])
     return rows_text(names, columns, None).replace("nan", "")
 
 
