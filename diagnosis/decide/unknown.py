@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
 from diagnosis.detect.forms import Form
+from records.functional_class import parse_class
 
 Array = NDArray[np.float64]
 LIMITS = (".saturation", ".slew_limit")
@@ -39,7 +40,7 @@ def left_beside(by_form: FormScores, effects: Sequence[str]) -> float:
     limited = {_side(name.split(".")[0]) for name in effects if name.endswith(LIMITS)}
 
     def weight(place: str, text: str) -> float:
-        if text.startswith("limit(") and _side(place) in limited:
+        if parse_class(text).kind == "limit" and _side(place) in limited:
             return decisions.OTHER_KNEE
         return decisions.SAME_PLACE if _side(place) in own else 1.0
 

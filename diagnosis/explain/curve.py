@@ -10,6 +10,7 @@ from diagnosis.detect.detection import FormScores, gains
 from diagnosis.detect.forms import Form
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import Signals, angle_names, rotor_name, signals
+from records.functional_class import parse_class
 from records.text.units import unit_suffix
 from sim.places import InputPlace
 
@@ -53,7 +54,7 @@ def shape_of(linearisation: Linearisation, by_form: FormScores, suspect: Suspect
     evidence. None for a class that names no signal of the plant.
     """
     target = form_of(by_form, suspect).target
-    names = _signals_of(suspect.class_text)[:2]
+    names = [entry.signal for entry in parse_class(suspect.class_text).depends[:2]]
     flown = [signals(linearisation, flight, {}) for flight in range(len(linearisation.filter_inputs))]
     known = [_known(linearisation, s) for s in flown]
     axes = _axes(linearisation)
@@ -95,12 +96,6 @@ def axis_of_target(linearisation: Linearisation, target: int) -> Axis:
     if target >= states:
         return Axis(stem, shown)
     return Axis(f"d {stem}/dt", f"{shown}^2" if shown.endswith("/s") else f"{shown}/s")
-
-
-def _signals_of(class_text: str) -> list[str]:
-    """The signals that a class names ("torque(t, sgn phi_dot) on azimuth" -> t, phi_dot)."""
-    inside = class_text.partition("(")[2].partition(")")[0] or class_text
-    return [name.strip().removeprefix("sgn ") for name in inside.split(",")]
 
 
 def _known(linearisation: Linearisation, s: Signals) -> dict[str, Array]:

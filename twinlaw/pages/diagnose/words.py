@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
+from records.functional_class import Dependence, parse_class
 from records.reasons import Note
 
 # By the unit at the end of a name: how a person reads it.
@@ -88,16 +89,16 @@ def plain_unit(unit: str) -> str:
 
 def class_in_words(text: str) -> str:
     """ "torque(psi, sgn psi_dot) on elevation" with "a torque that depends on psi and the direction in which psi moves" behind it."""
-    kind, opened, rest = text.partition("(")
-    if not opened or kind not in _CLASSES:
+    known = parse_class(text)
+    if known.kind not in _CLASSES:
         return text
-    signals = [_signal(name.strip()) for name in rest.partition(")")[0].split(",")]
-    return f"{text}: {_CLASSES[kind]} that depends on {' and '.join(signals)}"
+    signals = [_signal(entry) for entry in known.depends]
+    return f"{text}: {_CLASSES[known.kind]} that depends on {' and '.join(signals)}"
 
 
-def _signal(name: str) -> str:
-    if name.startswith("sgn "):
-        of = name.removeprefix("sgn ")
+def _signal(depends: Dependence) -> str:
+    name = of = depends.signal
+    if depends.by_sign:
         return f"the direction in which {of.removesuffix('_dot')} moves" if of.endswith("_dot") else f"the sign of {of}"
     if name.startswith("d") and name.endswith("/dt"):
         return f"how fast {name.removeprefix('d').removesuffix('/dt')} changes"
