@@ -5,18 +5,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows
 from records.log import RunLog
 
 Hashes = NDArray[np.uint64]
-
-WINDOW_DOUBLINGS = 5  # windows of 2^5 rows
-LEAST_CHANGES = 8  # rows in a window that differ from the one before: rest is alike in all logs
-BINS = 24
-LEAST_ROWS = 100  # quasi-steady rows of a bin in both logs
-STEADY_RAD_S = 0.05
-WORTH = 0.1  # of the greater limit: a holding input below it says nothing
-NOTE_RATIO, REFUSE_RATIO = 1.35, 2.0
 
 
 def shared_rows(one: RunLog, other: RunLog) -> Rows:
@@ -28,7 +21,7 @@ def shared_rows(one: RunLog, other: RunLog) -> Rows:
     begins = np.flatnonzero((theirs != 0) & np.isin(theirs, mine[mine != 0]))
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, begins, 1)
-    np.add.at(edges, begins + 2**WINDOW_DOUBLINGS, -1)
+    np.add.at(edges, begins + 2**thresholds.WINDOW_DOUBLINGS, -1)
     return np.asarray(np.cumsum(edges[:-1]) > 0)
 
 
@@ -39,13 +32,13 @@ def _windows(log: RunLog) -> Hashes:
     for column in rows.T:
         hashes = _mixed(hashes, column)
     changes = np.concatenate([[0], np.cumsum(hashes[1:] != hashes[:-1])])
-    for doubling in range(WINDOW_DOUBLINGS):
+    for doubling in range(thresholds.WINDOW_DOUBLINGS):
         width = 2**doubling
         if len(hashes) <= width:
             return np.zeros(0, np.uint64)
         hashes = _mixed(hashes[:-width], hashes[width:])
-    changed = changes[2**WINDOW_DOUBLINGS - 1 :] - changes[: len(hashes)]
-    return np.where(changed >= LEAST_CHANGES, hashes | np.uint64(1), np.uint64(0))
+    changed = changes[2**thresholds.WINDOW_DOUBLINGS - 1 :] - changes[: len(hashes)]
+    return np.where(changed >= thresholds.LEAST_SHARED_CHANGES, hashes | np.uint64(1), np.uint64(0))
 
 
 def _mixed(one: Hashes, other: Hashes) -> Hashes:
@@ -86,10 +79,10 @@ def plant_pair_findings(logs: Sequence[RunLog], names: Sequence[str]) -> Iterato
     """Logs that need another input to hold the same angle, on the first axis, than the first log does."""
     for index in range(1, len(logs)):
         ratio = holding_ratio(logs[0], logs[index])
-        if ratio is None or 1.0 / NOTE_RATIO < ratio < NOTE_RATIO:
+        if ratio is None or 1.0 / thresholds.NOTE_RATIO < ratio < thresholds.NOTE_RATIO:
             continue
         log, column = logs[index], logs[index].columns.inputs[0]
-        severity = NOTE if 1.0 / REFUSE_RATIO < ratio < REFUSE_RATIO else REFUSE
+        severity = NOTE if 1.0 / thresholds.REFUSE_RATIO < ratio < thresholds.REFUSE_RATIO else REFUSE
         sentence = f"{column} that holds the same {log.columns.outputs[0]} is {ratio:.3g} times that of {names[0]}"
         sentence += ": not one plant" if severity == REFUSE else ": not one plant, or a changed one"
         span = (float(log.t_s[0]), float(log.t_s[-1]))
@@ -115,13 +108,13 @@ def holding_ratio(one: RunLog, other: RunLog) -> float | None:
     """Median ratio of the first inputs that hold the first output, over angles that both logs rest at; None for too few of them."""
     steady = [_steady(log) for log in (one, other)]
     angles = [log.y[rows, 0] for log, rows in zip((one, other), steady, strict=True)]
-    if min(len(values) for values in angles) < LEAST_ROWS:
+    if min(len(values) for values in angles) < thresholds.LEAST_STEADY_ROWS:
         return None
     low, high = max(values.min() for values in angles), min(values.max() for values in angles)
     if not low < high:
         return None
-    edges = np.linspace(low, high, BINS + 1)
-    worth = WORTH * max(float(np.abs(log.u[:, 0]).max()) for log in (one, other))
+    edges = np.linspace(low, high, thresholds.ANGLE_BINS + 1)
+    worth = thresholds.LEAST_HOLDING_INPUT * max(float(np.abs(log.u[:, 0]).max()) for log in (one, other))
     holding = [
         _by_bin(values, log.u[rows, 0], edges) for values, log, rows in zip(angles, (one, other), steady, strict=True)
     ]
@@ -137,16 +130,16 @@ def _steady(log: RunLog) -> Rows:
     steady = np.zeros(n, bool)
     if n > 2 * half:
         with np.errstate(invalid="ignore"):
-            slow = np.abs(psi[2 * half :] - psi[: -2 * half]) < STEADY_RAD_S
-            slow &= np.abs(psi[half:-half] - psi[: -2 * half]) < STEADY_RAD_S
+            slow = np.abs(psi[2 * half :] - psi[: -2 * half]) < thresholds.STEADY_RAD_S
+            slow &= np.abs(psi[half:-half] - psi[: -2 * half]) < thresholds.STEADY_RAD_S
         steady[half:-half] = slow & np.isfinite(psi[half:-half])
     return steady
 
 
 def _by_bin(angles: Array, u: Array, edges: Array) -> Array:
-    """Mean input by bin of the angle; NaN where a bin holds fewer than LEAST_ROWS rows."""
-    place = np.clip(np.digitize(angles, edges) - 1, 0, BINS - 1)
+    """Mean input by bin of the angle; NaN where a bin holds fewer than LEAST_STEADY_ROWS rows."""
+    place = np.clip(np.digitize(angles, edges) - 1, 0, thresholds.ANGLE_BINS - 1)
     inside = (angles >= edges[0]) & (angles <= edges[-1])
-    count = np.bincount(place[inside], minlength=BINS)
-    total = np.bincount(place[inside], weights=u[inside], minlength=BINS)
-    return np.where(count >= LEAST_ROWS, total / np.maximum(count, 1), np.nan)
+    count = np.bincount(place[inside], minlength=thresholds.ANGLE_BINS)
+    total = np.bincount(place[inside], weights=u[inside], minlength=thresholds.ANGLE_BINS)
+    return np.where(count >= thresholds.LEAST_STEADY_ROWS, total / np.maximum(count, 1), np.nan)

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from logcheck import thresholds
 from records.log import RunLog
 from records.reasons import Note
-
-CALENDAR_S = 1e6  # eleven days: no run starts so late by its own clock
 
 
 def from_their_start(logs: Sequence[RunLog], names: Sequence[str]) -> tuple[list[RunLog], tuple[Note, ...]]:
@@ -14,7 +13,7 @@ def from_their_start(logs: Sequence[RunLog], names: Sequence[str]) -> tuple[list
     found, notes = [], []
     for log, name in zip(logs, names, strict=True):
         start_s = float(log.t_s[0])
-        if abs(start_s) > CALENDAR_S:
+        if abs(start_s) > thresholds.CALENDAR_S:
             said = f"{name}: its times start at {start_s:.0f} s; all times given here count from there"
             notes.append(Note("calendar_clock", name, {"start_s": start_s}, said))
             log = replace(log, t_s=log.t_s - start_s)

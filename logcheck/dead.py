@@ -5,18 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
 from records.text.units import unit_suffix
-
-LEAST_S, LEAST_ROWS = 0.2, 5
-USUAL_PERCENT = 99.0
-JUMP = 5.0  # times what the column usually moves in a row; 18 000 stands in honest logs ended with 1.2 of it at most
-JUMP_STEPS = 20.0  # and so many of the column's own least moves: on a coarse grid one of them is no jump
-BEFORE_S = 0.05
-MOVED_STEPS = 4.0  # least moves within BEFORE_S with which an axis is surely under way
-LONGER = 3.0  # times longer than the column stands anywhere else
-TOGETHER_S = 0.5  # within which all outputs stop where it is the link that stops: slow axes change but now and then
 
 
 @dataclass(frozen=True)
@@ -37,7 +29,7 @@ def read_again(log: RunLog) -> Rows:
     again: Rows = np.zeros(len(log.t_s), bool)
     for last in set(stands[0]).intersection(*stands[1:]) if len(stands) > 1 else ():
         firsts = [by_last[last] for by_last in stands]
-        if last + 1 < len(again) and np.ptp(log.t_s[firsts]) < TOGETHER_S:
+        if last + 1 < len(again) and np.ptp(log.t_s[firsts]) < thresholds.LINK_STOPS_S:
             again[last + 1] = True
     return again
 
@@ -75,25 +67,32 @@ def _dead(t_s: Array, values: Array, period_s: float, again: Rows) -> list[Stand
     if not stands or not own.size:
         return []
     least = float(own.min())
-    jump = max(JUMP * float(np.nanpercentile(moves, USUAL_PERCENT)), JUMP_STEPS * least)
+    jump = max(
+        thresholds.DEAD_JUMP * float(np.nanpercentile(moves, thresholds.USUAL_MOVE_PERCENT)),
+        thresholds.DEAD_JUMP_STEPS * least,
+    )
     lengths_s = [float(t_s[last] - t_s[first]) for first, last in stands]
-    longest_s, second_s = sorted([0.0, LEAST_S, *lengths_s])[:-3:-1]
+    longest_s, second_s = sorted([0.0, thresholds.DEAD_S, *lengths_s])[:-3:-1]
     found = []
     for (first, last), length_s in zip(stands, lengths_s, strict=True):
         into = _jump(t_s, values, first, period_s, jump)
         out = _jump(t_s, values, last + 1, period_s, jump)
         speed = 0.0 if into else _speed_before(t_s, values, first, least)
-        is_dead = length_s == longest_s > LONGER * second_s or bool(again[last + 1 : last + 2].any()) or speed > 0.0
+        is_dead = (
+            length_s == longest_s > thresholds.LONGER_STAND * second_s
+            or bool(again[last + 1 : last + 2].any())
+            or speed > 0.0
+        )
         if (into and out) or ((into or out) and is_dead):
             found.append(Stand(first, last, into, out, speed))
     return found
 
 
 def _stands(t_s: Array, values: Array) -> list[tuple[int, int]]:
-    """First and last rows of one value that is kept for LEAST_S."""
+    """First and last rows of one value that is kept for DEAD_S."""
     changed = np.flatnonzero(np.diff(values) != 0.0)
     first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
-    long = (t_s[last] - t_s[first] >= LEAST_S) & (last - first >= LEAST_ROWS)
+    long = (t_s[last] - t_s[first] >= thresholds.DEAD_S) & (last - first >= thresholds.DEAD_ROWS)
     return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
 
 
@@ -107,6 +106,6 @@ def _jump(t_s: Array, values: Array, row: int, period_s: float, least: float) ->
 
 def _speed_before(t_s: Array, values: Array, row: int, least: float) -> float:
     """How fast the values moved before they stood at `row`, per second; 0 where that is slow."""
-    start = int(np.searchsorted(t_s, t_s[row] - BEFORE_S))
+    start = int(np.searchsorted(t_s, t_s[row] - thresholds.BEFORE_STAND_S))
     moved = float(abs(values[row] - values[start]))
-    return moved / float(t_s[row] - t_s[start]) if start < row and moved >= MOVED_STEPS * least else 0.0
+    return moved / float(t_s[row] - t_s[start]) if start < row and moved >= thresholds.MOVED_STEPS * least else 0.0

@@ -5,12 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck import thresholds
 from logcheck.finding import EXCLUDE, Finding, Found, Rows
 from records.log import RunLog
-
-SLOWEST = 64  # rows from one reading to the next
-LEAST_CHANGES = 60
-SAME_TURN = 0.995  # share of the changes that come at one turn
 
 
 def held_findings(log: RunLog, name: str) -> Iterator[Found]:
@@ -31,11 +28,11 @@ def held_findings(log: RunLog, name: str) -> Iterator[Found]:
 
 def _turn(changed: NDArray[np.int64]) -> tuple[int, int]:
     """The longest period in rows, and the row within it, at which nearly all changes come; (1, 0) where there is none."""
-    if len(changed) < LEAST_CHANGES:
+    if len(changed) < thresholds.LEAST_HELD_CHANGES:
         return 1, 0
-    for period in range(SLOWEST, 1, -1):
+    for period in range(thresholds.LONGEST_HOLD_ROWS, 1, -1):
         counts = np.bincount(changed % period, minlength=period)
-        if counts.max() >= SAME_TURN * len(changed):
+        if counts.max() >= thresholds.SAME_TURN_SHARE * len(changed):
             return period, int(np.argmax(counts))
     return 1, 0
 

@@ -4,14 +4,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
 from logcheck.values import NEAR_LIMIT, saturations
 from records.log import RunLog
-
-SATURATED_SHARE = 0.02
-CLIPPED_SHARE = 0.05  # of the rows at one extreme
-COMMONER = 10.0  # times than any other value: a staircase has many rows at each of its values
-LEAST_VISITS = 3  # a single long one may be a step that was commanded
 
 
 def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, float]]) -> Iterator[Found]:
@@ -23,7 +19,7 @@ def input_findings(log: RunLog, name: str, limits: Mapping[str, tuple[float, flo
         shown = [
             f"{share:.1%} of the rows at {limit:g}{_when(log.t_s, rows)}"
             for limit, share, rows in sides
-            if share > SATURATED_SHARE
+            if share > thresholds.SATURATED_SHARE
         ]
         if shown:
             yield _note("saturated", log, name, column, f"{column} is at its limits: {', '.join(shown)}")
@@ -43,10 +39,13 @@ def _clipped(log: RunLog, name: str, column: str, low: float, high: float) -> It
         extreme, count = values[place], int(counts[place])
         others = np.delete(counts, place)
         if not (
-            low < extreme < high and others.size and count > CLIPPED_SHARE * len(u) and count > COMMONER * others.max()
+            low < extreme < high
+            and others.size
+            and count > thresholds.CLIPPED_SHARE * len(u)
+            and count > thresholds.COMMONER * others.max()
         ):
             continue
-        if _visits(u == extreme) >= LEAST_VISITS:
+        if _visits(u == extreme) >= thresholds.LEAST_VISITS:
             share = f"where {count / len(u):.1%} of its rows stand"
             why = "it was cut off before it was logged, or the controller has a limit of its own"
             yield _note("clipped", log, name, column, f"{column} never {how} {extreme:.5g}, {share}: {why}")

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import REFUSE, Array, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -11,8 +12,6 @@ from sim.model import Axis
 from sim.simulate import simulate
 
 RUN_UP_S = 4.0  # for rotors to come to their speed
-LOOKED_AT_S = 20.0
-WOULD_MOVE = 0.2  # rad or m by which the plant would move the axis
 
 
 def locked_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
@@ -26,7 +25,7 @@ def locked_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found
         if read.size == 0 or read.min() != read.max():
             continue
         moved = _would_move(log, bound, axis, float(read[0]))
-        if moved > WOULD_MOVE:
+        if moved > thresholds.WOULD_MOVE:
             span = (float(log.t_s[0]), float(log.t_s[-1]))
             sentence = f"{column} is {read[0]:g} in every row, where these inputs would move it by {moved:.2g}"
             remedy = f'where it was held, say so in the sidecar: locked = ["{axis.name}"]; else check its sensor'
@@ -43,7 +42,7 @@ def _would_move(log: RunLog, bound: BoundPlant, axis: Axis, angle: float) -> flo
     x0[place] = angle
     run_up = np.arange(0.0, RUN_UP_S, 0.01)
     x = _states(bound, run_up, x0, np.tile(log.u[:1], (len(run_up), 1)), [axis.name, *others])
-    rows = log.t_s - log.t_s[0] <= LOOKED_AT_S
+    rows = log.t_s - log.t_s[0] <= thresholds.LOCKED_S
     way = _states(bound, log.t_s[rows] - log.t_s[0], x[-1], log.u[rows], others)[:, place]
     return float(np.max(np.abs(way - angle))) if np.isfinite(way).all() else 0.0
 

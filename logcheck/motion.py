@@ -4,12 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import REFUSE, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
-
-LEAST_STEPS = 20.0  # of its encoder that an angle must usually be off its middle
-JUMPS = 1.0  # median change from row to row over the median distance from the middle: 1.41 for numbers without order
 
 
 def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
@@ -22,7 +20,7 @@ def motion_findings(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found
             continue
         usual = float(np.median(np.abs(read - np.median(read))))
         jump = float(np.median(np.abs(np.diff(read))))
-        if usual > LEAST_STEPS * step and jump > JUMPS * usual:
+        if usual > thresholds.LEAST_MOTION_STEPS * step and jump > thresholds.JUMPS_RATIO * usual:
             span = (float(log.t_s[0]), float(log.t_s[-1]))
             sentence = (
                 f"{column} jumps by {jump:.3g} from row to row, as far as it is from its middle: rows without order"

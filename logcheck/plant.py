@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
@@ -16,16 +17,7 @@ from sim.equilibrium import equilibrium
 
 DEGREE = np.degrees(1.0)
 SAMPLE = 20_000  # rows that a test of a grid or a unit looks at
-FINEST = 1e5  # steps in a column's range, beyond which the step is no encoder's but a number format's
-ON_GRID, OFF_GRID = 0.97, 0.6  # length of the mean phase: 1 for numbers on the grid, 0 for any numbers
-BEYOND_STOP_rad = 0.1  # offsets and scales of a sensor may carry an angle this far beyond its stop
-MOST = 0.95  # share of a column's rows that speaks for its unit
-FAR_BEYOND = 1.5  # times the stop's own angle
-LEAST_OF_STOP = 0.2  # that an angle in degrees reaches, where only its size speaks for them
-MOST_rad = 1000.0  # that an axis without stops is counted to
-FULL_percent = 100.5
 WHOLE = 1e-6  # counts that were computed are whole numbers to this
-MACHINE_CLOSE = 1.6  # a rig may need this much more or less than its plant file says
 
 
 @dataclass(frozen=True)
@@ -74,10 +66,17 @@ def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Itera
     widest, greatest = _widest(column, facts), _greatest(values)
     on_grid = step > 0.0 and _is_on(values, step)
     whole = bool(np.all(np.abs(values - np.round(values)) < WHOLE))
-    is_beyond = np.isfinite(widest) and greatest > max(FAR_BEYOND * widest, widest + 3.0 * BEYOND_STOP_rad)
-    in_degrees = LEAST_OF_STOP * widest < greatest / DEGREE <= widest + BEYOND_STOP_rad
+    is_beyond = np.isfinite(widest) and greatest > max(
+        thresholds.FAR_BEYOND * widest, widest + 3.0 * thresholds.BEYOND_STOP_rad
+    )
+    in_degrees = thresholds.LEAST_OF_STOP * widest < greatest / DEGREE <= widest + thresholds.BEYOND_STOP_rad
     unit = None
-    if step > 0.0 and whole and not on_grid and 3.0 < greatest <= (min(widest, MOST_rad) + BEYOND_STOP_rad) / step:
+    if (
+        step > 0.0
+        and whole
+        and not on_grid
+        and 3.0 < greatest <= (min(widest, thresholds.MOST_rad) + thresholds.BEYOND_STOP_rad) / step
+    ):
         unit = "encoder counts"
     elif not on_grid and ((step > 0.0 and _is_on(values, step * DEGREE)) or (is_beyond and in_degrees)):
         unit = "degrees"
@@ -95,8 +94,8 @@ def _no_angle(log: RunLog, name: str, column: str, facts: PlantFacts) -> Found:
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     for other in log.columns.outputs:
         others = _some(log.column(other))
-        fits = greatest <= _widest(other, facts) + BEYOND_STOP_rad if other in facts.stops else False
-        if fits and others.size and _greatest(others) <= widest + BEYOND_STOP_rad:
+        fits = greatest <= _widest(other, facts) + thresholds.BEYOND_STOP_rad if other in facts.stops else False
+        if fits and others.size and _greatest(others) <= widest + thresholds.BEYOND_STOP_rad:
             sentence += f", and {other} up to {_greatest(others):.4g}: each would fit in the other's place"
             expected, remedy = "columns that are what they are called", f"exchange {column} and {other}"
             return Found(Finding("exchanged_columns", name, column, *span, sentence, REFUSE, 0, expected, remedy))
@@ -113,7 +112,7 @@ def _widest(column: str, facts: PlantFacts) -> float:
 
 def _greatest(values: Array) -> float:
     """How far values are from zero, but for single rows, which may be wrong in any unit."""
-    return float(np.quantile(np.abs(values), MOST))
+    return float(np.quantile(np.abs(values), thresholds.UNIT_QUANTILE))
 
 
 def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
@@ -124,7 +123,7 @@ def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
         greatest = _greatest(_some(log.column(column)))
         if not np.isfinite(widest) or not greatest > 3.0 * widest:
             continue
-        unit = "percent" if greatest <= FULL_percent else "another unit"
+        unit = "percent" if greatest <= thresholds.FULL_percent else "another unit"
         sentence = f"{column} is in {unit}, up to {greatest:.4g} where the plant takes {low:g}..{high:g}"
         yield _slip(log, name, column, sentence, "the unit that the column's name states", "convert the column")
 
@@ -142,7 +141,7 @@ def _machine_unit(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) 
     except BadInput:
         return
     held = float(np.median(log.u[present, 0])) * widest
-    if abs(needed) > 0.2 * widest and 1.0 / MACHINE_CLOSE < held / needed < MACHINE_CLOSE:
+    if abs(needed) > 0.2 * widest and 1.0 / thresholds.MACHINE_CLOSE < held / needed < thresholds.MACHINE_CLOSE:
         sentence = f"{column} is in machine units, 1 for {widest:g} V: the plant needs {needed:.3g} V to hold its angle"
         yield _slip(log, name, column, sentence, "volt", f"multiply the inputs by {widest:g}")
 
@@ -157,7 +156,7 @@ def _stops(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[F
     if column not in facts.stops:
         return
     (low, high), values = facts.stops[column], log.column(column)
-    margin = BEYOND_STOP_rad + facts.steps.get(column, 0.0)
+    margin = thresholds.BEYOND_STOP_rad + facts.steps.get(column, 0.0)
     with np.errstate(invalid="ignore"):
         far = (values < low - margin) | (values > high + margin)
         near = ((values < low - facts.steps.get(column, 0.0)) | (values > high + facts.steps.get(column, 0.0))) & ~far
@@ -178,12 +177,12 @@ def _stops(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[F
 def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     """A measured angle lies on its encoder's grid; one that lies on none is simulated, filtered or interpolated."""
     values = _some(log.column(column))
-    if step <= 0.0 or values.size < 20 or not step < np.ptp(values) < FINEST * step:
+    if step <= 0.0 or values.size < 20 or not step < np.ptp(values) < thresholds.FINEST_GRID * step:
         return
     held = _phase(values, step)
     own = grid_step(values)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
-    if held < OFF_GRID and own == 0.0:
+    if held < thresholds.OFF_GRID and own == 0.0:
         sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
         yield Found(Finding("simulated_looking", name, column, *span, sentence))
     elif own > 0.0 and abs(own / step - 1.0) > 0.01 and not 0.99 < own / step - round(own / step) + 1.0 < 1.01:
@@ -210,7 +209,7 @@ def grid_step(values: Array) -> float:
     if multiples.max() > 1e4:
         return 0.0
     step = float(gaps.sum() / multiples.sum())
-    return step if _phase(distinct, step) > ON_GRID and distinct.size < 0.9 * values.size + 5 else 0.0
+    return step if _phase(distinct, step) > thresholds.ON_GRID and distinct.size < 0.9 * values.size + 5 else 0.0
 
 
 def _phase(values: Array, step: float) -> float:
@@ -219,7 +218,7 @@ def _phase(values: Array, step: float) -> float:
 
 
 def _is_on(values: Array, step: float) -> bool:
-    return _phase(np.unique(values), step) > ON_GRID and np.unique(np.round(values / step)).size > 3
+    return _phase(np.unique(values), step) > thresholds.ON_GRID and np.unique(np.round(values / step)).size > 3
 
 
 def _some(values: Array) -> Array:

@@ -5,15 +5,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck import thresholds
 from logcheck.dead import amount
 from logcheck.finding import REFUSE, Array, Finding, Found, Rows
 from records.log import RunLog
 
-USUAL_PERCENT = 99.0  # of a column's speeds from row to row are usual ones
-FASTER = 5.0  # times the usual speed; honest logs of two outputs reached 1.5 in both at once
-LEAST_STEPS = 20.0  # encoder steps in a sample period that each output must leap by: a quiet log usually moves by one
-NEAR_ROWS = 5  # to both sides: a mass that is thrown is fast in the next rows too, and a reading that fails comes back
-LONGEST_HELD_S = 0.2  # readings repeated so long move on by all that they missed; longer ones are dead stretches
 SHOWN = 3
 
 
@@ -42,18 +38,20 @@ def _passed_s(log: RunLog, columns: list[str]) -> Array:
     values = np.column_stack([log.column(column) for column in columns])
     changed = np.concatenate([[True], (np.diff(values, axis=0) != 0.0).any(axis=1)])
     last = np.maximum.accumulate(np.where(changed, np.arange(len(changed)), 0))[:-1]
-    held = log.t_s[:-1] - log.t_s[last] <= LONGEST_HELD_S
+    held = log.t_s[:-1] - log.t_s[last] <= thresholds.LONGEST_HELD_S
     return np.asarray(np.where(held, log.t_s[1:] - log.t_s[last], np.diff(log.t_s)))
 
 
 def _leaps(values: Array, passed_s: Array, period_s: float, step: float) -> Rows:
     """Rows (n - 1,) behind which a column moves far faster than it ever does for longer."""
     speed = np.nan_to_num(np.abs(np.diff(values)) / np.where(passed_s > 0.0, passed_s, np.inf))
-    padded = np.pad(speed, NEAR_ROWS)
-    shifts = [shift for shift in range(2 * NEAR_ROWS + 1) if shift != NEAR_ROWS]
+    padded = np.pad(speed, thresholds.SEAM_ROWS)
+    shifts = [shift for shift in range(2 * thresholds.SEAM_ROWS + 1) if shift != thresholds.SEAM_ROWS]
     near = np.max([padded[shift : shift + len(speed)] for shift in shifts], axis=0)
-    usual = np.maximum(near, float(np.percentile(speed, USUAL_PERCENT)))
-    return np.asarray((speed > FASTER * usual) & (speed * period_s > LEAST_STEPS * step))
+    usual = np.maximum(near, float(np.percentile(speed, thresholds.USUAL_SPEED_PERCENT)))
+    return np.asarray(
+        (speed > thresholds.SEAM_FASTER * usual) & (speed * period_s > thresholds.LEAST_SEAM_STEPS * step)
+    )
 
 
 def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float], rows: NDArray[np.int64]) -> Found:
@@ -62,7 +60,7 @@ def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float
     for column in columns:
         moves, unit = np.abs(np.diff(log.column(column))), steps.get(column, 0.0)
         leaps.append(f"{column} by {amount(float(moves[first - 1]), column, unit)}")
-        usual.append(amount(float(np.nanpercentile(moves, USUAL_PERCENT)), column, unit))
+        usual.append(amount(float(np.nanpercentile(moves, thresholds.USUAL_SPEED_PERCENT)), column, unit))
     later = [f"{log.t_s[row]:.6g} s" for row in rows[1:SHOWN]]
     more = f" and at {len(rows) - SHOWN} more instants" if len(rows) > SHOWN else ""
     again = f", and so at {', '.join(later)}{more}" if later else ""

@@ -5,15 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
-
-LEAST_ROWS = 50
-LEAST_DURATION_S = 1.0  # one window of prediction
-GAP = 1.5  # sample periods between two rows that make a gap
-JITTER = 0.01  # of the sample period, rms, that is worth a note
-PERIOD_ERROR_PPM = 500.0  # beyond what a crystal does
-OTHER_UNIT = 300.0  # a period wrong by this factor is in another unit: milliseconds, microseconds
 
 
 @dataclass(frozen=True)
@@ -77,23 +71,23 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     def say(kind: str, sentence: str, severity: str = NOTE, expected: str = "", remedy: str = "") -> Found:
         return Found(Finding(kind, name, "t_s", start_s, end_s, sentence, severity, 0, expected, remedy))
 
-    if found.rows < LEAST_ROWS or found.duration_s < LEAST_DURATION_S:
+    if found.rows < thresholds.LEAST_ROWS or found.duration_s < thresholds.LEAST_DURATION_S:
         got = f"{in_words(found.rows, 'row')} over {found.duration_s:g} s"
-        least = f"at least {LEAST_ROWS} rows over {LEAST_DURATION_S:g} s"
+        least = f"at least {thresholds.LEAST_ROWS} rows over {thresholds.LEAST_DURATION_S:g} s"
         yield say("too_short", got, REFUSE, least, "record a longer run")
         return
     yield from _order(log, name)
     ratio = found.period_s / log.sample_period_s
-    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT:
+    if not 1.0 / thresholds.OTHER_UNIT < ratio < thresholds.OTHER_UNIT:
         got = f"rows {found.period_s:g} s apart where the sidecar states {log.sample_period_s:g} s"
         yield say("time_unit", got, REFUSE, "t_s in seconds", "convert the time stamps to seconds")
-    elif abs(found.period_error_ppm) > max(PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
+    elif abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
         yield say(
             "sample_period",
             f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s ({found.period_error_ppm:+.0f} ppm); "
             "their own times are used",
         )
-    if found.jitter_rms_s > JITTER * found.period_s:
+    if found.jitter_rms_s > thresholds.JITTER_PERIODS * found.period_s:
         yield say(
             "jitter",
             f"time stamps jitter by {found.jitter_rms_s:.3g} s rms, {found.jitter_max_s:.3g} s at most; true times are used",
@@ -130,7 +124,7 @@ def _not_rising(log: RunLog, name: str, column: str, values: Array) -> Iterator[
 
 def _missing(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
     steps = np.diff(log.t_s)
-    gaps = np.flatnonzero(steps > GAP * found.period_s)
+    gaps = np.flatnonzero(steps > thresholds.GAP_PERIODS * found.period_s)
     if gaps.size and found.missing_by_time:
         first, longest = gaps[0], gaps[np.argmax(steps[gaps])]
         sentence = (

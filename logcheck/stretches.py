@@ -9,16 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from logcheck import thresholds
 from records.log import RunLog
 from records.reasons import Note
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
-MOST_READINGS = 40_000  # rows times outputs, of all logs together
-STRETCHES = 8
-LEAST_S = 10.0  # of a stretch, as long as its log may have that much
-DENSE_S = 1e-3  # rows closer than this are thinned, as far as they must be
-COARSEST_S = 4e-3  # and no farther: a tenth of the shortest time constant of a plant
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +33,7 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     Half of a log's parts are spread evenly over it from its beginning to its end; the others are those of the rest in which outputs
     and inputs travel furthest.
     """
-    if sum(log.y.size for log in logs) <= MOST_READINGS:
+    if sum(log.y.size for log in logs) <= thresholds.MOST_READINGS:
         return Stretches(tuple(logs), tuple(names), tuple(used), ())
     every = [_every(log, rows) for log, rows in zip(logs, _shares(logs), strict=True)]
     kept = [_one_in(mask, factor) for mask, factor in zip(used, every, strict=True)]
@@ -71,9 +67,9 @@ def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
 
 def _every(log: RunLog, rows: int) -> int:
     """The factor by which a log is thinned so that it shows at most `rows`; 1 for rows as far apart as logs usually have them."""
-    if len(log.t_s) <= rows or log.sample_period_s >= DENSE_S:
+    if len(log.t_s) <= rows or log.sample_period_s >= thresholds.DENSE_S:
         return 1
-    return int(np.clip(-(-len(log.t_s) // rows), 1, max(int(COARSEST_S / log.sample_period_s), 1)))
+    return int(np.clip(-(-len(log.t_s) // rows), 1, max(int(thresholds.COARSEST_S / log.sample_period_s), 1)))
 
 
 def _one_in(used: Rows, factor: int) -> NDArray[np.int64]:
@@ -99,7 +95,7 @@ def _thinned(log: RunLog, rows: NDArray[np.int64]) -> RunLog:
 def _shares(logs: Sequence[RunLog]) -> list[int]:
     """Rows that each log may show: short logs all of theirs, the long ones equal parts of what is left."""
     shares = [0] * len(logs)
-    left = MOST_READINGS // logs[0].y.shape[1]
+    left = thresholds.MOST_READINGS // logs[0].y.shape[1]
     order = sorted(range(len(logs)), key=lambda index: len(logs[index].t_s))
     for taken, index in enumerate(order):
         shares[index] = min(len(logs[index].t_s), left // (len(logs) - taken))
@@ -110,7 +106,7 @@ def _shares(logs: Sequence[RunLog]) -> list[int]:
 def _chosen(log: RunLog, rows: int) -> list[slice]:
     """Parts of together at most `rows` rows, in order of time."""
     n = len(log.t_s)
-    parts = int(np.clip(rows * log.sample_period_s / LEAST_S, 1, STRETCHES))
+    parts = int(np.clip(rows * log.sample_period_s / thresholds.LEAST_STRETCH_S, 1, thresholds.STRETCHES))
     size = max(rows // parts, 1)
     count = n // size
     starts = np.linspace(0, n - size, count).astype(int)

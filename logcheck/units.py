@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import sympy
 
+from logcheck import thresholds
 from logcheck.finding import REFUSE, Array, Finding, Found
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -13,12 +14,7 @@ from sim.columns import reference_name
 from sim.model import Model
 
 SLOPES = {np.degrees(1.0): "degrees", 30.0 / np.pi: "rpm", 0.5 / np.pi: "turns"}  # number written for 1 rad or 1 rad/s
-CLOSE = 1.35  # a slope within this factor of a unit's is that unit
 SMOOTHING_S = 0.1
-LEAST_CORRELATION = 0.8
-FOLLOWS, ROUGHLY = 0.3, 2.0  # the same for an angle that follows its reference late, and with overshoot
-CLEARLY = 5.0  # times smaller error that one unit must leave than radians per second
-LEAST_MOVING_ROWS = 50
 
 
 def reference_unit(log: RunLog, name: str, column: str) -> Iterator[Found]:
@@ -26,7 +22,7 @@ def reference_unit(log: RunLog, name: str, column: str) -> Iterator[Found]:
     other = reference_name(column)
     if log.loop != "closed" or other not in log.extra:
         return
-    unit = _unit_of(log.column(column), log.extra[other], FOLLOWS, ROUGHLY)
+    unit = _unit_of(log.column(column), log.extra[other], thresholds.FOLLOWS_CORRELATION, thresholds.FOLLOWS_FACTOR)
     if unit == "degrees":
         yield _slip(log, name, other, f"{other} is in {unit}, by {column} which follows it")
 
@@ -59,7 +55,7 @@ def rotor_unit(log: RunLog, name: str, bound: BoundPlant, limits: Mapping[str, t
         rate = _rate_function(model, state, inputs[0])
         errors = {scale: _balance(log, speed / scale, rate(speed / scale, u, *bound.p)) for scale in (1.0, *SLOPES)}
         best = min(errors, key=lambda scale: errors[scale])
-        if best != 1.0 and errors[best] * CLEARLY < errors[1.0]:
+        if best != 1.0 and errors[best] * thresholds.CLEARLY_BETTER < errors[1.0]:
             yield _slip(log, name, column, f"{column} is in {SLOPES[best]} a second or minute, by the rotor's equation")
 
 
@@ -90,11 +86,16 @@ def _differentiated(log: RunLog, position: str, velocity: str) -> tuple[Array, A
     return (angle[stride:] - angle[:-stride]) / np.where(passed_s > 0.0, passed_s, np.inf), mean
 
 
-def _unit_of(expected: Array, found: Array, correlation: float = LEAST_CORRELATION, close: float = CLOSE) -> str | None:
+def _unit_of(
+    expected: Array,
+    found: Array,
+    correlation: float = thresholds.LEAST_CORRELATION,
+    close: float = thresholds.UNIT_FACTOR,
+) -> str | None:
     """The unit in which `found` would equal `expected`; None for radians, or where the two have too little to do with each other."""
     present = np.isfinite(expected) & np.isfinite(found)
     one, other = expected[present], found[present]
-    if one.size < LEAST_MOVING_ROWS or one.std() == 0.0 or other.std() == 0.0:
+    if one.size < thresholds.LEAST_MOVING_ROWS or one.std() == 0.0 or other.std() == 0.0:
         return None
     if abs(float(np.corrcoef(one, other)[0, 1])) < correlation:
         return None

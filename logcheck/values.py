@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from logcheck import thresholds
 from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
@@ -12,9 +13,6 @@ from logcheck.seams import seam_findings
 from records.log import RunLog
 from sim.columns import reference_name
 
-COPY_SHARE = 0.999  # of the rows in which two columns are one number
-GLITCH_FACTOR = 30.0  # a row off its neighbours by so many times what rows usually move
-GLITCH_STEPS = 20.0  # and by so many encoder steps
 NEAR_LIMIT = 1e-6  # of the limits' span
 
 
@@ -152,9 +150,9 @@ def _copies(log: RunLog, name: str) -> Iterator[Found]:
 
 def _is_copy(one: Array, other: Array) -> bool:
     sparse = slice(None, None, max(1, len(one) // 5000))
-    if np.mean(one[sparse] == other[sparse]) < COPY_SHARE or _is_constant(one):
+    if np.mean(one[sparse] == other[sparse]) < thresholds.COPY_SHARE or _is_constant(one):
         return False
-    return bool(np.mean(one == other) >= COPY_SHARE)
+    return bool(np.mean(one == other) >= thresholds.COPY_SHARE)
 
 
 def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
@@ -170,7 +168,7 @@ def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Foun
         if np.isfinite(before).any()
         else 0.0
     )
-    bound = max(GLITCH_FACTOR * usual, GLITCH_STEPS * step)
+    bound = max(thresholds.GLITCH_FACTOR * usual, thresholds.GLITCH_STEPS * step)
     with np.errstate(invalid="ignore"):
         inner = (
             (off > bound) & (across < 0.25 * off) & (before * after > 0.0) if bound > 0.0 else np.zeros(len(off), bool)

@@ -9,6 +9,7 @@ from codegen.fixed.formats import law_formats
 from codegen.law import generate_law
 from records.errors import BadInput
 from records.table import ControllerTable
+from replay import thresholds
 from replay.flight import ReplayedLog
 from verification.fixed_stimuli import words_from_floats
 from verification.host_law import HostLaw
@@ -16,8 +17,6 @@ from verification.host_law import HostLaw
 Array = NDArray[np.float64]
 
 FLOAT32, FIXED = "float32", "fixed"
-# So many samples, and more than in float32, have to agree before a log counts as flown in fixed point.
-FLOWN_IN_FIXED = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +46,7 @@ def replayed(flight: ReplayedLog, table: ControllerTable) -> Replayed:
         in_fixed = replayed_in_fixed(flight, table)
     except BadInput:  # a table that no words can hold never flew in them
         return in_float32
-    return in_fixed if in_fixed.agreeing > max(FLOWN_IN_FIXED, in_float32.agreeing) else in_float32
+    return in_fixed if in_fixed.agreeing > max(thresholds.FLOWN_IN_FIXED, in_float32.agreeing) else in_float32
 
 
 def replayed_in_float32(flight: ReplayedLog, table: ControllerTable) -> Replayed:

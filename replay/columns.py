@@ -9,15 +9,13 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel
 from replay.variants import Variant
 
 Array = NDArray[np.float64]
 
-NEAR = 1e-5  # of the greatest value: the run itself holds what is nearer than this to the digits of the log
-MOVES_V = 1e-3  # an output that moves less tells no factor from an offset
-WHOLE = 1e-6
 EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT = (
     "outputs_exchanged",
     "output_sign",
@@ -97,19 +95,19 @@ def _line(own_V: Array, logged_V: Array) -> _Line | None:
     known = np.isfinite(logged_V)
     own, logged = own_V[known], logged_V[known]
     scale = float(np.abs(logged).max())
-    if np.ptp(own) < MOVES_V or scale == 0.0:
+    if np.ptp(own) < thresholds.MOVES_V or scale == 0.0:
         return None
     gain, offset_V = np.polyfit(own, logged, 1)
     line = _Line(_rounded(float(gain), 1.0), _rounded(float(offset_V), scale))
-    return line if np.abs(line.gain * own + line.offset_V - logged).max() < NEAR * scale else None
+    return line if np.abs(line.gain * own + line.offset_V - logged).max() < thresholds.NEAR_SHARE * scale else None
 
 
 def _rounded(value: float, scale: float) -> float:
     """A few digits where the number has no more: people write 1000 and not 999.9998."""
-    if abs(value) < WHOLE * scale:
+    if abs(value) < thresholds.WHOLE_FACTOR * scale:
         return 0.0
     short = float(f"{value:.5g}")
-    return short if abs(short - value) < WHOLE * max(scale, abs(value)) else value
+    return short if abs(short - value) < thresholds.WHOLE_FACTOR * max(scale, abs(value)) else value
 
 
 def _told(line: _Line, name: str) -> Iterator[tuple[str, str]]:
@@ -117,7 +115,7 @@ def _told(line: _Line, name: str) -> Iterator[tuple[str, str]]:
     if line.gain < 0.0:
         yield TURNED, f"sends {name} with its sign turned, or the log has it so"
     if gain != 1.0:
-        is_unit = abs(math.log10(gain) - round(math.log10(gain))) < WHOLE
+        is_unit = abs(math.log10(gain) - round(math.log10(gain))) < thresholds.WHOLE_FACTOR
         kind, why = (UNIT, "another unit") if is_unit else (SCALED, "another scale")
         yield kind, f"has {gain:g} times its law's answer logged as {name} ({why})"
     if line.offset_V != 0.0:

@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from replay import thresholds
 
-MOST_DECIMALS = 7  # more reproduce any voltage or angle of a float32 law
-MOST_DIGITS = 8  # nine significant digits give every float32 number back
-FEWEST_VALUES = 10  # a handful of round numbers proves nothing
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -43,12 +41,12 @@ def printing(values: ArrayLike) -> Printing:
     """The digits with which `values` (n,) were written; all of them where fewer than FEWEST_VALUES distinct numbers are there."""
     distinct = np.unique(np.asarray(values, dtype=float))
     distinct = distinct[np.isfinite(distinct)]
-    if distinct.size < FEWEST_VALUES:
+    if distinct.size < thresholds.FEWEST_VALUES:
         return Printing()
-    for decimals in range(MOST_DECIMALS + 1):
+    for decimals in range(thresholds.MOST_DECIMALS + 1):
         if np.array_equal(np.round(distinct, decimals), distinct):
             return Printing(decimals=decimals)
-    for digits in range(1, MOST_DIGITS + 1):
+    for digits in range(1, thresholds.MOST_DIGITS + 1):
         if all(float(f"{value:.{digits}g}") == value for value in distinct[:: max(1, distinct.size // 200)].tolist()):
             return Printing(digits=digits)
     return Printing()

@@ -12,15 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from replay import thresholds
 from replay.flight import ReplayedLog, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
 from replay.law import FLOAT64, Fold, ReplayLaw, Setup, number_type
 
 Array = NDArray[np.float64]
 
-LONGEST_HOLD = 64  # samples in a row in which one output may be held
-LOOK_AHEAD = 200
-LEAST_SHARE = 0.4  # of the samples in which the output moved, the law itself must explain this share
-LEAST_SAMPLES = 20
 DOUBLE_SLACK_V = 1e-9  # two ways to write the same law in double precision stay well within this
 LIMIT_SLACK_V = 2e-6
 GRID_SLACK = 1e-3  # of a step: a number on a grid is known by its nearest step
@@ -130,7 +127,9 @@ class Follower:
         explained = telling.copy()
         for incident in trace.incidents:
             explained[incident.first : incident.first + incident.samples] = False
-        enough = explained.sum() >= max(LEAST_SAMPLES, LEAST_SHARE * telling.sum())
+        enough = explained.sum() >= max(
+            thresholds.LEAST_EXPLAINED_SAMPLES, thresholds.LEAST_EXPLAINED_SHARE * telling.sum()
+        )
         return trace if enough else Trace(trace.incidents[0].first, ())
 
     def _run(self, state: Any, first: int, behind: int, inputs: NDArray[Any] | None = None) -> int:
@@ -145,7 +144,7 @@ class Follower:
         """
         n, carrying = len(self.inputs), []
         for hypothesis in self._hypotheses(row, state, last_gap):
-            ahead = min(hypothesis.behind + LOOK_AHEAD, n)
+            ahead = min(hypothesis.behind + thresholds.LOOK_AHEAD, n)
             reached = self._run(self._law.copied(hypothesis.state), hypothesis.behind, ahead)
             carries = reached > hypothesis.behind or reached == n
             # Behind a number that was found because its answer fits, the next may be missing as well.
@@ -171,7 +170,7 @@ class Follower:
 
     def _held(self, row: int, state: Any) -> Iterator[_Hypothesis]:
         """The output stayed as it was: the law's frame was lost, or the law was not called."""
-        same = self._wanted[row : row + LONGEST_HOLD] == self._wanted[row - 1]
+        same = self._wanted[row : row + thresholds.LONGEST_HOLD] == self._wanted[row - 1]
         held = int(np.argmin(np.append(same.all(axis=1), False)))
         stepped = self._law.copied(state)
         for length in range(1, held + 1):

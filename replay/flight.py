@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 
 from records.log import RunLog
 from records.table import ControllerTable
+from replay import thresholds
 from replay.digits import Printing, printing
 from sim.columns import reference_name
 
 Array = NDArray[np.float64]
 
-MOST_MISSING = 0.2  # share of samples that may be missing; beyond it rows are taken as they come
-CLOCK_ERROR = 0.2  # of the sample period
 UNMEASURED_REACH = np.array(
     sorted(range(-6, 7), key=abs)
 )  # counts about the line between measured neighbours, nearest first
@@ -99,7 +98,7 @@ def _samples(log: RunLog) -> tuple[NDArray[np.int64], int]:
         samples = np.round((log.t_s - log.t_s[0]) / _period_s(log)).astype(np.int64)
     rises = bool(np.all(np.diff(samples) > 0))
     lacking = int(samples[-1]) + 1 - len(samples)
-    if rises and lacking <= MOST_MISSING * len(samples):
+    if rises and lacking <= thresholds.MOST_MISSING * len(samples):
         return samples, 0
     return in_order, max(lacking, 0) if rises else 0
 
@@ -108,7 +107,9 @@ def _period_s(log: RunLog) -> float:
     """The sample period by the log's own clock, which may run a little fast or slow; that of its sidecar where rows lie further apart."""
     measured_s = float(np.median(np.diff(log.t_s))) if len(log.t_s) > 1 else log.sample_period_s
     return (
-        measured_s if abs(measured_s - log.sample_period_s) < CLOCK_ERROR * log.sample_period_s else log.sample_period_s
+        measured_s
+        if abs(measured_s - log.sample_period_s) < thresholds.CLOCK_ERROR * log.sample_period_s
+        else log.sample_period_s
     )
 
 

@@ -8,11 +8,10 @@ from itertools import product
 import numpy as np
 
 from records.table import ControllerTable
+from replay import thresholds
 from replay.law import AXES, Setup
 from replay.variants import BY_ANGLES, Variant
 
-OLDEST_ANGLES = 4  # samples
-OLDEST_REFERENCES = 50
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
 LOGGED_LATE, ANGLE_LOGGED_LATE = "reference_logged_late", "angle_logged_late"
@@ -24,14 +23,14 @@ def lone_variants(table: ControllerTable) -> list[Variant]:
 
 
 def _older_angles() -> Iterator[Variant]:
-    for psi, phi in product(range(OLDEST_ANGLES + 1), repeat=2):
+    for psi, phi in product(range(thresholds.OLDEST_ANGLES + 1), repeat=2):
         if {0, psi, phi} != {0, max(psi, phi)} or max(psi, phi) > PAIRED_AGE:  # the rest may be paired
             sentence = f"used the elevation measured {_samples(psi)} and the azimuth measured {_samples(phi)} before"
             yield Variant("stale_sample", "angles", sentence, partial(replace, angle_lags=(psi, phi)))
 
 
 def _angles_logged_late() -> Iterator[Variant]:
-    for samples in range(1, OLDEST_ANGLES + 1):
+    for samples in range(1, thresholds.OLDEST_ANGLES + 1):
         for angles, lags in BY_ANGLES.items():
             sentence = f"used {angles} that the log holds {_samples(samples)} too late"
             ahead = tuple(-samples * lag for lag in lags)
@@ -39,7 +38,7 @@ def _angles_logged_late() -> Iterator[Variant]:
 
 
 def _other_times_of_references() -> Iterator[Variant]:
-    for samples in range(1, OLDEST_REFERENCES + 1):
+    for samples in range(1, thresholds.OLDEST_REFERENCES + 1):
         late = f"used references that the log holds {_samples(samples)} too late"
         yield Variant(LOGGED_LATE, "references", late, partial(replace, reference_lag=-samples))
         if samples > PAIRED_AGE:

@@ -15,17 +15,12 @@ from numpy.typing import NDArray
 
 from design.law import polynomial
 from records.table import ControllerTable
+from replay import thresholds
 from replay.events import Workshop
 from replay.flight import ReplayedLog
 from replay.law import ReplayLaw, Setup
 
 Array = NDArray[np.float64]
-
-SETTLED = 20.0  # time constants of the reference filter: exp(-20) (1 + 20) of a wrong beginning is left
-HISTORY = 4  # samples that the differences of s reach back, and one
-BOUNDS_V = (1e-6, 1e-5, 1e-4, 1e-3)
-LEAST_ROWS = 500
-CLEARLY = 100.0  # times the bound: how far a law at rest is off in a log that begins in flight
 
 
 def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, float] | None:
@@ -41,9 +36,9 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
     law, inputs, n = ReplayLaw(setup), shop.inputs(setup), len(shop.flight.t_s)
     state = _state(law, inputs, shop.flight, table, row)
     wanted, slack = shop.answers(setup)
-    for bound_V in BOUNDS_V:
+    for bound_V in thresholds.BOUNDS_V:
         if (
-            np.nanmax(off_V) > CLEARLY * bound_V
+            np.nanmax(off_V) > thresholds.CLEARLY_OFF * bound_V
             and law.run(law.copied(state), (row, n), inputs, wanted, slack + bound_V) == n
         ):
             return float(shop.flight.t_s[row]), bound_V
@@ -51,17 +46,18 @@ def begins_in_flight(shop: Workshop, table: ControllerTable) -> tuple[float, flo
 
 
 def _telling_row(flight: ReplayedLog, table: ControllerTable) -> int | None:
-    """The first row before which references were known for SETTLED time constants, and HISTORY rows are whole and off the limits."""
+    """The first row before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are
+    whole and off the limits."""
     n = len(flight.t_s)
     longest_s = max(table.elevation.prefilter_time_constant_s, table.azimuth.prefilter_time_constant_s)
-    settling = max(HISTORY, int(np.ceil(SETTLED * longest_s / table.sample_period_s)))
+    settling = max(thresholds.HISTORY, int(np.ceil(thresholds.SETTLED_CONSTANTS * longest_s / table.sample_period_s)))
     known = np.all(np.isfinite(flight.reference_rad) & np.isfinite(flight.angle_rad), axis=1)
     low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V])
     high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V])
     with np.errstate(invalid="ignore"):
         free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
-    rows = np.arange(settling, max(settling, n - LEAST_ROWS))
-    telling = (_run_before(known, settling)[rows]) & (_run_before(free, HISTORY)[rows])
+    rows = np.arange(settling, max(settling, n - thresholds.LEAST_ROWS))
+    telling = (_run_before(known, settling)[rows]) & (_run_before(free, thresholds.HISTORY)[rows])
     found = rows[telling]
     return int(found[0]) if found.size else None
 
@@ -76,7 +72,7 @@ def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
 
 def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: ControllerTable, row: int) -> Any:
     """The state before `row`."""
-    first, ahead_rad = row - HISTORY, []
+    first, ahead_rad = row - thresholds.HISTORY, []
     state = law.start(inputs[0, 2:])
     law.run(state, (0, first), inputs, None, None)
     for last in range(first, row):

@@ -16,27 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable
-from replay import law
+from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel, Fold, Overflow, ReplayLaw, Setup
 from replay.variants import Variant, grid_step, steps_in_words
 
 Array = NDArray[np.float64]
 
-LEAST_WRAP_V = 0.05  # less is no overflow of a voltage
-TOLERANCE = 0.01  # of the range: what a grid, or rows that the log lacks, may add to a multiple of it
-LEAST_WRAPPED = 2  # one sample that is off by some voltage proves no range, unless it is one that integers have
 SAME = 2e-6
-DECIMALS = 5  # of the unit in which an integer counts: 1 V ... 10 uV
-ANGLE_BITS = (16, 8, 12, 10, 14, 11, 9, 7)  # of those that explain a log the first is named
 ANGLE_OVERFLOWS = (
     ("angle_wraps", -0.5, False, "wrap round (signed)"),
     ("angle_wraps", 0.0, False, "wrap round (unsigned)"),
     ("angle_saturates", -0.5, True, "saturate (signed)"),
 )
-DIGITS = (2, 3, 4, 5, 6, 7)
-FRACTION_BITS = (8, 10, 12, 14, 15, 16)
-UNSIGNED_V = (65.536, 16.0, 32.0, 64.0, 20.0)
 
 
 @dataclass(frozen=True)
@@ -77,15 +69,15 @@ def in_words(name: str, wrap: Wrap) -> str:
 def output_wrap(own_V: Array, logged_V: Array, step_V: float, digits_V: float) -> Wrap | None:
     """The range of one input's wrap, logged to within `digits_V`; None where the differences are not multiples of one voltage."""
     off = own_V - logged_V
-    off = off[np.isfinite(off) & (np.abs(off) > LEAST_WRAP_V)]
+    off = off[np.isfinite(off) & (np.abs(off) > thresholds.LEAST_WRAP_V)]
     if not off.size:
         return None
     least = float(np.abs(off).min())
     multiple = np.round(off / least)
-    if np.abs(off / multiple - least).max() > TOLERANCE * least:
+    if np.abs(off / multiple - least).max() > thresholds.RANGE_TOLERANCE * least:
         return None
     span = _sharpened(float(np.median(off / multiple)), step_V, digits_V)
-    if off.size < LEAST_WRAPPED and not _is_of_an_integer(span):
+    if off.size < thresholds.LEAST_WRAPPED and not _is_of_an_integer(span):
         return None
     low = _lower_end(logged_V, span)
     return None if low is None else Wrap(low, span)
@@ -102,7 +94,7 @@ def _integer_ranges(near: float) -> Iterator[float]:
     """Ranges that integers have which count in powers of ten of a volt, or of its half, a quarter...: 2^n 10^-m, the nearest of each m."""
     if near <= 0.0:
         return
-    for decimals in range(DECIMALS + 1):
+    for decimals in range(thresholds.DECIMALS + 1):
         yield 2.0 ** round(math.log2(near * 10.0**decimals)) / 10.0**decimals
 
 
@@ -113,7 +105,7 @@ def _is_of_an_integer(span: float) -> bool:
 def _lower_end(logged_V: Array, span: float) -> float | None:
     """Where the range begins: about zero or at zero where the log allows it, else at the roundest number that it allows."""
     low, high = float(np.nanmin(logged_V)), float(np.nanmax(logged_V))
-    rounded = (math.floor(low * 10.0**decimals) / 10.0**decimals for decimals in range(DECIMALS + 1))
+    rounded = (math.floor(low * 10.0**decimals) / 10.0**decimals for decimals in range(thresholds.DECIMALS + 1))
     for begin in (-span / 2.0, 0.0, *rounded, low):
         if begin <= low + SAME * span and high <= begin + span * (1.0 + SAME):
             return begin
@@ -127,7 +119,7 @@ def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDAr
     """
     replay = ReplayLaw(Setup(table))
     off_V = replay.outputs(inputs) - flight.logged_V
-    differs = np.abs(off_V) > flight.half_step_V + LEAST_WRAP_V
+    differs = np.abs(off_V) > flight.half_step_V + thresholds.LEAST_WRAP_V
     rows = np.flatnonzero(differs.any(axis=1))
     if not rows.size or rows[0] == 0:
         return
@@ -169,7 +161,7 @@ def _overflows(numbers_V: Array, off_V: float, place: _Place) -> Iterator[Varian
     for low, high in _ends_of_rest(before, reached, reached - off_V):
         yield place.variant(law.OVERFLOW_SATURATES, low, high - low)
     if numbers_V[-1] < 0.0 <= float(numbers_V[:-1].min()):
-        for span in dict.fromkeys((_sharpened(off_V), *UNSIGNED_V)):
+        for span in dict.fromkeys((_sharpened(off_V), *thresholds.UNSIGNED_V)):
             yield place.variant(law.OVERFLOW_WRAPS, 0.0, span)
 
 
@@ -177,15 +169,15 @@ def _ends(before: float, reached: float, seen: float) -> list[float]:
     """Ends of a range from `before` to `reached`: as the log shows it, those of integers, and the roundest number."""
     ends = [_sharpened(2.0 * seen) / 2.0, *(value / 2.0 for value in _integer_ranges(2.0 * reached))]
     exponent = math.floor(math.log10(reached)) if reached > 0.0 else 0
-    ends += _first(_between(before, reached, 10.0 ** (digits - 1 - exponent)) for digits in DIGITS)
-    ends += _first(_between(before, reached, 2.0**bits) for bits in FRACTION_BITS)
+    ends += _first(_between(before, reached, 10.0 ** (digits - 1 - exponent)) for digits in thresholds.DECIMAL_DIGITS)
+    ends += _first(_between(before, reached, 2.0**bits) for bits in thresholds.FRACTION_BITS)
     return [end for end in dict.fromkeys(ends) if before <= end <= reached]
 
 
 def _ends_of_rest(before: float, reached: float, seen: float) -> Iterator[tuple[float, float]]:
     """Both ends at which a number may saturate: alike, or as those of an integer, whose lower end is one unit farther from zero."""
     yield from ((-end, end) for end in _ends(before, reached, seen))
-    for bits in FRACTION_BITS:
+    for bits in thresholds.FRACTION_BITS:
         unit = 2.0**-bits
         end = unit * round(seen / unit)
         if abs(end - seen) < SAME * (1.0 + reached):
@@ -203,7 +195,7 @@ def _between(before: float, reached: float, per_unit: float) -> float | None:
 
 def angles_that_wrap(flight: ReplayedLog) -> Iterator[Variant]:
     """Encoder counts in an integer that is too narrow, for the angles of the log that leave its range."""
-    for bits in ANGLE_BITS:
+    for bits in thresholds.ANGLE_BITS:
         for name, low, saturates, how in ANGLE_OVERFLOWS:
             columns = zip(flight.angle_rad.T, flight.steps_rad, strict=True)
             folds = [_fold(angle, step, step * 2.0**bits, low, saturates) for angle, step in columns]

@@ -8,17 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable
+from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import AXES, ReplayLaw, Setup
 from replay.variants import Variant
 
 Array = NDArray[np.float64]
 
-LOG10_RANGE_S = (-2.5, 1.0)
 GRID = 71
 GOLDEN_STEPS = 60
 SPAN = 1500  # samples behind the reference's first move that the fit looks at
-DIGITS = (1, 2, 3, 4, 6)
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
@@ -36,7 +35,7 @@ def fitted_prefilters(table: ControllerTable, flight: ReplayedLog, inputs: NDArr
     for axis in range(2):
         if np.ptp(flight.reference_rad[:window, axis][~np.isnan(flight.reference_rad[:window, axis])]) > 0.0:
             found_s[axis] = _fitted(partial(_misfit, table, given, logged, axis, tuple(found_s)))
-    for digits in DIGITS:
+    for digits in thresholds.WRITTEN_DIGITS:
         constants_s = tuple(float(f"{value:.{digits}g}") for value in found_s)
         shown = " and ".join(f"{value:g} s" for value in constants_s)
         sentence = f"filters its references with time constants of {shown} (elevation and azimuth)"
@@ -74,7 +73,7 @@ def _misfit(
 
 def _fitted(misfit: Callable[[float], float]) -> float:
     """The time constant of least misfit: a grid, then the golden section around its best point, in the logarithm."""
-    exponents = np.linspace(*LOG10_RANGE_S, GRID)
+    exponents = np.linspace(thresholds.LOG10_RANGE_S[0], thresholds.LOG10_RANGE_S[1], GRID)
     errors = [misfit(10.0**exponent) for exponent in exponents]
     best = int(np.argmin(errors))
     low, high = exponents[max(best - 1, 0)], exponents[min(best + 1, GRID - 1)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.table import ControllerTable
+from replay import thresholds
 from replay.build import fused_outputs
 from replay.columns import OFFSET, constant_inputs, given_columns, output_lines
 from replay.events import (
@@ -46,9 +47,6 @@ INCIDENT_SENTENCES = {
     UNLOGGED: "saw a sample that the log does not hold",
 }
 MIMICS = (STALE_ANGLES, STALE_REFERENCES)  # many of these may stand for one change of the firmware
-MANY = 3
-BY_CHANCE = 0.01
-CHANGE_COST = 2  # incidents that one change of the firmware outweighs
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class Explanation:
     @property
     def cost(self) -> int:
         """The simpler of two explanations costs less."""
-        return len(self.trace.incidents) + CHANGE_COST * len(self.changes)
+        return len(self.trace.incidents) + thresholds.CHANGE_COST * len(self.changes)
 
     @property
     def name(self) -> str:
@@ -85,7 +83,7 @@ class Explanation:
     def is_plain(self) -> bool:
         """True unless incidents may stand for a change that was not tried."""
         kinds = self.trace.kinds()
-        return sum(kinds[kind] for kind in MIMICS) <= MANY
+        return sum(kinds[kind] for kind in MIMICS) <= thresholds.MANY_INCIDENTS
 
 
 def explain(flight: ReplayedLog, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> Told | None:
@@ -192,7 +190,7 @@ def _told(flight: ReplayedLog, found: Sequence[Explanation]) -> Told:
     """The cheapest explanation in words; those of equal cost and another name are its alternatives."""
     best = min(found, key=lambda explanation: explanation.cost)
     repeats = _repeats(flight, best)
-    if repeats is not None and repeats < BY_CHANCE:
+    if repeats is not None and repeats < thresholds.BY_CHANCE:
         return _repeated(flight, best)
     equals = dict.fromkeys([REPEATED_ROW] if repeats is not None else [])
     equals |= dict.fromkeys(entry.name for entry in found if entry.cost == best.cost and entry.name != best.name)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.table import ControllerTable, Polynomial
-from replay import law
+from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import AXES, Channel, Gains, Setup
 
@@ -18,10 +18,6 @@ Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
 BY_ANGLES = {"both angles": (1, 1), "the elevation": (1, 0), "the azimuth": (0, 1)}
-OBSERVER_POLES = (0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.95, 0.98)
-LEAST_PLATEAU = 2  # a float32 that moves freely does not meet its extreme twice
-PWM_STEP_V = 10.0 / 3200.0
-LEAST_GRID_V = 5e-5
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ def _windup() -> Iterator[Variant]:
     yield Variant("conditional_integration", "windup", sentence, partial(replace, windup=law.WINDUP_FREEZE))
     sentence = "feeds the limited voltage back into its recursion (anti-windup polynomial 1)"
     yield Variant("anti_windup_fb", "windup", sentence, partial(_observer, a=(1.0, 0.0, 0.0)))
-    for pole in OBSERVER_POLES:
+    for pole in thresholds.OBSERVER_POLES:
         sentence = f"has three anti-windup poles at {pole:g}"
         yield Variant("anti_windup_poles", "windup", sentence, partial(_observer, a=_recursion(pole)))
 
@@ -148,7 +144,7 @@ def _limits_found(table: ControllerTable, flight: ReplayedLog) -> dict[str, dict
             continue
         for name, extreme, outwards in (("u_min_V", np.nanmin(u_V), -1.0), ("u_max_V", np.nanmax(u_V), 1.0)):
             beyond = outwards * (np.float32(extreme) - np.float32(getattr(stated, name)))
-            if beyond > 0.0 or (beyond < 0.0 and np.sum(u_V == extreme) >= LEAST_PLATEAU):
+            if beyond > 0.0 or (beyond < 0.0 and np.sum(u_V == extreme) >= thresholds.LEAST_PLATEAU):
                 found.setdefault(axis, {})[name] = float(extreme)
     return found
 
@@ -208,15 +204,17 @@ def grid_step(u_V: Array) -> float:
     """The step of the grid on which all values lie; 0 where there is none above LEAST_GRID_V."""
     distinct = np.unique(u_V[np.isfinite(u_V)])
     gaps = np.diff(distinct)
-    gaps = gaps[gaps > LEAST_GRID_V / 10.0]
+    gaps = gaps[gaps > thresholds.LEAST_GRID_V / 10.0]
     if distinct.size < 20 or not gaps.size:
         return 0.0
-    for step in (PWM_STEP_V, float(gaps.min())):
+    for step in (thresholds.PWM_STEP_V, float(gaps.min())):
         off = np.abs(distinct / step - np.round(distinct / step))
-        if step >= LEAST_GRID_V and off.max() < 1e-3:
+        if step >= thresholds.LEAST_GRID_V and off.max() < 1e-3:
             # The mean over the whole span is sharper than one gap.
             span = np.round((distinct[-1] - distinct[0]) / step)
-            return PWM_STEP_V if step == PWM_STEP_V else float((distinct[-1] - distinct[0]) / span)
+            return (
+                thresholds.PWM_STEP_V if step == thresholds.PWM_STEP_V else float((distinct[-1] - distinct[0]) / span)
+            )
     return 0.0
 
 

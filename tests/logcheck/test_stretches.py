@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from logcheck import thresholds
 from logcheck.clock import from_their_start
-from logcheck.stretches import MOST_READINGS, stretches
+from logcheck.stretches import stretches
 from records.log import RunLog
 from sim.columns import log_columns
 from tests.plants import bound
@@ -38,7 +39,7 @@ def test_a_million_rows_are_shown_by_their_beginning_their_end_and_where_most_mo
     found = stretches([long, short], used, ["long", "short"])
     assert found.logs[-1] is short
     readings = sum(log.y.size for log in found.logs)
-    assert 0.8 * MOST_READINGS < readings <= MOST_READINGS
+    assert 0.8 * thresholds.MOST_READINGS < readings <= thresholds.MOST_READINGS
     parts = [log for log, name in zip(found.logs, found.names, strict=True) if name.startswith("long")]
     assert parts[0].t_s[0] == long.t_s[0]
     assert parts[-1].t_s[-1] == long.t_s[-1]
@@ -105,7 +106,7 @@ def test_a_single_stretch_is_called_one() -> None:
 def test_many_logs_share_alike_and_none_is_torn_to_pieces() -> None:
     logs = [log_of(6000) for _ in range(20)]
     found = stretches(logs, [all_rows(log) for log in logs], [str(index) for index in range(20)])
-    assert sum(log.y.size for log in found.logs) <= MOST_READINGS
+    assert sum(log.y.size for log in found.logs) <= thresholds.MOST_READINGS
     assert len(found.logs) == 20
     assert {len(log.t_s) for log in found.logs} == {1000}
 

@@ -1,0 +1,116 @@
+"""Every constant that decides something in the check of a log: value, unit, reason, and the data that set it."""
+
+from collections.abc import Iterator
+
+from records.deciding import Count, Decides, Limit
+
+# clock
+CALENDAR_S = Limit(1e6, "s", "eleven days: no run starts so late by its own clock")
+
+# between
+WINDOW_DOUBLINGS = Count(5, "log2 rows", "windows of 32 rows are hashed to find a training log's rows")
+LEAST_SHARED_CHANGES = Count(8, "rows", "rest is alike in all logs")
+ANGLE_BINS = Count(24, "bins", "bins of the angle for holding inputs")
+LEAST_STEADY_ROWS = Count(100, "rows", "quasi-steady rows of a bin in both logs")
+STEADY_RAD_S = Limit(0.05, "rad/s", "slower motion is quasi-steady")
+LEAST_HOLDING_INPUT = Limit(0.1, "share of the larger limit", "a holding input below says nothing")
+NOTE_RATIO = Limit(1.35, "ratio", "two logs hold one angle with inputs this much apart: note, refusal")
+REFUSE_RATIO = Limit(2.0, "ratio", "two logs hold one angle with inputs this much apart: note, refusal")
+
+# dead
+DEAD_S = Limit(0.2, "s", "an output that stands this long", "18 000 stands in honest logs")
+DEAD_ROWS = Count(5, "rows", "an output that stands this long", "18 000 stands in honest logs")
+USUAL_MOVE_PERCENT = Limit(99.0, "percentile", "of moves from row to row")
+DEAD_JUMP = Limit(
+    5.0,
+    "times the usual move",
+    "18 000 stands in honest logs ended with 1.2 of it at most",
+    "18 000 stands in honest logs",
+)
+DEAD_JUMP_STEPS = Limit(20.0, "least moves", "on a coarse grid one least move is no jump")
+BEFORE_STAND_S = Limit(0.05, "s", "motion this long before a stand tells whether the axis was under way")
+MOVED_STEPS = Limit(4.0, "least moves", "an axis is surely under way")
+LONGER_STAND = Limit(3.0, "factor", "than the column stands anywhere else")
+LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
+
+# held
+LONGEST_HOLD_ROWS = Count(64, "rows", "longest hold from one reading to the next")
+LEAST_HELD_CHANGES = Count(60, "changes", "fewer changes show no rhythm")
+SAME_TURN_SHARE = Limit(0.995, "share", "of the changes that come at one turn")
+
+# inputs
+SATURATED_SHARE = Limit(0.02, "share of rows", "more rows at a limit are worth a note")
+CLIPPED_SHARE = Limit(0.05, "share of rows", "at one extreme within the limits")
+COMMONER = Limit(10.0, "factor", "a staircase has many rows at each of its values")
+LEAST_VISITS = Count(3, "visits", "a single long one may be a commanded step")
+
+# locked
+LOCKED_S = Limit(20.0, "s", "of a log: time")
+WOULD_MOVE = Limit(0.2, "rad or m", "the plant would move an axis that stands")
+
+# motion
+LEAST_MOTION_STEPS = Limit(20.0, "encoder steps", "smaller motion is rounding")
+JUMPS_RATIO = Limit(
+    1.0,
+    "ratio",
+    "median change from row to row over median distance from the middle; sqrt 2 for numbers without order",
+    "exact for white rows",
+)
+
+# plant
+FINEST_GRID = Limit(1e5, "steps", "beyond it the step is a number format's")
+ON_GRID = Limit(0.97, "mean phase", "1 for numbers on the grid, 0 for any")
+OFF_GRID = Limit(0.6, "mean phase", "1 for numbers on the grid, 0 for any")
+BEYOND_STOP_rad = Limit(0.1, "rad", "offsets and scales of a sensor may carry an angle beyond its stop")
+UNIT_QUANTILE = Limit(0.95, "quantile", "rows that speak for the unit")
+FAR_BEYOND = Limit(1.5, "times the stop", "an angle this far beyond a stop is in another unit")
+LEAST_OF_STOP = Limit(0.2, "share of the stop", "that an angle in degrees reaches where only its size speaks")
+MOST_rad = Limit(1000.0, "rad", "an axis without stops is counted to")
+FULL_percent = Limit(100.5, "percent", "a duty in percent reaches no more")
+MACHINE_CLOSE = Limit(1.6, "factor", "a rig may need this much more or less than its plant file says")
+
+# seams
+USUAL_SPEED_PERCENT = Limit(99.0, "percentile", "of the speeds from row to row is the usual one")
+SEAM_FASTER = Limit(
+    5.0, "times the usual speed", "honest logs of two outputs reached 1.5 in both at once", "honest logs"
+)
+LEAST_SEAM_STEPS = Limit(20.0, "encoder steps", "a quiet log usually moves by one")
+SEAM_ROWS = Count(5, "rows", "a mass that is thrown is fast in the next rows too; a reading that fails comes back")
+LONGEST_HELD_S = Limit(
+    0.2, "s", "readings repeated so long move on by all that they missed; longer ones are dead stretches"
+)
+
+# stamps
+LEAST_ROWS = Count(50, "rows", "fewer rows tell nothing")
+LEAST_DURATION_S = Limit(1.0, "s", "one window of prediction")
+GAP_PERIODS = Limit(1.5, "sample periods", "a longer step has rows missing")
+JITTER_PERIODS = Limit(0.01, "sample periods rms", "more is told")
+PERIOD_ERROR_PPM = Limit(500.0, "ppm", "beyond what a crystal does")
+OTHER_UNIT = Limit(300.0, "factor", "milliseconds, microseconds")
+
+# units
+UNIT_FACTOR = Limit(1.35, "factor", "a slope this near a unit's is that unit")
+LEAST_CORRELATION = Limit(0.8, "correlation", "less correlated columns are not one quantity in two units")
+FOLLOWS_CORRELATION = Limit(
+    0.3, "correlation", "the same for an angle that follows its reference late and with overshoot"
+)
+FOLLOWS_FACTOR = Limit(2.0, "factor", "the same for an angle that follows its reference late and with overshoot")
+CLEARLY_BETTER = Limit(5.0, "ratio of errors", "the other unit must fit so much better")
+LEAST_MOVING_ROWS = Count(50, "rows", "fewer moving rows tell no unit")
+
+# values
+COPY_SHARE = Limit(0.999, "share of rows", "two columns are one number")
+GLITCH_FACTOR = Limit(30.0, "times the usual move", "a reading that leaps so far and comes back is left out")
+GLITCH_STEPS = Limit(20.0, "encoder steps", "on a coarse grid a leap is at least so far")
+
+# stretches
+MOST_READINGS = Count(40_000, "readings", "time: a minute on two cores", "timed")
+STRETCHES = Count(8, "stretches", "parts of a long log")
+LEAST_STRETCH_S = Limit(10.0, "s", "a stretch is at least so long")
+DENSE_S = Limit(1e-3, "s", "rows closer than this are thinned")
+COARSEST_S = Limit(4e-3, "s", "a tenth of the shortest time constant of a plant")
+
+
+def table() -> Iterator[tuple[str, Decides]]:
+    """Name and constant of each."""
+    return ((name, value) for name, value in globals().items() if isinstance(value, Decides))
