@@ -85,11 +85,11 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
     split = len(material.logs)
     case = make_case(library, material.logs, material.used[:split], bound)
     checked = make_case(library, material.holdout, material.used[split:], bound) if material.holdout else None
-    return _looked_at(case, checked)
+    return _detected(case, checked)
 
 
-def _looked_at(case: Case, checked: Case | None) -> Seen:
-    """Fit the plant alone, and look at the library beside it."""
+def _detected(case: Case, checked: Case | None) -> Seen:
+    """Fit the plant alone, and score the library beside it."""
     nominal = nominal_fit(case)
     case = with_usual(case, nominal.hypothesis)
     linearisation = linearised(case, nominal)
@@ -137,7 +137,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     seen = seen.because(*rules)
     if case is seen.case:
         return seen, None
-    again = _looked_at(case, seen.checked)
+    again = _detected(case, seen.checked)
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 

@@ -143,13 +143,13 @@ def _leaves_most(
 ) -> tuple[tuple[Decision, ...], bool]:
     """Whether a hypothesis surely leaves most of the error, far above what the sensors leave.
 
-    Where forms see next to nothing beside it, air as restless as it takes it to be may be all that is left. Events are not asked, nor
+    Where forms see next to nothing beside it, process noise as it takes it to be may be all that is left. Events are not asked, nor
     what happens at random: lost frames, gusts.
     """
     if any(name == LOST_FRAMES or is_gust(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
         return (), False
     floor = _floor(holdout.case, fitted, told)
-    floor = floor if left > decisions.LEFT_NATS else _in_air(holdout.case, fitted, floor)
+    floor = floor if left > decisions.LEFT_NATS else _with_process_noise(holdout.case, fitted, floor)
     far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
     above, of = far >= decisions.FAR_ABOVE_FLOOR, " + ".join(fitted.effects)
     if told.fraction_ci95 is None:
@@ -174,7 +174,7 @@ def _floor(case: Case, fitted: FittedHypothesis, told: Shrinkage) -> dict[str, f
     return {name: float(np.hypot(rms, coarse.get(name, 0.0) / np.sqrt(12.0))) for name, rms in told.rms_floor.items()}
 
 
-def _in_air(case: Case, fitted: FittedHypothesis, floor: Mapping[str, float]) -> dict[str, float]:
+def _with_process_noise(case: Case, fitted: FittedHypothesis, floor: Mapping[str, float]) -> dict[str, float]:
     """The floor with what the hypothesis' process noise q makes of a free axis within a predicted second: its
     variance grows with q t^3 / 3."""
     model, process_noise = case.library.bound.model, fitted.fit.hypothesis.process_noise.tolist()

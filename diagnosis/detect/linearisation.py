@@ -1,4 +1,4 @@
-"""Where looks are taken from: a fit, what projects its numbers out, and how the filter there answers small disturbances."""
+"""Where score tests are taken from: a fit, what projects its numbers out, and how the filter there answers small disturbances."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

@@ -43,7 +43,7 @@ class ScoreTest:
 def score_effects(
     case: Case, linearisation: Linearisation, names: Sequence[str], worth: Set[str] | None = None
 ) -> list[ScoreTest]:
-    """Looks at all `names` that are not supposed already: one for each effect, from the best of its starts.
+    """Score tests of all `names` that the hypothesis does not hold already: one for each effect, from the best of its starts.
 
     Effects on the way of the signals cost a pass for each start, events a grid of instants, sines one of waves; `worth` restricts
     these, but for limits, which often show only beside another effect.
@@ -129,14 +129,14 @@ def holding(library: EffectLibrary, names: Sequence[str]) -> list[str]:
 def _judged(
     case: Case, linearisation: Linearisation, values: Mapping[str, Values], runs: Sequence[Pass]
 ) -> list[ScoreTest]:
-    """Looks from a pass whose columns are one effect's size each."""
+    """Score tests from a pass whose columns are one effect's size each."""
     scale = np.array([size_scale(case.library.effects[name].size) for name in values])
     columns = np.concatenate([flat_slopes(run) for run in runs]) * scale
     return _score_tests(case, values, linearisation.scores_of(columns), scale)
 
 
 def _score_tests(case: Case, values: Mapping[str, Values], scores: Scores, units: Array) -> list[ScoreTest]:
-    """Looks from the scores of one column for each effect, per unit of its size."""
+    """Score tests from the scores of one column for each effect, per unit of its size."""
     norm = np.sqrt(np.maximum(np.diag(scores.gram), 0.0))
     found = []
     for index, (name, given) in enumerate(values.items()):

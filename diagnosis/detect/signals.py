@@ -65,7 +65,7 @@ def value_of(model: Model, expression: sympy.Expr, t_s: Array, x: Array, u: Arra
 
 @lru_cache(maxsize=256)
 def _function(model: Model, expression: sympy.Expr) -> Callable[..., Array]:
-    """An expression as a function of time, states, inputs and parameters: every look at a flight asks for the same ones."""
+    """An expression as a function of time, states, inputs and parameters: every score test of a flight asks for the same ones."""
     arguments = (TIME, *model.states, *model.inputs, *model.parameter_symbols)
     return sympy.lambdify(arguments, expression, "numpy", cse=True)  # type: ignore[no-any-return]
 

@@ -15,7 +15,7 @@ def cannot_tell(case: Case, score_tests: Sequence[ScoreTest]) -> bool:
 
 
 def judged(case: Case, score_tests: Sequence[ScoreTest]) -> list[str]:
-    """Effects of which these looks could say something: all but steps of a signal, which are read off the readings themselves."""
+    """Effects of which these score tests could say something: all but steps of a signal, which are read off the readings themselves."""
     return [
         name
         for name in case.library.candidates

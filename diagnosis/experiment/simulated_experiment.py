@@ -113,7 +113,7 @@ def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
 
 
 def recorded(case: Case, simulated_experiment: SimulatedExperiment) -> Case:
-    """A case of the rehearsed log alone, with what the given one states."""
+    """A case of the simulated log alone, with what the given one states."""
     made = make_case(case.library, [simulated_experiment.log])
     return replace(made, stated=case.stated, stated_sd=case.stated_sd)
 
@@ -145,7 +145,7 @@ def missed(data: Case, one: Fit, plan: Plan, process_noise: Array) -> float | No
 
 
 def outcomes(logs: Sequence[RunLog], floor: Mapping[str, float]) -> tuple[str, float, tuple[float, float]] | None:
-    """Where two rehearsed logs differ most in units of each column's floor: its name, when (s from the start), both values."""
+    """Where two simulated logs differ most in units of each column's floor: its name, when (s from the start), both values."""
     first, second = logs
     best, found = 1.0, None
     for name, least in floor.items():

@@ -1,4 +1,4 @@
-"""A fit whose air is held calmer than the innovations say: what an effect does over a second then shows against it.
+"""A fit with less process noise than the innovations say: what an effect does over a second then shows against it.
 
 Where an effect is missing, process noise takes its place: a filter that expects any motion follows the readings, and
 its innovations no longer
@@ -18,7 +18,7 @@ LOWERED_FIRST_STEP = 0.6
 
 
 def with_low_process_noise(case: Case, found: Fit) -> Fit | None:
-    """The fit anew under low process noise; None where the air is calm already or the plant cannot follow its logs then."""
+    """The fit anew under low process noise; None where it is low already or the plant cannot follow its logs then."""
     process_noise = found.hypothesis.process_noise.copy()
     for place, level in enumerate(_lowest(case)):
         process_noise[place] = min(process_noise[place], max(level, process_noise[place] - decisions.LOWEST_NOISE))

@@ -1,4 +1,4 @@
-"""How restless the air and the drives are: the noise on each axis' speed, by maximum likelihood."""
+"""Process noise: what drives each axis' speed at random, by maximum likelihood."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What one supposes of a plant: its coefficients, effects with their parameters, and how restless it is; and how the logs fit that."""
+"""What one supposes of a plant: its coefficients, effects with their parameters, and its process noise; and how the logs fit that."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

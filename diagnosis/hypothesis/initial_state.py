@@ -66,7 +66,7 @@ def _first_guess(library: EffectLibrary, filter_input: FilterInput) -> tuple[Arr
 def _likelihood(
     library: EffectLibrary, filter_input: FilterInput, x0: Array, p0: Array, locked: tuple[str, ...]
 ) -> float:
-    """How well the plant without effects follows a filter input from a start, in air as restless as before any log was seen."""
+    """How well the plant without effects follows a filter input from a start, with the process noise of before any log was seen."""
     q, none = np.zeros(len(x0)), np.zeros(len(x0))
     q[list(library.velocities)] = 10.0 ** (2.0 * decisions.FIRST_PROCESS_NOISE)
     rub = np.full(max(1, len(library.plain.filter.axes)), RUB_S)

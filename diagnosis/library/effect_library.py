@@ -257,9 +257,9 @@ def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
     """What was noted on disk under this content, or what `make` gives, noted."""
     digest = hashlib.sha256(MADE_FROM)
     digest.update(bound.plant.model.encode())
-    note = CACHE_DIR / "kits" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
+    note = CACHE_DIR / "effect_libraries" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
     try:
-        known: dict[str, Any] = json.loads(read_text(note, "note of a kit"))
+        known: dict[str, Any] = json.loads(read_text(note, "note of an effect library"))
         if "library" not in known or is_whole(Path(known["library"])):
             return known
     except (BadInput, ValueError):

@@ -1,4 +1,4 @@
-"""Gusts as states of the equations: what the air does next is unknown, and the filter estimates what it does now."""
+"""Gusts as states of the equations: what drives them next is unknown, and the filter estimates what it does now."""
 
 from dataclasses import replace
 

@@ -25,7 +25,7 @@ TOLD = 4  # hypotheses left out that are told of
 
 @dataclass(frozen=True, eq=False)
 class Alone:
-    """Single effects as fitted, the nominal plant, and the effects that are worth a costly look beside others;
+    """Single effects as fitted, the nominal plant, and the effects that are worth a costly score test beside others;
     `linearisation` and `score_tests` are
     those of the nominal plant."""
 
@@ -123,7 +123,7 @@ def _rules(
 
 
 def _worth(score_tests: Sequence[ScoreTest]) -> set[str]:
-    """Effects that are worth a costly look beside others."""
+    """Effects that are worth a costly score test beside others."""
     return {entry.effect for entry in score_tests[: decisions.COSTLY_EFFECTS] if entry.gain > decisions.LEAST_GAIN}
 
 
@@ -151,7 +151,7 @@ def _promising(start: Fit, score_tests: Sequence[ScoreTest], low_noise: bool) ->
 
 
 def _first_of_each(jobs: Sequence[Job]) -> list[Job]:
-    """The first CALM_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
+    """The first LOW_NOISE_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
     better than the one effect of an axis that is there."""
     kept = list(jobs[: decisions.LOW_NOISE_SINGLES])
     places = {_place(job) for job in kept}
@@ -213,20 +213,21 @@ def certainties(fit: Fit) -> dict[str, float]:
 def _grown(case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: Set[str]) -> list[Job]:
     """The best hypotheses, each with the further effects that promise most beside it; none where the first has none.
 
-    The first also with the one that promises most under the air as it seems: under low process noise what is left of a rough rig hides a
+    The first also with the one that promises most under the process noise as it seems: under low process noise what
+    is left of a rough rig hides a
     lesser effect.
     """
     if not best:
         return []
     low_noise = thread_map(lambda fitted: with_low_process_noise(case, fitted.fit), best)
-    starts = [air or fitted.fit for air, fitted in zip(low_noise, best, strict=True)]
+    starts = [lowered or fitted.fit for lowered, fitted in zip(low_noise, best, strict=True)]
     counts: list[int] = [decisions.PARTNERS] * len(best)
     if low_noise[0] is not None:
         low_noise, starts, counts = [*low_noise, None], [*starts, best[0].fit], [*counts, 1]
 
-    def partners(start: Fit, air: Fit | None, count: int) -> list[Job]:
+    def partners(start: Fit, lowered: Fit | None, count: int) -> list[Job]:
         score_tests = score_effects(case, linearised(case, start), names, worth)
-        return [Job(start, entry, air is not None) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN][
+        return [Job(start, entry, lowered is not None) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN][
             :count
         ]
 

@@ -32,7 +32,7 @@ def exchange(case: Case, found: dict[frozenset[str], FittedHypothesis], worth: S
 def fit_twins(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     """Effects that data hardly tell from the best single one, where they are not `found` yet, fitted in its place.
 
-    Looks are taken from a plant without any effect, whose numbers are bent to take its part: there only one of a few that are alike
+    Score tests are taken from a plant without any effect, whose numbers are bent to take its part: there only one of a few that are alike
     may promise much.
     """
     best = max(found.values(), key=lambda entry: entry.evidence, default=None)

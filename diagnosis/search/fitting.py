@@ -31,7 +31,7 @@ LEVELS = np.geomspace(
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A further effect to fit from a start, whose air may have been `low_noise`."""
+    """A further effect to fit from a start, whose process noise may have been lowered (`low_noise`)."""
 
     start: Fit
     score_test: ScoreTest
@@ -86,8 +86,8 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     hypothesis = fitted.fit.hypothesis
     if hypothesis.theta @ hypothesis.theta < decisions.ASTRAY_REFINED * len(hypothesis.theta):
         return fitted
-    restless = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE))
-    starts = [_from_stated(case, begun) for begun in (hypothesis, restless)]
+    noisy = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE))
+    starts = [_from_stated(case, begun) for begun in (hypothesis, noisy)]
     ends = [refined(case, as_fitted(case, start)) for start in starts if start is not None]
     return max((fitted, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
 
@@ -100,7 +100,7 @@ def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[floa
 
 
 def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | None:
-    """The fit, or a likelier one where readings come after a delay that scatters: in calmer air then."""
+    """The fit, or a likelier one where readings come after a delay that scatters: with less process noise then."""
     if found is None or not any(scatters(case, name) for name in effects):
         return found
     start = with_jitter(case, found.hypothesis, effects)

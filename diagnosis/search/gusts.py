@@ -1,4 +1,4 @@
-"""Whether what is missing is the air: a gust on an axis, by maximum likelihood, beside the plant alone.
+"""Whether what is missing is coloured noise: a gust on an axis, by maximum likelihood, beside the plant alone.
 
 A gust follows any readings, so it explains a part of whatever is missing. It is tried where nothing else explains the logs well: an
 effect of the library that is there explains them better, and what depends on the rig's motion is left to forms beside it (weigh.py).

@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 FORGOTTEN_ROWS = 60  # rows after which the filter has forgotten a frame
 SWEEPS, FIRST_SHARE = 12, 0.1
 LITTLE_GAINED = 0.005  # of what losses gain, below which another round is not worth its time
-LOSS_ROUNDS = 8  # with what was found supposed the air is calmer, and shows more
+LOSS_ROUNDS = 8  # with what was found in the hypothesis there is less process noise, and more shows
 SHARES = np.geomspace(1e-3, 0.8, 60)
 OPENING = Lock()
 

@@ -81,10 +81,11 @@ def _unstated(case: Case, hypothesis: Hypothesis, axis: str) -> Iterator[Effect]
 
 
 def _likeliest(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> tuple[Hypothesis, float]:
-    """The likeliest speed or way in which friction builds up, by folds up, else down, in air as calm as it then is.
+    """The likeliest speed or way in which friction builds up, by folds up, else down, with the process noise that then remains.
 
-    None of it where neither its reference nor a quarter of that is likelier than `value` in the air as it was: where an axis sticks, both
-    cost hundreds of nats, and no other air makes up for them.
+    None of it where neither its reference nor a quarter of that is likelier than `value` with the process noise as
+    it was: where an axis sticks, both
+    cost hundreds of nats, and no other process noise makes up for them.
     """
     reference = effect.size.reference
     first = [(likelihood_of(case, _with(hypothesis, effect, size)), size) for size in (reference, reference / FOLD**2)]
@@ -109,6 +110,6 @@ def _with(hypothesis: Hypothesis, effect: Effect, size: float) -> Hypothesis:
 
 
 def _settled(case: Case, hypothesis: Hypothesis) -> tuple[Hypothesis, float]:
-    """The same in the air that its innovations then show, with its log likelihood."""
+    """The same with the process noise that its innovations then show, with its log likelihood."""
     fitted = with_process_noise(case, hypothesis)
     return fitted, likelihood_of(case, fitted)

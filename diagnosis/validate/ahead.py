@@ -24,9 +24,9 @@ Array = NDArray[np.float64]
 EVERY_S = 0.05  # between two predictions
 AHEAD_MEMORY_S = SETTLE_S + WINDOW_S + 2.0  # readings that one prediction is made from
 GAP_S = 10.0
-# Log10 of the noise on each axis' speed per square root of a second. Calmer air leaves less of an exact twin's gap, and lets a twin that
+# Log10 of the noise on each axis' speed per square root of a second. Less of it leaves less of an exact twin's gap, and lets a twin that
 # lacks something lose its state: from -1.5 to -2 the first falls by a third to a half, the second grows by a tenth.
-UNREST = -2.0
+LIVE_PROCESS_NOISE = -2.0
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Lookahead:
             locked=self._locked,
         )
         case = make_case(self._library, [log], stated=self._bound)
-        hypothesis = nominal_hypothesis(case, UNREST)
+        hypothesis = nominal_hypothesis(case, LIVE_PROCESS_NOISE)
         found = predictions(case, case.flights[0], hypothesis, spans=spans)
         return tuple(
             Ahead(rows[span.first].t_s, rows[span.first].y, tuple(found[span.first].tolist())) for span in spans

@@ -161,7 +161,7 @@ def _begun(library: EffectLibrary, compiled: CompiledFilter, x0: Array) -> Array
 
 
 def _shaken(case: Case, hypothesis: Hypothesis, locked: tuple[str, ...]) -> Array:
-    """Unrest (states,) per square root of a second: on the speeds of axes that are free."""
+    """Process noise (states,) per square root of a second: on the speeds of axes that are free."""
     states = case.library.states
     found = np.zeros(case.library.compiled(hypothesis.effects).filter.states)
     for axis, process_noise in zip(case.library.bound.model.axes, hypothesis.process_noise, strict=True):

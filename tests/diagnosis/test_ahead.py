@@ -6,7 +6,7 @@ import pytest
 from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
-from diagnosis.validate.ahead import EVERY_S, UNREST, Ahead, Lookahead
+from diagnosis.validate.ahead import EVERY_S, LIVE_PROCESS_NOISE, Ahead, Lookahead
 from diagnosis.validate.prediction import Span, predictions
 from records.live import LiveRow
 from records.log import RunLog
@@ -78,7 +78,7 @@ def test_it_is_the_prediction_of_the_whole_log(plant: BoundPlant, fly: Fly) -> N
     places = [round(entry.t_s / 0.01) for entry in found]
     case = make_case(effect_library(plant), [log], stated=plant)
     spans = [Span(place - 100, place, place + 1) for place in places]
-    whole = predictions(case, case.flights[0], nominal_hypothesis(case, UNREST), spans=spans)[places]
+    whole = predictions(case, case.flights[0], nominal_hypothesis(case, LIVE_PROCESS_NOISE), spans=spans)[places]
     assert np.abs(whole - [entry.predicted for entry in found]).max() < 0.5 * STEP_RAD
 
 
