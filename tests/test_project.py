@@ -12,29 +12,13 @@ from pathlib import Path
 
 import pytest
 
-from jobs.code import FOLDERS
+from jobs.code import source_folders
 from tests.soak import sampled
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
-PACKAGES = (
-    "records",
-    "jobs",
-    "toolchain",
-    "sim",
-    "recordings",
-    "design",
-    "codegen",
-    "controllers",
-    "verification",
-    "rig",
-    "logcheck",
-    "replay",
-    "identification",
-    "diagnosis",
-    "blind",
-    "twinlaw",
-)
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PACKAGES = sorted(path.parent.name for path in ROOT.glob("*/__init__.py"))
 
 
 def _run(*command: str) -> subprocess.CompletedProcess[str]:
@@ -43,7 +27,21 @@ def _run(*command: str) -> subprocess.CompletedProcess[str]:
 
 def test_a_kept_answer_counts_for_the_sources_of_every_package() -> None:
     """An answer that a sweep kept must not outlive a change of any package, or of the firmware's C."""
-    assert set(FOLDERS) == {*PACKAGES, "firmware"}
+    assert set(source_folders()) == {*PACKAGES, "firmware"}
+
+
+def test_every_package_is_shipped_typed_and_has_a_place_in_the_order_of_imports() -> None:
+    """import-linter is given the packages twice, hatch and mypy what is none: all must mean the folders that there are."""
+    tools = SETTINGS["tool"]
+    linter, wheel = tools["importlinter"], tools["hatch"]["build"]["targets"]["wheel"]
+    order = next(contract["layers"] for contract in linter["contracts"] if "twinlaw" in contract.get("layers", ()))
+    assert sorted(linter["root_packages"]) == sorted(order) == PACKAGES
+    tracked = {path.partition("/")[0] for path in _run("git", "ls-files", "*/*").stdout.split()}
+    for kept in (wheel["exclude"], tools["mypy"]["exclude"]):
+        left_out = {pattern.strip("^/") for pattern in kept}
+        assert left_out.isdisjoint(PACKAGES)
+    others = {name for name in tracked if not name.startswith(".")} - set(PACKAGES)
+    assert others <= {pattern.strip("/") for pattern in wheel["exclude"]}
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -66,8 +64,7 @@ def test_what_is_imported_at_load_is_installed_by_every_make() -> None:
     """A package of an extra, or one that only another package brings, would end a plain install in a traceback."""
     sources = [source for package in PACKAGES for source in (ROOT / package).rglob("*.py")]
     asked = {name for source in sources for name in _imported_at_load(source)} - {*PACKAGES, *sys.stdlib_module_names}
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    declared = {re.split(r"[<>=\[]", requirement)[0].lower() for requirement in project["dependencies"]}
+    declared = {re.split(r"[<>=\[]", requirement)[0].lower() for requirement in SETTINGS["project"]["dependencies"]}
     bringers = packages_distributions()
     assert {name for name in asked if declared.isdisjoint(map(str.lower, bringers[name]))} == set()
 
