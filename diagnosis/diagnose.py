@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, overruled, partly, worse
+from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, named, overruled, partly, worse
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -185,7 +185,13 @@ def _with_gusts(
     likely = max(weighed.retune, *weighed.probabilities, 0.0)
     explained = likely >= decisions.WELL_EXPLAINED
     rules = [
-        decided("well_explained", "best", likely, decisions.WELL_EXPLAINED, "explained" if explained else "gusts asked")
+        decided(
+            "well_explained",
+            named(weighed),
+            likely,
+            decisions.WELL_EXPLAINED,
+            "explained" if explained else "gusts asked",
+        )
     ]
     if not explained:
         gained = found.fitted[0].evidence - seen.retuned.evidence

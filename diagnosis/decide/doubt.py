@@ -19,7 +19,7 @@ from diagnosis.validate.misfit import ignorance
 from records.reasons import Decision, Note
 
 JOINT_ROUNDS = 4  # of a fit to all logs together
-FORBIDS, TELLS, UNCHANGED = "no cause is named", "is told", "nothing"
+FORBIDS, TELLS, UNCHANGED = "no cause is named", "is told", "no objection"
 
 
 @dataclass(frozen=True)

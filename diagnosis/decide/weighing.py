@@ -86,7 +86,9 @@ def weigh(
     of = " + ".join(first.effects)
     rules = (
         held_against("forms_left", of, left, expected, "nats", "unknown likelier" if left > expected else "explained"),
-        held_against("told_apart", of, best - nominal.evidence, scale, "nats", "from none of it"),
+        held_against(
+            "told_apart", of, best - nominal.evidence, scale, "nats", _told_apart(best - nominal.evidence, scale)
+        ),
     )
     chosen = tuple(named[index] for index in order)
     return Weighed(
@@ -97,6 +99,10 @@ def weigh(
         scale,
         rules,
     )
+
+
+def _told_apart(gain: float, scale: float) -> str:
+    return "told from the plant alone" if gain > scale else "alike to the plant alone"
 
 
 def _read_off(
