@@ -9,7 +9,10 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
-from diagnosis.decisions import table
+import logcheck.thresholds
+import replay.thresholds
+from diagnosis import decisions
+from records.deciding import Decides
 from twinlaw.verbs import VERBS, build_parser
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -74,11 +77,23 @@ def rooms_page() -> str:
 
 
 def decisions_page() -> str:
-    """Every constant that decides something in a diagnosis."""
-    rows = [f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |" for name, value in table()]
-    head = ["| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]
-    told = "From `diagnosis/decisions.py`, in the order of the path of a diagnosis.\n"
-    return "\n".join(["# The constants that decide\n", told, *head, *rows])
+    """Every constant that decides something: of a log, of the firmware, of a gap."""
+    parts = [
+        "# The constants that decide\n",
+        "Value, unit, reason, and the data that set each, in the order of the path of a diagnosis.\n",
+    ]
+    for heading, module in (
+        ("Log check", logcheck.thresholds),
+        ("Firmware replay", replay.thresholds),
+        ("Diagnosis", decisions),
+    ):
+        known = ((name, value) for name, value in vars(module).items() if isinstance(value, Decides))
+        parts += [f"## {heading}\n", "| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]
+        parts += [
+            f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |" for name, value in known
+        ]
+        parts.append("")
+    return "\n".join(parts)
 
 
 def _shown(value: object) -> str:

@@ -54,6 +54,8 @@ EXAMPLES = {
     "verb": Example("doctor", {"NAME": "doctor"}, beside="Makefile"),
     "board": Example("", {"CHIP": "stm32g071"}),
     "threshold of the diagnosis": Example("CONFIDENCE_CAP = ", searched=("diagnosis",)),
+    "threshold of the log check": Example("MOST_READINGS = ", searched=("logcheck",)),
+    "threshold of the replay": Example("OLDEST_ANGLES = ", searched=("replay",)),
     "importer of a data set": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, ("recordings",)),
     "page": Example("faults.md", {"NAME": "faults"}, ("mkdocs.yml", "README.md")),
     "identification experiment": Example("reaction_balance", {"PLANT": "ce150", "NAME": "azimuth"}),
