@@ -1,1 +1,1 @@
-"""Controllers: one file and one row each, all behind the same interface, all in the frame that the scheduled law flies in."""
+"""A bound plant in; the table of any of several controllers, its law over any arithmetic and its C out, behind one interface."""

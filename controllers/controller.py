@@ -5,40 +5,35 @@ from typing import Any, Protocol
 
 from codegen.twin import Float32Twin
 from design.settings import DesignSettings
-from records.law_table import FlownTable
 from sim.bind import BoundPlant
-
-
-class FloatLaw(Protocol):
-    """The law in double precision, as the closed loop takes it (sim.loop.Controller)."""
-
-    def reset(self, psi_rad: float, phi_rad: float) -> None: ...
-
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]: ...
+from sim.loop import Controller as FloatLaw
 
 
 class Controller(Protocol):
     """A row of controllers.table.CONTROLLERS.
 
-    `title` is a few words for a heading, `source` the paper and the place in it, `note` a paragraph of docs/controllers.md: how it is
-    designed, and which of the paper's slips are mended. A table's digest names table and controller: it is in the C, in the image, and
-    in what the board answers to IDENTIFY. Any image is linked from the same firmware and the three C texts.
+    A table's digest names table and controller: it is in the C, in the image, and in what the board answers to IDENTIFY. Any image is
+    linked from the same firmware and the three C texts.
     """
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """What --controller calls it."""
 
     @property
-    def title(self) -> str: ...
+    def title(self) -> str:
+        """A few words for a heading."""
 
     @property
-    def source(self) -> str: ...
+    def source(self) -> str:
+        """The paper and the place in it."""
 
     @property
-    def note(self) -> str: ...
+    def note(self) -> str:
+        """A paragraph of docs/controllers.md: how it is designed, and which of the paper's slips are mended."""
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> Any:
-        """The table (a FlownTable) on this plant; raises BadInput where it cannot be designed."""
+        """The table (a records.law_table.FlownTable) on this plant; raises BadInput where it cannot be designed."""
 
     def text(self, table: Any) -> str:
         """The table as JSON text with its digest."""
@@ -51,6 +46,3 @@ class Controller(Protocol):
 
     def generate(self, table: Any) -> Mapping[str, str]:
         """law.h, law.c and law_self_test.c; the same table gives the same bytes."""
-
-
-__all__ = ["Controller", "FloatLaw", "FlownTable"]

@@ -6,13 +6,13 @@ from typing import Any
 
 from codegen.law_frame import AxisEquations
 from codegen.twin import Float32Twin
-from controllers.controller import FloatLaw
 from controllers.designing import Points, points_of
 from controllers.exact import EquationLaw, EquationTwin
 from controllers.source import generate
 from design.settings import DesignSettings
 from records.law_table import LawTable, law_table_text
 from sim.bind import BoundPlant
+from sim.loop import Controller
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class EquationController:
         """The table as JSON text with its digest."""
         return law_table_text(table)
 
-    def float_law(self, table: LawTable[Any]) -> FloatLaw:
+    def float_law(self, table: LawTable[Any]) -> Controller:
         """The law in double precision."""
         return EquationLaw(self.equations, table)
 

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 from codegen.law import generate_law
 from codegen.twin import Float32Twin
-from controllers.controller import FloatLaw
-from design.law import FloatLaw as ScheduledLaw
+from design.law import FloatLaw
 from design.settings import DesignSettings
 from design.table import design
 from records.table import ControllerTable, table_text
 from sim.bind import BoundPlant
+from sim.loop import Controller
 
 
 class Scheduled:
@@ -31,9 +31,9 @@ class Scheduled:
         """The table as JSON text with its digest."""
         return table_text(table)
 
-    def float_law(self, table: ControllerTable) -> FloatLaw:
+    def float_law(self, table: ControllerTable) -> Controller:
         """The law in double precision."""
-        return ScheduledLaw(table)
+        return FloatLaw(table)
 
     def twin(self, table: ControllerTable) -> Float32Twin:
         """The exact model of the float32 C."""
