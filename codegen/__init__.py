@@ -1,1 +1,1 @@
-"""Records in, C text out: pure generators."""
+"""Records in; C text out, purely: the same record gives the same bytes."""

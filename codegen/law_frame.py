@@ -113,7 +113,8 @@ class AxisEquations(Protocol):
     """A law's own part. `AxisState` is a frozen dataclass of numbers that begins with reference_1_rad, reference_2_rad."""
 
     @property
-    def AxisState(self) -> Callable[..., Any]: ...
+    def AxisState(self) -> Callable[..., Any]:
+        """The record of what one axis remembers."""
 
     def axis_rest(self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any) -> Any:
         """The axis' state at rest at this angle; `reference_rad` is the angle within the reference's range."""

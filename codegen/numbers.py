@@ -8,7 +8,7 @@ import numpy as np
 def c_float32(value: float) -> str:
     """`value`, rounded to float32, as a C literal of 9 significant digits, which read back to the same bits.
 
-    Eight digits are not enough: some float32 values would come back one ulp off.
+    Eight digits are not enough: some float32 values would come back one ulp off. Raises ValueError for what is not finite.
     """
     if not math.isfinite(value):
         raise ValueError(f"no C literal for {value}")

@@ -56,7 +56,7 @@ class _NoDecisions:
 
 
 def operation_count(table: ControllerTable) -> OperationCount:
-    """Counted by running the law once on numbers that only count."""
+    """Counted by running the law once on numbers that only count; raises BadInput for a table whose law could not run."""
     count = OperationCount()
     number = _Counted(count)
     law = law_constants(table, lambda _: number)

@@ -42,17 +42,23 @@ class SelfTest:
 class Twin(Protocol):
     """What the self-test asks of a twin; angles and voltages in rad and V, exactly what their words stand for."""
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None: ...
+    def reset(self, psi_rad: float, phi_rad: float) -> None:
+        """Start at rest at these angles."""
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]: ...
+    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
+        """One sample: u_M_V, u_T_V."""
 
-    def angle_from_counts_psi(self, counts: int) -> SupportsFloat: ...
+    def angle_from_counts_psi(self, counts: int) -> SupportsFloat:
+        """Elevation [rad] of an encoder count."""
 
-    def angle_from_counts_phi(self, counts: int) -> SupportsFloat: ...
+    def angle_from_counts_phi(self, counts: int) -> SupportsFloat:
+        """Azimuth [rad] of an encoder count."""
 
-    def duty_main(self, u_V: float) -> int: ...
+    def duty_main(self, u_V: float) -> int:
+        """Signed PWM ticks of the main rotor's voltage."""
 
-    def duty_tail(self, u_V: float) -> int: ...
+    def duty_tail(self, u_V: float) -> int:
+        """Signed PWM ticks of the tail rotor's voltage."""
 
     def voltage_word(self, u_V: float) -> int:
         """The 32 bits of a voltage."""

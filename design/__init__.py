@@ -1,1 +1,1 @@
-"""Operating points, pole placement, schedules and margins: from a plant to a controller table."""
+"""A bound plant and wishes for its loops in; the controller table and the report on it out, refused where it would not be stable."""

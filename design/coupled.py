@@ -31,7 +31,7 @@ def controller_states(controller: DeltaForm) -> tuple[Array, Array, Array, float
 
 
 def coupled_step(plant: SampledPlant, controllers: tuple[DeltaForm, ...]) -> Array:
-    """The matrix of one sample of the closed loop minus I; order n + 6 for each controller, input i acting on output i."""
+    """The matrix (m, m) of one sample of the closed loop minus I, m = n + 6 for each controller; controller i takes output i to input i."""
     n = len(plant.N)
     step = np.zeros((n + MEMORY * len(controllers),) * 2)
     step[:n, :n] = plant.N

@@ -59,5 +59,5 @@ def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequenc
 
 
 def controller_poles_z(direct: DirectForm) -> NDArray[np.complex128]:
-    """Roots of z^3 P."""
+    """The controller's own poles (3,): roots of z^3 P."""
     return np.asarray(np.roots(direct.p), dtype=complex)

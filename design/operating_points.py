@@ -31,7 +31,7 @@ class PointDesign:
 
 
 def grid(settings: DesignSettings) -> Array:
-    """The elevations Psi_0 [rad] of the operating points, evenly spread over the schedule's range."""
+    """The elevations Psi_0 [rad], (points,), of the operating points, evenly spread over the schedule's range."""
     return np.linspace(settings.psi_min_rad, settings.psi_max_rad, settings.operating_points)
 
 

@@ -114,7 +114,7 @@ def make_report(
 
 
 def angles(grid_rad: Array) -> Array:
-    """The operating points and, spread evenly strictly between them, at least ANGLES_BETWEEN angles."""
+    """The operating points (points,) and, spread evenly strictly between them, at least ANGLES_BETWEEN angles: (angles,) [rad]."""
     intervals = len(grid_rad) - 1
     parts = -(-ANGLES_BETWEEN // intervals) + 1
     return np.interp(np.arange(intervals * parts + 1) / parts, np.arange(len(grid_rad)), grid_rad)

@@ -58,8 +58,10 @@ def fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
 
 
 def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
-    """The same as a table holds it, to DIGITS digits of the largest coefficient: beyond, processors round differently, and one design
-    shall have one digest on all of them."""
+    """The same fit of values (points,) as a table holds it, to DIGITS digits of the largest coefficient.
+
+    Beyond, processors round differently, and one design shall have one digest on all of them.
+    """
     coefficients = fit(psi_rad, values, degree)
     largest = max(map(abs, coefficients))
     places = DIGITS - 1 - math.floor(math.log10(largest)) if largest > 0.0 else 0
@@ -89,7 +91,7 @@ def evaluate(schedule: Schedule, psi_rad: float) -> DeltaForm:
 
 
 def fit_error(psi_rad: Array, designs: Sequence[DeltaForm], schedule: Schedule) -> FitError:
-    """How far the schedule is from the designs it was fitted to."""
+    """How far the schedule is from the designs it was fitted to, at psi_rad (points,)."""
     fitted = [evaluate(schedule, float(psi)) for psi in psi_rad]
     wanted_direct, fitted_direct = [to_direct(d) for d in designs], [to_direct(d) for d in fitted]
     return FitError(

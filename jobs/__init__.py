@@ -1,1 +1,1 @@
-"""Many computations that know nothing of one another, on any executor of `concurrent.futures`, each answer kept as soon as it is there."""
+"""Many computations that know nothing of one another in; their answers out, from any executor, each kept as soon as it is there."""

@@ -15,11 +15,13 @@ STAMP = "run.json"
 
 
 class Keep(Protocol):
-    """What can keep answers; `load` returns None for one that is not there whole."""
+    """What can keep answers, each by its job's name and key."""
 
-    def load(self, name: str, key: str) -> Answer | None: ...
+    def load(self, name: str, key: str) -> Answer | None:
+        """The answer, or None where it is not there whole."""
 
-    def save(self, name: str, key: str, answer: Answer, time_s: float) -> None: ...
+    def save(self, name: str, key: str, answer: Answer, time_s: float) -> None:
+        """Keep the answer, which took `time_s`; raises BadInput where that is impossible."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Folders:
         return {self.file: (place / self.file).read_text(encoding="utf-8")}
 
     def save(self, name: str, key: str, answer: Answer, time_s: float) -> None:
-        """Write its files, then the stamp; what an earlier answer left besides is removed."""
+        """Write its files, then the stamp; what an earlier answer left besides is removed. Raises BadInput where that is impossible."""
         place = self.folder / name
         before = _read(place / STAMP).get("files", {})
         try:

@@ -1,1 +1,1 @@
-"""Recordings of real rigs, imported to run logs: where they come from, and how their files are read."""
+"""The file of a recording, a data set or another tool in; a run log with notes on what it lacks out."""

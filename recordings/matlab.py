@@ -22,7 +22,7 @@ def variables(content: bytes, where: str) -> Mapping[str, Any]:
 
 
 def array(found: Mapping[str, Any], name: str, where: str) -> Array:
-    """The variable `name` as floats; raises BadInput when it is not there or holds no numbers."""
+    """The variable `name` as floats in the shape that it has; raises BadInput when it is not there or holds no numbers."""
     try:
         return np.asarray(found[name], dtype=float)
     except (KeyError, TypeError, ValueError) as error:
@@ -30,7 +30,7 @@ def array(found: Mapping[str, Any], name: str, where: str) -> Array:
 
 
 def stream(found: Mapping[str, Any], name: str, where: str) -> tuple[Array, Array]:
-    """Time stamps and values of a struct with the fields `timestamp` and `value`; raises BadInput."""
+    """Time stamps (n,) and values (n,) of a struct with the fields `timestamp` and `value`; raises BadInput where it has them not."""
     try:
         struct = found[name]
         return np.atleast_1d(np.asarray(struct.timestamp, float)), np.atleast_1d(np.asarray(struct.value, float))

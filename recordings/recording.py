@@ -41,7 +41,7 @@ class Importer(Protocol):
 
 
 def limit_notes(name: str, values: ArrayLike, lower: float, upper: float) -> tuple[str, ...]:
-    """Says in how many rows an input lies at or beyond the limits of its drive, if in any."""
+    """Says in how many of its rows (n,) an input lies at or beyond the limits of its drive, in its own unit, if in any."""
     rows = np.asarray(values)
     low, high = int(np.sum(rows <= lower)), int(np.sum(rows >= upper))
     parts = [
@@ -53,7 +53,7 @@ def limit_notes(name: str, values: ArrayLike, lower: float, upper: float) -> tup
 
 
 def gap_notes(t_s: Array, sample_period_s: float) -> tuple[str, ...]:
-    """Says how many samples are missing, by the time stamps, if any."""
+    """Says how many gaps the time stamps t_s (n,) have, wider than 1.5 sample periods, if any."""
     steps = np.diff(t_s)
     wide = steps[steps > 1.5 * sample_period_s]
     if not wide.size:
@@ -62,7 +62,7 @@ def gap_notes(t_s: Array, sample_period_s: float) -> tuple[str, ...]:
 
 
 def missing_notes(name: str, values: Array) -> tuple[str, ...]:
-    """Says in how many rows nothing was measured, if in any."""
+    """Says in how many of its rows (n,) nothing was measured (NaN), if in any."""
     missing = int(np.isnan(values).sum())
     if missing == values.size:
         return (f"{name} was not recorded: NaN",)

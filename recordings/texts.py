@@ -23,7 +23,7 @@ def cells(content: bytes, separator: str | None, where: str) -> tuple[tuple[str,
 
 
 def column(header: Sequence[str], rows: Sequence[Sequence[str]], name: str, where: str) -> Array:
-    """The numbers under `name`, with decimal point or comma; raises BadInput naming the row of a cell that is none."""
+    """The numbers (rows,) under `name`, with decimal point or comma; raises BadInput naming the row of a cell that is none."""
     return np.array([number(text, where, line) for line, text in enumerate(texts(header, rows, name, where), start=2)])
 
 

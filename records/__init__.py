@@ -1,1 +1,1 @@
-"""The small frozen records that the stages hand to one another, with their files."""
+"""Files and numbers in; the small frozen records that the stages hand to one another, and their text, out."""

@@ -22,30 +22,48 @@ class AxisRange(Protocol):
     """What every table states of an axis: the range of its references, its limits, its encoder's step."""
 
     @property
-    def reference_min_rad(self) -> float: ...
+    def reference_min_rad(self) -> float:
+        """Least reference that the law takes [rad]."""
+
     @property
-    def reference_max_rad(self) -> float: ...
+    def reference_max_rad(self) -> float:
+        """Largest reference that the law takes [rad]."""
+
     @property
-    def u_min_V(self) -> float: ...
+    def u_min_V(self) -> float:
+        """Least voltage."""
+
     @property
-    def u_max_V(self) -> float: ...
+    def u_max_V(self) -> float:
+        """Largest voltage."""
+
     @property
-    def resolution_rad(self) -> float: ...
+    def resolution_rad(self) -> float:
+        """The encoder's step [rad]."""
 
 
 class FlownTable(Protocol):
     """What every table states, whichever controller it is of: records.table.ControllerTable, or LawTable."""
 
     @property
-    def plant(self) -> str: ...
+    def plant(self) -> str:
+        """The plant file's name."""
+
     @property
-    def sample_period_s(self) -> float: ...
+    def sample_period_s(self) -> float:
+        """Time from sample to sample [s]."""
+
     @property
-    def elevation(self) -> AxisRange: ...
+    def elevation(self) -> AxisRange:
+        """The elevation's ranges."""
+
     @property
-    def azimuth(self) -> AxisRange: ...
+    def azimuth(self) -> AxisRange:
+        """The azimuth's ranges."""
+
     @property
-    def digest(self) -> str: ...
+    def digest(self) -> str:
+        """The name of the table: 64 hexadecimal digits."""
 
 
 @dataclass(frozen=True)

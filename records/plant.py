@@ -71,7 +71,7 @@ def load_plant(path: Path) -> Plant:
 
 
 def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
-    """A plant from the content of its file; `where` names the file in errors."""
+    """A plant from the content of its file; raises BadInput naming `where`, the file, and the key."""
     checks.schema(content, f"{where}: schema", SCHEMA)
     checks.keys(content, where, ("schema", "model", "parameters", "sensors"), ("design", "effects", "correlation"))
     parameters = checks.table(content["parameters"], f"{where}: parameters")

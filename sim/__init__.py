@@ -1,1 +1,1 @@
-"""Equations of each plant, the compiled kernels made from them, and the closed loop."""
+"""A plant file in; its equations with their effects, bound to numbers, and flights of them, compiled, out."""

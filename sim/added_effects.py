@@ -54,7 +54,7 @@ def without_effects(bound: BoundPlant) -> BoundPlant:
 def linear_part(bound: BoundPlant) -> BoundPlant:
     """The plant that a linear design sees: with the effects on its equations, without those that bring states or act on a signal's way.
 
-    What delays, lags, hysteresis or a springy part cost in margin is left to the flight.
+    What delays, lags, hysteresis or a springy part cost in margin is left to the flight. Raises BadInput as bind does.
     """
     if not bound.effects:
         return bound
@@ -67,7 +67,7 @@ def combined(bound: BoundPlant, names: Iterable[str]) -> BoundPlant:
     """The plant with all these effects present at next to no size: it moves as the nominal one, with derivatives by each size.
 
     Each size stands a billionth of its reference away from where the effect vanishes: there friction already has its direction, and a
-    dead band its sides. with_values then gives single effects real sizes without compiling again.
+    dead band its sides. with_values then gives single effects real sizes without compiling again. Raises BadInput for an unknown effect.
     """
     known = library(bound)
     where = f"plant {bound.plant.name!r}: effects"

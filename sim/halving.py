@@ -34,7 +34,7 @@ def step_error(
     reference: ArrayLike | None = None,
     substeps: int = 1,
 ) -> StepError:
-    """The step-halving check of a run of `simulate` with the same arguments.
+    """The step-halving check of a run of `simulate` with the same arguments, shapes and errors: t_s (n,), x0 (states,).
 
     Outputs are not quantised in it, and so the loop that a controller closes is smooth: a reading that flips by one count would hide
     the error of the integration behind the encoder's step. An unstable plant with given inputs amplifies every error: check

@@ -62,7 +62,10 @@ def fly(
 
 
 def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, substeps: int = 1) -> RunLog:
-    """The same flight with the float64 law of `table`, wholly in C: about a thousand times faster than `fly`."""
+    """The same flight with the float64 law of `table`, wholly in C: about a thousand times faster than `fly`.
+
+    Raises BadInput for a plant that the table is not of (two inputs and two outputs).
+    """
     runs = simulate(
         bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, substeps=substeps, keep="uy"
     )
@@ -78,7 +81,10 @@ def closed_loop_log(bound: BoundPlant, manoeuvre: Manoeuvre, u: Array, y: Array,
 
 
 def live_log(bound: BoundPlant, rows: Sequence[LiveRow], table_digest: str | None) -> RunLog:
-    """The run log of a flight that was watched, its time counted from the first of `rows`, of which there are two at least."""
+    """The run log of a flight that was watched, its time counted from the first of `rows`, of which there are two at least.
+
+    Its sample period is the median of their distances.
+    """
     t_s = np.array([row.t_s for row in rows])
     period_s = float(np.median(np.diff(t_s)))
     reference, u, y = (np.array([getattr(row, name) for row in rows]) for name in ("reference", "u", "y"))

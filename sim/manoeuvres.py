@@ -51,7 +51,7 @@ FLIGHT_S = 104.0
 def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
     """The project's flight: elevation -30..30 deg and azimuth 0/30/-30/60/0 deg in steps and ramps.
 
-    It starts as a rig does: rotors still, the arm on its lower stop, azimuth at 0.
+    It starts as a rig does: rotors still, the arm on its lower stop, azimuth at 0. For a plant of two outputs.
     """
     axes = zip((FLIGHT_ELEVATION, FLIGHT_AZIMUTH), bound.encoder_steps, strict=True)
     legs = [on_encoder_steps(axis, step_rad) for axis, step_rad in axes]
@@ -59,7 +59,10 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 
 
 def hop(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
-    """Eight seconds from rest in the air at -10 deg: both axes move once; for quick checks."""
+    """Eight seconds from rest in the air at -10 deg: both axes move once; for quick checks.
+
+    Raises BadInput where the plant cannot rest there.
+    """
     legs = (Leg(0.0, -10.0), Leg(1.0, 0.0)), (Leg(0.0, 0.0), Leg(2.0, 15.0))
     return manoeuvre("hop", equilibrium(bound, np.radians(-10.0)).x0, 8.0, sample_period_s, legs)
 
@@ -67,7 +70,10 @@ def hop(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
 def manoeuvre(
     name: str, x0: Array, duration_s: float, sample_period_s: float, legs: Sequence[Sequence[Leg]]
 ) -> Manoeuvre:
-    """References sampled from t = 0 to `duration_s`, one sequence of legs per output; raises BadInput for a time that is none."""
+    """References sampled from t = 0 to `duration_s`, one sequence of legs per output, from x0 (states,).
+
+    Raises BadInput for a duration or sample period that is not finite and positive.
+    """
     if not (np.isfinite(duration_s) and sample_period_s > 0.0 and duration_s >= sample_period_s):
         raise BadInput(
             "manoeuvre", name, f"{duration_s:g} s at {sample_period_s:g} s", "at least one sample", "give a longer time"

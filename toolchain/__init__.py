@@ -1,1 +1,1 @@
-"""One compiler for host and target: the zig wheel, with a content-addressed cache."""
+"""C in; libraries for this computer and images for the board out, by one compiler and a cache named by content."""

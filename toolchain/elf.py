@@ -51,7 +51,10 @@ def open_elf(elf: bytes, where: str) -> ELFFile:
 
 
 def flash_content(elf: bytes, where: str) -> bytes:
-    """The bytes to program from the start of the flash on, gaps filled with 0xff as erased flash reads."""
+    """The bytes to program from the start of the flash on, gaps filled with 0xff as erased flash reads.
+
+    Raises BadInput for what is no image of the board, and for one without content.
+    """
     segments = [
         (int(segment["p_paddr"]), bytes(segment.data()))
         for segment in open_elf(elf, where).iter_segments("PT_LOAD")
@@ -78,7 +81,7 @@ def image_sizes(elf: bytes, where: str) -> ImageSizes:
 
 
 def image_symbols(elf: bytes, where: str) -> dict[str, Symbol]:
-    """All named symbols; a function's address is given without the Thumb bit."""
+    """All named symbols; a function's address is given without the Thumb bit. Raises BadInput where there are none."""
     table = open_elf(elf, where).get_section_by_name(".symtab")
     if not isinstance(table, SymbolTableSection):
         raise _foreign(where, "an ELF file without symbols")

@@ -77,7 +77,7 @@ def runtime_library(core: str = STM32G071.core) -> Path:
     """Soft float and what else the core lacks (compiler-rt), built from the zig wheel's own sources.
 
     The library that zig would link by itself carries a megabyte of debug information with this computer's paths; the one built
-    for size is no slower than that built for speed (1.4 % faster over the law's self-test).
+    for size is no slower than that built for speed (1.4 % faster over the law's self-test). Raises BadInput where zig refuses.
     """
     library = CACHE_DIR / "target" / f"compiler_rt-{core}-{zig_version()}.a"
     if is_whole(library):
@@ -105,7 +105,10 @@ def compile_objects(
     flags: Sequence[str] = TARGET_FLAGS,
     core: str = STM32G071.core,
 ) -> list[Path]:
-    """Compile each C source of `sources` for `core`, side by side; returns the object files in the same order."""
+    """Compile each C source of `sources` for `core`, side by side; returns the object files in the same order.
+
+    Raises BadInput naming the line that the compiler refuses.
+    """
     folder = CACHE_DIR / "target" / "objects"
     folder.mkdir(parents=True, exist_ok=True)
     headers = [source for source in sources if not source.name.endswith(".c")]

@@ -20,7 +20,7 @@ class MakeNumber(Protocol[N_co]):
 
 @dataclass(frozen=True)
 class FixedPower(Generic[N]):
-    """The part of a polynomial of one power of its angle, see fixed_polynomials.PowerFormat."""
+    """The part of a polynomial of one power of its angle, see polynomials.PowerFormat."""
 
     power: int
     coefficient: N

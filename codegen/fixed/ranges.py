@@ -114,7 +114,7 @@ class Intervals:
         return value * x
 
     def scaled_short(self, value: Interval, x: Interval) -> Interval:
-        """Its half products fit one word as `value` has 16 bits, which is checked here."""
+        """Its half products fit one word as `value` has 16 bits; raises BadInput where it has more."""
         if not -(2**15) < value.low <= value.high < 2**15:
             raise _too_wide("a short coefficient", value)
         return self.word("a short product", self.floored(value * x, 16))

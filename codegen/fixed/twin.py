@@ -92,7 +92,7 @@ class FixedTwin:
 
 
 def duty_ratio(voltage_places: int) -> tuple[int, int]:
-    """Ticks per voltage word as factor / 2^shift, in lowest terms."""
+    """PWM ticks per voltage word of `voltage_places` as factor / 2^shift, in lowest terms; ValueError unless a volt is whole ticks."""
     ratio, shift = PWM_TICKS / FULL_SCALE_V, voltage_places
     if ratio != int(ratio):
         raise ValueError(f"{PWM_TICKS} ticks at {FULL_SCALE_V} V are not whole ticks per volt")

@@ -38,7 +38,7 @@ class Conversion:
 
 
 def a2l_text(table: ControllerTable, arithmetic: str, image: ImageMap) -> str:
-    """The description as text: the same table and image give the same bytes."""
+    """The description as text: the same table and image give the same bytes; raises BadInput for a table that no words can hold."""
     members = [(member, _conversion(table, arithmetic, member)) for member in (*image.signals, *image.limits)]
     methods = sorted({conversion for _, conversion in members}, key=lambda conversion: conversion.name)
     lines = [

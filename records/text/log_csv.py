@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def rows_text(names: Sequence[str], columns: Sequence[Array], seq: NDArray[np.int64] | None) -> str:
-    """Header and rows; each number in its shortest form that reads back exactly."""
+    """Header and rows of columns (n,), `seq` (n,) first if given; each number in its shortest form that reads back exactly."""
     cells = [map(repr, column.tolist()) for column in columns]
     if seq is not None:
         names, cells = ["seq", *names], [map(repr, seq.tolist()), *cells]

@@ -117,7 +117,7 @@ def speed(work: Callable[[], object], simulated_s: float, clock: Callable[[], fl
 
 
 def step_accuracy(bound: BoundPlant, table: ControllerTable) -> StepAccuracy:
-    """The step-halving check of the whole flight, next to the error against FINE_SUBSTEPS times finer steps."""
+    """The step-halving check of the whole flight, next to the error against FINE_SUBSTEPS times finer steps; both in rad, per output."""
     whole = flight(bound, table.sample_period_s)
     halved = step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
     coarse, fine = (

@@ -1,9 +1,4 @@
-"""The library of effects: physics that a rig may have and its nominal model lacks.
-
-One file for each effect, or for a family of one form; this table is the only place that names them all. Effects are added to a model
-in this order, the innermost first: what changes an input comes last, so that a changed rotor is driven by the changed input. Stages
-on the way of a signal know their own order.
-"""
+"""A plant's nominal model in; the library of effects out: physics that a rig may have and its model lacks, one file an effect or family."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -55,6 +50,8 @@ from sim.effects import (
 )
 from sim.model import Model
 
+# The only place that names them all. Effects are added to a model in this order, the innermost first: what changes an input comes last, so
+# that a changed rotor is driven by the changed input. Stages on the way of a signal know their own order.
 FAMILIES: tuple[Callable[[Model], Iterable[Effect]], ...] = (
     sensor_map.effects,
     flexible_mode.effects,

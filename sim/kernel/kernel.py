@@ -23,7 +23,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """A model's compiled functions: `lib` as declared in sim/kernel/c/exports.h, called through `ffi`."""
+    """A model's compiled functions: `lib` as declared in sim/kernel/c/exports.h, called through `ffi`.
+
+    All numbers are float64, in the model's order: states, inputs, outputs, parameters, axes.
+    """
 
     model: Model
     ffi: Any
@@ -31,7 +34,7 @@ class Kernel:
 
     @property
     def batch(self) -> Any:
-        """The library with `run_batch`, compiled when it is first asked for."""
+        """The library with `run_batch`, compiled when it is first asked for; raises BadInput when the compiler refuses."""
         return _batch(self)
 
     @property
@@ -40,7 +43,7 @@ class Kernel:
         return int(self.lib.constants_count())
 
     def pointer(self, array: NDArray[Any] | None) -> Any:
-        """The C address of a contiguous array; NULL for None."""
+        """The C address of a contiguous array of any shape, which must outlive its use; NULL for None."""
         return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
 
 

@@ -24,7 +24,7 @@ class Held:
     values: Array
 
     def at(self, starts_s: Array) -> Array:
-        """The values that hold from each of `starts_s` on."""
+        """The values (m, inputs) that hold from each of `starts_s` (m,) on."""
         place = np.searchsorted(self.edges_s[:-1], starts_s + SAME_INSTANT_S, side="right") - 1
         return np.asarray(self.values[np.maximum(place, 0)])
 
@@ -90,7 +90,7 @@ def played(x: Array, width: float, follower: float | None) -> tuple[Array, float
 
 
 def in_steps(x: Array, step: float | Array) -> Array:
-    """x in whole multiples of `step`, the nearest, halves to the even one; a step of 0 leaves x as it is. Shapes broadcast."""
+    """x (..., n) in whole multiples of `step`, () or (n,), the nearest, halves to the even one; a step of 0 leaves x as it is."""
     count = np.divide(x, step, out=np.zeros(np.shape(x)), where=np.greater(step, 0.0))
     return np.where(np.greater(step, 0.0), np.rint(count) * step, x)
 

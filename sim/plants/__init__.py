@@ -1,4 +1,4 @@
-"""One file of equations per plant; this table is the only place that names them all."""
+"""The name of a model in; its equations out: one file for each, and the table that alone names them all."""
 
 from collections.abc import Callable, Mapping
 

@@ -66,7 +66,10 @@ def run_equations(
     keep: str = "uyx",
     batched: bool | None = None,
 ) -> Runs:
-    """Sample the plant's equations; arguments and errors as for sim.simulate.simulate, but without what its signals pass on their way."""
+    """Sample the plant's equations; arguments and errors as for sim.simulate.simulate, but without what its signals pass on their way.
+
+    x0 must have all states, (states,) or (runs, states).
+    """
     compiled = kernel(bound.model)
     p, x0 = np.asarray(bound.p if p is None else p, dtype=float), np.asarray(x0, dtype=float)
     inputs = np.ascontiguousarray(drive, dtype=float) if isinstance(drive, np.ndarray) else None
@@ -106,7 +109,7 @@ def run_equations(
 
 
 def filled(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """`values` repeated to `shape` and contiguous; raises BadInput when they do not fit or are not finite."""
+    """`values` repeated to `shape` and contiguous; raises BadInput when their shape does not broadcast to it or they are not finite."""
     array = np.asarray(values, dtype=float)
     try:
         array = np.ascontiguousarray(np.broadcast_to(array, shape))

@@ -47,7 +47,7 @@ def readings(bound: BoundPlant, t_s: Array, x: Array, p: Array) -> Array:
 
 
 def run_open(bound: BoundPlant, t_s: ArrayLike, x0: Array, drive: Array, *, keep: str, **options: Any) -> Runs:
-    """A run with given inputs; arguments as for simulate."""
+    """A run with given inputs (n, inputs) or (runs, n, inputs); arguments and errors as for simulate, x0 with all states."""
     if drive.ndim == 3:
         single = [_run_of(bound, t_s, x0, row, index, keep, options) for index, row in enumerate(drive)]
         return Runs(single[0].t_s, *(_stacked([getattr(run, name) for run in single]) for name in "uyx"))
@@ -79,7 +79,10 @@ def run_loop(
     locked: tuple[str, ...],
     keep: str,
 ) -> Runs:
-    """A run with the loop closed sample by sample; arguments as for simulate, one run only."""
+    """A run with the loop closed sample by sample; arguments as for simulate, x0 (states,) with all states.
+
+    Raises BadInput for several runs, for noise, and without a reference.
+    """
     p = np.asarray(bound.p if p is None else p, dtype=float)
     if noise is not None or p.ndim != 1 or x0.ndim != 1:
         effects = ", ".join(bound.effects)
