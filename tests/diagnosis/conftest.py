@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.diagnose import Material, diagnose
+from diagnosis.result import Result
 from records.log import RunLog
 from records.plant import load_plant
 from sim.added_effects import with_effects
@@ -17,6 +19,8 @@ from tests.plants import stated_table
 
 Fly = Callable[..., RunLog]
 SECONDS = 30.0
+RIG = 7
+SPRING: Mapping[str, Mapping[str, float]] = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
 
 
 @pytest.fixture(scope="session")
@@ -70,6 +74,13 @@ def fly(plant: BoundPlant) -> Fly:
         return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={})  # type: ignore[arg-type]
 
     return flown
+
+
+@pytest.fixture(scope="session")
+def sprung(plant: BoundPlant, fly: Fly) -> Result:
+    """What the diagnosis makes of a rig with a spring on its azimuth, from one flight with another held out."""
+    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 
 class _Flown:

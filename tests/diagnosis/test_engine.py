@@ -10,30 +10,18 @@ from diagnosis.result import Result
 from records.diagnosis import diagnosis_text
 from records.plant import plant_text
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import Fly
-
-
-def result_of(plant: BoundPlant, fly: Fly, effects: dict[str, dict[str, float]] | None) -> Result:
-    logs = [fly(seed, effects) for seed in (11, 11)][:1]
-    hold = fly(12, effects)
-    return diagnose(plant, Material(logs, [hold], ["hold"], [None, None]))
+from tests.diagnosis.conftest import RIG, SPRING, Fly
 
 
 def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) -> None:
-    diagnosis = result_of(plant, fly, None).diagnosis
+    diagnosis = diagnose(plant, Material([fly(11)], [fly(12)], ["hold"], [None, None])).diagnosis
     assert diagnosis.verdict == "no gap"
     assert diagnosis.found == ()
     assert (diagnosis.false_alarm_probability or 0.0) > 0.01
 
 
-@pytest.fixture(scope="module")
-def spring(plant: BoundPlant, fly: Fly) -> Result:
-    return result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}})
-
-
-def test_a_spring_is_found_with_its_stiffness(spring: Result) -> None:
-    # The hold-out run has other parameters than the training run, so no more than the name and 10 % are asked.
-    diagnosis = spring.diagnosis
+def test_a_spring_is_found_with_its_stiffness(sprung: Result) -> None:
+    diagnosis = sprung.diagnosis
     assert diagnosis.verdict == "gap"
     family = {"azimuth.cable_spring", "azimuth.tilt", "azimuth.wind"}
     top = diagnosis.effects[0]
@@ -45,21 +33,23 @@ def test_a_spring_is_found_with_its_stiffness(spring: Result) -> None:
     assert diagnosis.places[0].place == "azimuth"
 
 
-def test_the_answer_is_a_valid_record_and_its_plant_binds(spring: Result) -> None:
-    assert '"schema": "diagnosis/1"' in diagnosis_text(spring.diagnosis)
-    assert sum(row.share for row in spring.diagnosis.places) == pytest.approx(1.0)
-    bound = bind(spring.plant)
-    assert plant_text(spring.plant)
-    assert set(spring.diagnosis.found) == set(bound.effects)
+def test_the_answer_is_a_valid_record_and_its_plant_binds(sprung: Result) -> None:
+    assert '"schema": "diagnosis/1"' in diagnosis_text(sprung.diagnosis)
+    assert sum(row.share for row in sprung.diagnosis.places) == pytest.approx(1.0)
+    bound = bind(sprung.plant)
+    assert plant_text(sprung.plant)
+    assert set(sprung.diagnosis.found) == set(bound.effects)
 
 
-def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, spring: Result) -> None:
-    again = result_of(plant, fly, {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}})
-    assert diagnosis_text(again.diagnosis) == diagnosis_text(spring.diagnosis)
+@pytest.mark.soak  # in every suite tests/twinlaw/test_diagnosing_each.py compares files of another process
+def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung: Result) -> None:
+    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    again = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
+    assert diagnosis_text(again.diagnosis) == diagnosis_text(sprung.diagnosis)
 
 
-def test_predictions_cover_the_hold_out(spring: Result) -> None:
-    (predicted,) = spring.predicted
+def test_predictions_cover_the_hold_out(sprung: Result) -> None:
+    (predicted,) = sprung.predicted
     for variant in ("nominal", "before", "after"):
         assert np.isfinite(predicted.by[variant]).mean() > 0.9
 
