@@ -117,7 +117,7 @@ def test_what_takes_nothing_of_the_hold_outs_error_is_seen(
     assert sprung is not None
     holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
     weighed = Weighed((FittedHypothesis(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
-    after, notes = partly(holdout, weighed, 0.0)
+    after, notes, _ = partly(holdout, weighed, 0.0)
     assert (after.nameless, len(notes) == 1) == (idle, idle)
 
 
@@ -128,7 +128,7 @@ def test_a_push_is_not_asked_what_it_takes_of_another_log(plant: BoundPlant, fly
     pushed = replace(base, hypothesis=base.hypothesis.with_effects(push))
     holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
     weighed = Weighed((FittedHypothesis(tuple(push), pushed, 1.0),), (0.9,), 0.1, 0.0, 1.0)
-    assert partly(holdout, weighed, 0.0) == (weighed, ())
+    assert partly(holdout, weighed, 0.0) == (weighed, (), ())
 
 
 @pytest.mark.parametrize(("instant_s", "event"), [(12.0, True), (0.0, False)])

@@ -10,7 +10,7 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
-from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.search.presliding_friction import needed, yielding
 from records.log import RunLog
@@ -25,15 +25,35 @@ from tests.plants import stated_table
 V_C_RAD_S = 0.005
 LEVEL_N_M = 3e-4
 Z_0_RAD = 0.003
-SECONDS = 50.0
+SECONDS, WHOLE_S = 50.0, 104.0
 GIVE = {"elevation.bristles": {"z_0": Z_0_RAD}, "azimuth.bristles": {"z_0": Z_0_RAD}}
 CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD_S}}
 
 
-def default_flight(plant: BoundPlant, effects: Mapping[str, Mapping[str, float]]) -> RunLog:
-    """The default flight in still air, with holds in which an axis that sticks stays where it is."""
-    table = stated_table("ce150")
-    return replace(fly_law(with_effects(plant, effects), table, flight(plant)), extra={})
+def default_flight(plant: BoundPlant, effects: Mapping[str, Mapping[str, float]], seconds: float = SECONDS) -> RunLog:
+    """The default flight in still air, or so much of it, with holds in which an axis that sticks stays where it is."""
+    log = fly_law(with_effects(plant, effects), stated_table("ce150"), flight(plant))
+    rows = slice(round(seconds / log.sample_period_s))
+    return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
+
+
+def plain_fit(plant: BoundPlant, log: RunLog, **stated: BoundPlant) -> tuple[Case, FittedHypothesis]:
+    """The log as a case, and the plant as stated fitted to it."""
+    case = make_case(effect_library(plant), [log], **stated)
+    nominal = nominal_fit(case)
+    return case, FittedHypothesis((), nominal, evidence(nominal))
+
+
+@pytest.fixture(scope="module")
+def giving(plant: BoundPlant) -> tuple[Case, FittedHypothesis]:
+    """A flight of a rig whose friction is a brush that slides after 3 mrad, two encoder steps."""
+    return plain_fit(plant, default_flight(plant, GIVE))
+
+
+@pytest.fixture(scope="module")
+def sticking(plant: BoundPlant) -> tuple[Case, FittedHypothesis]:
+    """A flight of the rig as stated."""
+    return plain_fit(plant, default_flight(plant, {}))
 
 
 def friction_N_m(model: Model, speed_rad_s: float, v_c_rad_s: float) -> float:
@@ -60,9 +80,19 @@ def test_without_a_speed_friction_is_dry(creeps: Model) -> None:
         assert friction_N_m(creeps, speed, 0.0) == LEVEL_N_M
 
 
-def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
+def test_axes_that_creep_are_taken_to(plant: BoundPlant) -> None:
     # Truth: the plant as stated, the jump of its friction rounded off over 5 mrad/s.
-    result = diagnose(plant, Material([default_flight(plant, CREEP)], [], [], []))
+    case, nominal = plain_fit(plant, default_flight(plant, CREEP, WHOLE_S))
+    creeping, rules = yielding(case, [nominal])
+    assert set(creeping.stated) == set(CREEP)
+    for name in CREEP:
+        assert creeping.stated[name]["v_c"] == pytest.approx(V_C_RAD_S, rel=0.2)
+    assert [rule.outcome for rule in rules] == ["axes yield"]
+
+
+@pytest.mark.soak
+def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
+    result = diagnose(plant, Material([default_flight(plant, CREEP, WHOLE_S)], [], [], []))
     assert result.diagnosis.verdict == "no gap"
     found = bind(result.plant).effects
     assert set(found) == set(CREEP)
@@ -71,32 +101,27 @@ def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
     assert sum("creeps" in note for note in result.diagnosis.notes) == 2
 
 
-def test_axes_that_give_before_they_slide_are_taken_to(plant: BoundPlant) -> None:
-    # Truth: the plant as stated, its friction a brush that slides after 3 mrad, two encoder steps.
-    case = make_case(effect_library(plant), [default_flight(plant, GIVE)])
-    nominal = nominal_fit(case)
-    hypothesis = yielding(case, [FittedHypothesis((), nominal, evidence(nominal))]).stated
+def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, FittedHypothesis]) -> None:
+    case, nominal = giving
+    hypothesis = yielding(case, [nominal])[0].stated
     assert set(hypothesis) == set(GIVE)
     for name in GIVE:
         assert hypothesis[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
 
 
-@pytest.mark.parametrize(("effects", "is_needed"), [(GIVE, True), ({}, False)])
-def test_axes_that_give_are_kept_only_where_the_logs_need_it(
-    plant: BoundPlant, effects: Mapping[str, Mapping[str, float]], is_needed: bool
-) -> None:
+@pytest.mark.parametrize("flown", ["giving", "sticking"])
+def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request: pytest.FixtureRequest) -> None:
     # Truth: a rig whose friction gives over 3 mrad, and one that sticks, each as fitted by a plant that gives.
-    plain = make_case(effect_library(plant), [default_flight(plant, effects)])
+    plain, _ = request.getfixturevalue(flown)
     taken = replace(plain, stated=GIVE, stated_sd={name: {"z_0": 0.0} for name in GIVE})
     found = nominal_fit(taken)
-    assert needed(plain, FittedHypothesis((), found, evidence(found))) is is_needed
+    assert needed(plain, FittedHypothesis((), found, evidence(found))) is (flown == "giving")
 
 
-def test_axes_give_only_for_what_is_asked_of_them(plant: BoundPlant) -> None:
+def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypothesis]) -> None:
     # Truth: no flight of 50 s is a million nats likelier for its friction.
-    case = make_case(effect_library(plant), [default_flight(plant, GIVE)])
-    nominal = nominal_fit(case)
-    assert yielding(case, [FittedHypothesis((), nominal, evidence(nominal))], further=1e6) is case
+    case, nominal = giving
+    assert yielding(case, [nominal], further=1e6)[0] is case
 
 
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
@@ -104,15 +129,15 @@ def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: Bound
     drag = "elevation.quadratic_drag"
     stated = with_effects(plant, {drag: {"c": 2e-3}}, sd={drag: {"c": 1e-4}})
     log = default_flight(plant, {**GIVE, drag: {"c": 4e-3}})
-    case = make_case(effect_library(without_effects(stated)), [log], stated=stated)
-    nominal = nominal_fit(case)
-    assert nominal.hypothesis.effects[drag]["c"] != pytest.approx(2e-3, rel=0.01)
-    found = yielding(case, [FittedHypothesis((), nominal, evidence(nominal))])
+    case, nominal = plain_fit(without_effects(stated), log, stated=stated)
+    assert nominal.fit.hypothesis.effects[drag]["c"] != pytest.approx(2e-3, rel=0.01)
+    found, _ = yielding(case, [nominal])
     assert set(found.stated) == {drag, *GIVE}
     assert found.stated[drag] == {"c": 2e-3}
     assert found.stated_sd[drag] == {"c": 1e-4}
 
 
+@pytest.mark.soak
 def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
     # Truth: a plant file without friction of the azimuth; the rig has a brush there that slides after 3 mrad.
     free = bind(
@@ -121,19 +146,15 @@ def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
             parameters={**plant.plant.parameters, "b_cA": replace(plant.plant.parameters["b_cA"], value=0.0, sd=0.0)},
         )
     )
-    log = default_flight(plant, GIVE)
-    rows = slice(round(SECONDS / log.sample_period_s))
-    begin = replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows])
-    result = diagnose(free, Material([begin], [], [], []))
+    result = diagnose(free, Material([default_flight(plant, GIVE)], [], [], []))
     assert result.diagnosis.effects[0].effect == "azimuth.coulomb"
     assert result.diagnosis.effects[0].parameters["b"].value == pytest.approx(plant.parameter("b_cA"), rel=0.1)
     assert sum("springs back" in note for note in result.diagnosis.notes) == 2
 
 
-def test_axes_that_stick_are_not_taken_to_yield(plant: BoundPlant) -> None:
-    case = make_case(effect_library(plant), [default_flight(plant, {})])
-    nominal = nominal_fit(case)
-    assert yielding(case, [FittedHypothesis((), nominal, evidence(nominal))]) is case
+def test_axes_that_stick_are_not_taken_to_yield(sticking: tuple[Case, FittedHypothesis]) -> None:
+    case, nominal = sticking
+    assert yielding(case, [nominal])[0] is case
 
 
 def test_a_speed_in_whole_counts_is_known_to_a_count(plant: BoundPlant, fly: Fly) -> None:
