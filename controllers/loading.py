@@ -12,7 +12,7 @@ from controllers.equation_controller import EquationController
 from controllers.table import CONTROLLERS
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
-from records.table import ControllerTable, parse_table
+from records.table import AXES, ControllerTable, demand_digest, parse_frame, parse_table
 from records.text import checks
 from records.text.reading import read_json
 
@@ -65,19 +65,14 @@ def load_scheduled(path: Path, use: str) -> ControllerTable:
 
 def _parse(content: Mapping[str, Any], row: EquationController, where: str) -> LawTable[Any]:
     checks.keys(content, where, ("schema", "digest", *(field.name for field in fields(LawTable))))
-    axes = {name: _axis(content[name], row, f"{where}: {name}") for name in ("elevation", "azimuth")}
+    axes: dict[str, Any] = {name: _axis(content[name], row, f"{where}: {name}") for name in AXES}
     table: LawTable[Any] = LawTable(
         controller=row.name,
-        plant=checks.text(content["plant"], f"{where}: plant"),
-        sample_period_s=checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
-        psi_min_rad=checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
-        psi_max_rad=checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+        **parse_frame(content, where),
         origin=checks.table(content["origin"], f"{where}: origin"),
         **axes,
     )
-    if table.digest != content["digest"]:
-        got, expected = str(content["digest"])[:16], table.digest[:16]
-        raise BadInput("digest", where, got, expected, "the table was changed by hand: design it again")
+    demand_digest(table.digest, content, where)
     return table
 
 

@@ -6,13 +6,11 @@ The frame accepts inputs, filters references, adds the operating point's voltage
 controller's own `gains`, a frozen record of numbers and tuples of numbers.
 """
 
-import hashlib
-import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
-from records.table import BothAxes, Polynomial, canonical_text, lag_gain
+from records.table import BothAxes, Polynomial, digest_of, lag_gain, text_of
 
 SCHEMA = "law-table/1"
 G = TypeVar("G")
@@ -100,10 +98,10 @@ class LawTable(BothAxes[AxisTable[G]]):
 
     @property
     def digest(self) -> str:
-        """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of the table."""
-        return hashlib.sha256(canonical_text(asdict(self)).encode()).hexdigest()
+        """See records.table.digest_of."""
+        return digest_of(self)
 
 
 def law_table_text(table: LawTable[Any]) -> str:
-    """The table as JSON text with its digest; numbers print so that they read back exactly."""
-    return json.dumps({"schema": SCHEMA, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
+    """The table as JSON text, see records.table.text_of."""
+    return text_of(SCHEMA, table)

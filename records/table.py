@@ -93,13 +93,13 @@ class ControllerTable(BothAxes[AxisLaw]):
 
     @property
     def digest(self) -> str:
-        """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of the table."""
-        return hashlib.sha256(canonical_text(asdict(self)).encode()).hexdigest()
+        """See digest_of."""
+        return digest_of(self)
 
 
 def table_text(table: ControllerTable) -> str:
-    """The table as JSON text with its digest; numbers print so that they read back exactly."""
-    return json.dumps({"schema": SCHEMA, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
+    """The table as JSON text, see text_of."""
+    return text_of(SCHEMA, table)
 
 
 def load_table(path: Path) -> ControllerTable:
@@ -114,28 +114,44 @@ def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
     names = tuple(ControllerTable.__dataclass_fields__)
     checks.keys(content, where, ("schema", "digest", *names))
     table = ControllerTable(
-        plant=checks.text(content["plant"], f"{where}: plant"),
-        sample_period_s=checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
-        psi_min_rad=checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
-        psi_max_rad=checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+        **parse_frame(content, where),
         elevation=_axis(content["elevation"], f"{where}: elevation"),
         azimuth=_axis(content["azimuth"], f"{where}: azimuth"),
         origin=checks.table(content["origin"], f"{where}: origin"),
     )
-    if table.digest != content["digest"]:
-        raise BadInput(
-            "digest",
-            where,
-            str(content["digest"])[:16],
-            table.digest[:16],
-            "the table was changed by hand: design it again",
-        )
+    demand_digest(table.digest, content, where)
     return table
 
 
-def canonical_text(content: Mapping[str, Any]) -> str:
-    """The one JSON text of `content` that a digest is taken of."""
-    return json.dumps(content, sort_keys=True, separators=(",", ":"))
+# What the tables of all controllers share (records/law_table.py).
+
+
+def digest_of(table: Any) -> str:
+    """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of a table."""
+    text = json.dumps(asdict(table), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def text_of(schema: str, table: Any) -> str:
+    """A table as JSON text with its digest; numbers print so that they read back exactly."""
+    return json.dumps({"schema": schema, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
+
+
+def parse_frame(content: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Plant, sample period and scheduling range from the content of a table's file; raises BadInput naming `where` and the key."""
+    return {
+        "plant": checks.text(content["plant"], f"{where}: plant"),
+        "sample_period_s": checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
+        "psi_min_rad": checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
+        "psi_max_rad": checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+    }
+
+
+def demand_digest(digest: str, content: Mapping[str, Any], where: str) -> None:
+    """Raises BadInput where the digest of what was read is not the one that its file states."""
+    if digest != content["digest"]:
+        got, expected = str(content["digest"])[:16], digest[:16]
+        raise BadInput("digest", where, got, expected, "the table was changed by hand: design it again")
 
 
 def _axis(entry: Any, where: str) -> AxisLaw:
