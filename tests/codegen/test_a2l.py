@@ -15,7 +15,7 @@ from tests.law_tables import ce150_table
 from toolchain.dwarf import variable_members
 from toolchain.elf import image_symbols
 from twinlaw.command import main
-from twinlaw.workflows.building import image_a2l
+from twinlaw.workflows.chain.building import image_a2l
 
 _TOKEN = re.compile(r'"[^"]*"|/begin|/end|[^\s"]+')
 

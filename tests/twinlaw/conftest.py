@@ -20,7 +20,7 @@ from twinlaw.watching.opening import Watched, open_watched
 from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
-from twinlaw.workflows.designing import design_controller
+from twinlaw.workflows.chain.designing import design_controller
 
 PLANT = Path("plants/ce150.toml")
 PATIENT_S = 30.0  # a page that is slow because the computer is busy with other tests is not lost

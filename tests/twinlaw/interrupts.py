@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from twinlaw.workflows.progress import Progress
+from twinlaw.workflows.identify.progress import Progress
 
 
 def stops_when_told(monkeypatch: pytest.MonkeyPatch, count: int) -> list[Mapping[str, float]]:

@@ -16,7 +16,7 @@ from sim.loop import fly_law
 from sim.manoeuvres import flight
 from tests.plants import bound, stated_table
 from twinlaw.command import main
-from twinlaw.workflows.diagnosing import earlier_predictions, writable
+from twinlaw.workflows.diagnose.together import earlier_predictions, writable
 
 PLANT = "plants/ce150.toml"
 

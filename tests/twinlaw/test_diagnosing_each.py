@@ -16,7 +16,7 @@ from sim.manoeuvres import flight
 from tests.plants import bound, stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main
-from twinlaw.workflows.diagnosing_each import answer, parcel, questions
+from twinlaw.workflows.diagnose.each import answer, parcel, questions
 
 PLANT = ROOT / "plants" / "ce150.toml"
 FILES = {"diagnosis.json", "plant.toml", "report.html"}

@@ -15,8 +15,8 @@ from sim.bind import bind
 from sim.columns import log_columns
 from tests.twinlaw.interrupts import stops_when_told
 from twinlaw.command import main
-from twinlaw.workflows import identifying
-from twinlaw.workflows.progress import Progress
+from twinlaw.workflows.identify import by_time
+from twinlaw.workflows.identify.progress import Progress
 
 ROTORS = ("01-main_rotor", "03-gravity", "04-elevation_swing")
 
@@ -68,7 +68,7 @@ def test_the_rigs_own_parameters_are_no_experiment(folder, tmp_path, capsys):
 
 
 def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tmp_path):
-    original, calls = identifying.identify_stage, []
+    original, calls = by_time.identify_stage, []
 
     def stops_at_the_third(*given):
         calls.append(given)
@@ -76,7 +76,7 @@ def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tm
             raise KeyboardInterrupt
         return original(*given)
 
-    monkeypatch.setattr(identifying, "identify_stage", stops_at_the_third)
+    monkeypatch.setattr(by_time, "identify_stage", stops_at_the_third)
     assert main(["identify", "--out", str(tmp_path), *some(folder)]) == 130
     found = json.loads((tmp_path / "identification.json").read_text())
     assert {entry["name"] for entry in found["estimates"]} >= {"K_M", "tau_gE"}

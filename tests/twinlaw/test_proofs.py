@@ -10,8 +10,8 @@ from records.verification import ProofResult, RoundingBound, Verification, verif
 from tests.law_tables import ce150_table
 from twinlaw.command import main
 from twinlaw.pages.run.checks import verification_rows
-from twinlaw.workflows.proving import with_proofs
-from twinlaw.workflows.verifying import demand
+from twinlaw.workflows.chain.proving import with_proofs
+from twinlaw.workflows.chain.verifying import demand
 from verification.proofs import Proof, Subject
 from verification.proofs.tools import Tool
 

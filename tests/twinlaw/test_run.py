@@ -19,7 +19,7 @@ from sim.columns import log_columns
 from sim.plants import MODELS
 from sim.tracking import tracking
 from twinlaw.command import main
-from twinlaw.workflows.boards import fly_board
+from twinlaw.workflows.chain.boards import fly_board
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PLANT = ROOT / "plants" / "ce150.toml"

@@ -10,7 +10,7 @@ from twinlaw import verbs
 from twinlaw.cli.completion import command_tree
 from twinlaw.command import main
 from twinlaw.verbs import VERBS, build_parser, verb_module, verb_text
-from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 
 
 @pytest.mark.parametrize("word", VERBS)

@@ -15,8 +15,8 @@ from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
-from twinlaw.workflows.arithmetics import ARITHMETICS
-from twinlaw.workflows.designing import design_controller
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.designing import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus
 
 STEPS = 100_000

@@ -25,7 +25,7 @@ from rig.programming.image import build_firmware
 from sim.bench import comparison
 from sim.bench.comparison import BenchRow, StepAccuracy
 from twinlaw.cli import console, options
-from twinlaw.workflows.designing import design_controller
+from twinlaw.workflows.chain.designing import design_controller
 
 BOARD_STEPS = 20_000
 INSTALL = ".venv/bin/python -m pip install --editable '.[peers]'"

@@ -18,8 +18,8 @@ from records.files import write_atomic
 from twinlaw.cli import options
 from twinlaw.pages import plots
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.answering_plainly import plain_answers
-from twinlaw.workflows.diagnosing_each import answers, questions
+from twinlaw.workflows.diagnose.baselines import plain_answers
+from twinlaw.workflows.diagnose.each import answers, questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

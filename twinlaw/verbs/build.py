@@ -14,7 +14,7 @@ from records.files import remove_all, write_atomic
 from records.table import ControllerTable
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import size_rows
-from twinlaw.workflows.building import build_image, generate_sources, image_a2l
+from twinlaw.workflows.chain.building import build_image, generate_sources, image_a2l
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -18,9 +18,9 @@ from twinlaw.pages.compare.comparison import Wanted, facts
 from twinlaw.pages.compare.plots import figure_plot
 from twinlaw.pages.compare.report import page_text, verdict
 from twinlaw.workflows import sweeping
+from twinlaw.workflows.chain.verifying import STEPS
 from twinlaw.workflows.comparing import compare_controllers, demand_equal, eq26_errors
 from twinlaw.workflows.reading import load_bound
-from twinlaw.workflows.verifying import STEPS
 from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
 from verification.comparison.manoeuvres import FIGURES

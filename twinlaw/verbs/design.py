@@ -13,7 +13,7 @@ from records.files import write_atomic
 from records.table import table_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.design import design_facts, design_heading, design_rows
-from twinlaw.workflows.designing import design_controller, design_other
+from twinlaw.workflows.chain.designing import design_controller, design_other
 
 SCHEDULED = "scheduled"
 

@@ -20,8 +20,8 @@ from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.why import why_text
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.diagnosing import diagnose_logs, widths, writable
-from twinlaw.workflows.diagnosing_each import HEADING, answers, facts, questions, rows
+from twinlaw.workflows.diagnose.each import HEADING, answers, facts, questions, rows
+from twinlaw.workflows.diagnose.together import diagnose_logs, widths, writable
 
 SCHEMA = "diagnoses/1"
 

@@ -16,7 +16,7 @@ from rig.programming.emulated_flash import flash_emulated
 from rig.programming.flash import flash_through_boot_loader, flash_through_st_link
 from toolchain.elf import flash_content
 from twinlaw.cli import console, options
-from twinlaw.workflows.boards import board_url
+from twinlaw.workflows.chain.boards import board_url
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ import json
 
 from controllers import loading
 from twinlaw.cli import options
-from twinlaw.workflows.building import generate_sources
+from twinlaw.workflows.chain.building import generate_sources
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

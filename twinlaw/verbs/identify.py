@@ -27,8 +27,8 @@ from twinlaw.cli import console, options
 from twinlaw.pages.identify.report import identify_page
 from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
 from twinlaw.pages.page import page_text
-from twinlaw.workflows.identify_proof import proven
-from twinlaw.workflows.identifying import Wishes, free_names, identify, looked_at, read_inputs, read_limits
+from twinlaw.workflows.identify.by_time import Wishes, free_names, identify, looked_at, read_inputs, read_limits
+from twinlaw.workflows.identify.proof import proven
 from twinlaw.workflows.reading import load_bound
 
 
@@ -94,7 +94,7 @@ def run(chosen: argparse.Namespace) -> int:
     holdout = options.held_out(chosen, "files")
     if chosen.method == "frequency":
         # With SciPy's signals, a second to load.
-        from twinlaw.workflows.identifying_by_frequency import identify_by_frequency
+        from twinlaw.workflows.identify.by_frequency import identify_by_frequency
 
         return identify_by_frequency(chosen, holdout)
     if chosen.band_rad_s is not None:

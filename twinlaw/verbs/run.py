@@ -16,10 +16,10 @@ from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design import design_heading, design_rows
 from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
-from twinlaw.workflows.boards import board_url, fly_board
-from twinlaw.workflows.building import build_image, generate_sources
-from twinlaw.workflows.designing import design_controller, poles_of
-from twinlaw.workflows.verifying import demand, verify_table
+from twinlaw.workflows.chain.boards import board_url, fly_board
+from twinlaw.workflows.chain.building import build_image, generate_sources
+from twinlaw.workflows.chain.designing import design_controller, poles_of
+from twinlaw.workflows.chain.verifying import demand, verify_table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

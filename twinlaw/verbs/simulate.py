@@ -13,9 +13,9 @@ from records.law_table import FlownTable
 from records.log import save_log
 from twinlaw.cli import console, options
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_facts, tracking_rows
-from twinlaw.workflows.arithmetics import ARITHMETICS
-from twinlaw.workflows.designing import design_controller
-from twinlaw.workflows.flying import fly_double, fly_host, halved_step
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.designing import design_controller
+from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step
 from twinlaw.workflows.reading import load_bound
 
 

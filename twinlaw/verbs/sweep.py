@@ -29,7 +29,7 @@ from records.log import RunLog, save_log
 from records.plant import Plant, load_plant
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.designing import design_controller
+from twinlaw.workflows.chain.designing import design_controller
 
 BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
 AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0.3)}

@@ -15,7 +15,7 @@ from records.validation import validation_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
-from twinlaw.workflows.boards import board_url, fly_board, validate_board
+from twinlaw.workflows.chain.boards import board_url, fly_board, validate_board
 from twinlaw.workflows.reading import load_bound
 
 

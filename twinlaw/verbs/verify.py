@@ -15,11 +15,11 @@ from records.protocol import PROTOCOL
 from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import verification_rows
-from twinlaw.workflows.building import build_image, generate_sources
-from twinlaw.workflows.designing import table_poles
-from twinlaw.workflows.proving import with_proofs
+from twinlaw.workflows.chain.building import build_image, generate_sources
+from twinlaw.workflows.chain.designing import table_poles
+from twinlaw.workflows.chain.proving import with_proofs
+from twinlaw.workflows.chain.verifying import STEPS, demand, recorded_replay, verify_table
 from twinlaw.workflows.reading import load_bound
-from twinlaw.workflows.verifying import STEPS, demand, recorded_replay, verify_table
 from verification.proofs import Subject
 from verification.ranges import Motion
 

@@ -21,7 +21,7 @@ from sim.runs.stepped import SteppedPlant
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
-from twinlaw.workflows.boards import board_url
+from twinlaw.workflows.chain.boards import board_url
 from twinlaw.workflows.reading import load_bound
 
 

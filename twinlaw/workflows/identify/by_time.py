@@ -31,7 +31,7 @@ from records.text.reading import read_toml
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns
 from twinlaw.cli import console, options
-from twinlaw.workflows.progress import Done, Progress, progress
+from twinlaw.workflows.identify.progress import Done, Progress, progress
 
 Limits = Mapping[str, tuple[float, float]]
 

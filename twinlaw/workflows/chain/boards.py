@@ -16,9 +16,9 @@ from sim.bind import BoundPlant
 from sim.loop import fly
 from sim.manoeuvres import flight
 from twinlaw.cli.console import stage
-from twinlaw.workflows.arithmetics import ARITHMETICS
-from twinlaw.workflows.flying import Flight, tracked
-from twinlaw.workflows.verifying import equal_steps
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.flying import Flight, tracked
+from twinlaw.workflows.chain.verifying import equal_steps
 from verification.host_law import HostLaw
 from verification.stateless import Stateless
 

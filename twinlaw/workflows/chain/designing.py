@@ -19,7 +19,7 @@ from records.table import ControllerTable
 from records.verification import PoleMigration
 from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
-from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_bound
 
 

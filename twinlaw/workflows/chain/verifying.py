@@ -13,7 +13,7 @@ from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
 from twinlaw.cli.console import stage
-from twinlaw.workflows.arithmetics import ARITHMETICS
+from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw

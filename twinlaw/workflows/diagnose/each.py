@@ -17,7 +17,7 @@ from records.diagnosis import Diagnosis, parse_diagnosis
 from records.errors import BadInput
 from records.files import remove_all
 from replay.table import TABLE_NAME
-from twinlaw.workflows.diagnosing import earlier_predictions, read_material, result_files
+from twinlaw.workflows.diagnose.together import earlier_predictions, read_material, result_files
 from twinlaw.workflows.sweeping import swept
 
 PLANT_NAME = "plant.toml"

@@ -36,8 +36,8 @@ from twinlaw.pages.identify.frequency import (
 )
 from twinlaw.pages.identify.summary import HEADING, estimate_rows
 from twinlaw.pages.page import page_text
-from twinlaw.workflows.identifying import Inputs, free_names, looked_at, read_limits, save_result, told_files
-from twinlaw.workflows.progress import progress
+from twinlaw.workflows.identify.by_time import Inputs, free_names, looked_at, read_limits, save_result, told_files
+from twinlaw.workflows.identify.progress import progress
 
 OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
 

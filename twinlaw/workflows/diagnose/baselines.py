@@ -13,7 +13,7 @@ from records.log import load_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from twinlaw.workflows.diagnosing_each import ANSWER, Parcel, Question, opened, parcel
+from twinlaw.workflows.diagnose.each import ANSWER, Parcel, Question, opened, parcel
 from twinlaw.workflows.sweeping import swept
 
 

@@ -1,0 +1,1 @@
+"""From a plant file to a flight: designing, building, verifying, proving and flying, each leaving its files and handing on records."""
