@@ -6,7 +6,7 @@ import pytest
 
 from records.plant import load_plant
 from tests.plants import PLANTS
-from tests.twinlaw.interrupts import stops_when_told
+from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 
 RAPTOR = ["--plant", str(PLANTS / "raptor50.toml")]

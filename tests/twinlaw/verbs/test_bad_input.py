@@ -12,7 +12,7 @@ import pytest
 from records.plant import load_plant
 from twinlaw.command import main
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 PLANT = (ROOT / "plants" / "ce150.toml").read_text(encoding="utf-8")
 
 

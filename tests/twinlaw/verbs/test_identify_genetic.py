@@ -12,7 +12,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.simulate import simulate
-from tests.twinlaw.interrupts import stops_when_told
+from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 
 PLANT = ["--plant", "plants/ce150_velagic.toml"]

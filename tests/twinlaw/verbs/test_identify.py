@@ -13,7 +13,7 @@ from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from tests.twinlaw.interrupts import stops_when_told
+from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 from twinlaw.workflows.identify import by_time
 from twinlaw.workflows.identify.progress import Progress

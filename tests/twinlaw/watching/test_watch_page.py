@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.browser import Browser, Page
-from tests.twinlaw.conftest import Open, Watch
+from tests.twinlaw.watching.conftest import Open, Watch
 
 
 @pytest.fixture(scope="module")

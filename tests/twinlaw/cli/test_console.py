@@ -11,7 +11,7 @@ import pytest
 
 from toolchain.cache import CACHE_DIR
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 FAILS = [sys.executable, "-m", "twinlaw.command", "design", "--plant", "missing.toml"]
 ESCAPE = "\x1b["
 

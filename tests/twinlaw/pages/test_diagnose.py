@@ -34,7 +34,7 @@ from twinlaw.pages.diagnose.why import why_text
 from twinlaw.pages.diagnose.words import class_in_words, plain_notes
 from twinlaw.pages.page import page_text
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 MOVED = Note("moved_parameter", "J_A", {"deviations": 12.0, "value": 0.0213, "stated": 0.0133})
 STORIES = {"azimuth.cable_spring": "the cable to the board pulls the arm back."}
 

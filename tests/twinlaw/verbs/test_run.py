@@ -21,7 +21,7 @@ from sim.tracking import tracking
 from twinlaw.command import main
 from twinlaw.workflows.chain.boards import fly_board
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 PLANT = ROOT / "plants" / "ce150.toml"
 FILES = {
     "controller.json",

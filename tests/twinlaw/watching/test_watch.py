@@ -21,7 +21,7 @@ from rig.emulator.ports.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS
-from tests.twinlaw.conftest import PATIENT_S, PLANT, Open, Watch
+from tests.twinlaw.watching.conftest import PATIENT_S, PLANT, Open, Watch
 from twinlaw.command import main
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched
