@@ -4,6 +4,7 @@ A fresh machine has no C compiler and no Python headers; ABI mode needs neither.
 """
 
 import hashlib
+import importlib.util
 import os
 import signal
 import subprocess
@@ -64,11 +65,23 @@ def zig_environment() -> dict[str, str]:
     return {**os.environ, "ZIG_GLOBAL_CACHE_DIR": zig_cache, "ZIG_LOCAL_CACHE_DIR": zig_cache}
 
 
+def zig_folder() -> Path:
+    """Where the zig wheel is installed, or would be."""
+    found = importlib.util.find_spec("ziglang")
+    return Path(str(found.origin if found else "ziglang")).parent
+
+
+@cache
+def _zig() -> tuple[str, ...]:
+    """How zig is called: to start the wheel's program through Python would take a third of the time of a small compilation."""
+    program = zig_folder() / ("zig.exe" if os.name == "nt" else "zig")
+    return (str(program),) if program.is_file() else (sys.executable, "-m", "ziglang")
+
+
 def run_zig(arguments: Sequence[str], what: str) -> None:
     """Run `zig` with `arguments`; raises BadInput with the first error's file, line and text when it refuses, KeyboardInterrupt where
     Ctrl-C, which reaches it too, ended it."""
-    command = [sys.executable, "-m", "ziglang", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, env=zig_environment(), check=False)
+    done = subprocess.run([*_zig(), *arguments], capture_output=True, text=True, env=zig_environment(), check=False)
     if done.returncode in INTERRUPTED:
         raise KeyboardInterrupt
     if done.returncode != 0:

@@ -1,7 +1,7 @@
 """C for a microcontroller: zig as compiler and linker for its core, kept by the hash of everything that went into it."""
 
-import importlib.util
 import os
+import re
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from records.board import STM32G071
 from toolchain.cache import CACHE_DIR, is_whole
-from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_version
+from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_folder, zig_version
 
 _TARGET = "thumb-freestanding-eabi"
 
@@ -37,6 +37,7 @@ TARGET_FLAGS = (
     "-Wundef",
     "-Werror",
 )
+_INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 LINK_FLAGS = ("-O2", "-nostdlib", "-Wl,--gc-sections", "-Wl,--entry=Reset_Handler", "-Wl,--build-id=none")
 
 
@@ -83,7 +84,7 @@ def runtime_library(core: str = STM32G071.core) -> Path:
     if is_whole(library):
         return library
     library.parent.mkdir(parents=True, exist_ok=True)
-    source = _zig_folder() / "lib" / "compiler_rt.zig"
+    source = zig_folder() / "lib" / "compiler_rt.zig"
     with tempfile.TemporaryDirectory(dir=library.parent) as work:
         built = Path(work) / "libcompiler_rt.a"
         options = ["-OReleaseSmall", "-fstrip", "-fno-unwind-tables", "-ffunction-sections", "-fdata-sections"]
@@ -91,11 +92,6 @@ def runtime_library(core: str = STM32G071.core) -> Path:
         run_zig(["build-lib", *options, *machine, str(source), f"-femit-bin={built}"], "compiler-rt")
         built.replace(library)
     return library
-
-
-def _zig_folder() -> Path:
-    found = importlib.util.find_spec("ziglang")
-    return Path(str(found.origin if found else "ziglang")).parent
 
 
 def compile_objects(
@@ -123,7 +119,7 @@ def compile_objects(
 def _compile(
     unit: Source, headers: Sequence[Source], work: Path, include_dirs: Sequence[Path], flags: Sequence[str]
 ) -> Path:
-    key = content_digest([unit, *headers], include_dirs, flags)
+    key = content_digest([unit, *_included(unit, headers, include_dirs)], (), flags)
     kept = CACHE_DIR / "target" / "objects" / f"{Path(unit.name).stem}-{key}.o"
     if is_whole(kept):
         return kept
@@ -138,12 +134,32 @@ def _compile(
     return kept
 
 
+def _included(unit: Source, headers: Sequence[Source], include_dirs: Sequence[Path]) -> list[Source]:
+    """The project's own headers that `unit` includes, or one of them: what is compiled does not depend on the others.
+
+    A name counts wherever a header bears it, and an `#include` under a condition that does not hold counts too.
+    """
+    named: dict[str, list[Source]] = {}
+    for header in [*headers, *(path for folder in include_dirs for path in sorted(folder.glob("*.h")))]:
+        named.setdefault(header.name, []).append(header)
+    found: dict[str, list[Source]] = {}
+    waiting = [unit]
+    while waiting:
+        source = waiting.pop()
+        text = source.read_text(encoding="utf-8") if isinstance(source, Path) else source.text
+        for name in _INCLUDE.findall(text):
+            if name in named and name not in found:
+                found[name] = named[name]
+                waiting += named[name]
+    return [header for name in sorted(found) for header in found[name]]
+
+
 def _portable_paths(unit: Source, path: Path, work: Path) -> list[str]:
     """Debug information without the place of the checkout, so that every checkout builds the same bytes.
 
     zig names what lies below the current folder relative to it, and its own folder without links, so a place has several names.
     """
-    places = [(Path(__file__).resolve().parent.parent, "."), (_zig_folder(), "zig"), (work, "generated")]
+    places = [(Path(__file__).resolve().parent.parent, "."), (zig_folder(), "zig"), (work, "generated")]
     if not isinstance(unit, CText):
         places.append((path.parent, path.parent.name))
     names = [(name, alias) for place, alias in places for name in (place, place.resolve(), os.path.relpath(place))]

@@ -61,6 +61,6 @@ def test_a_compiler_that_cannot_compile_is_said_and_fails(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(host, "CACHE_DIR", tmp_path)
-    monkeypatch.setattr(host.sys, "executable", "/bin/false")
+    monkeypatch.setattr(host, "_zig", lambda: ("/bin/false",))
     assert main(["doctor"]) == 1
     assert "C compiler is missing" in capsys.readouterr().err
