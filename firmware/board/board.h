@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "path.h"
+#include "exchange.h"
 
 /* clock.c */
 void clock_start(void);       /* to BOARD_CLOCK_HZ */

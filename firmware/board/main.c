@@ -4,6 +4,7 @@
  *     sensors -> commands of the line -> supervisor -> law -> limits -> outputs -> telemetry -> watchdog
  */
 #include "board.h"
+#include "path.h"
 
 static void run_law(path_state *path)
 {

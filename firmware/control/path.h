@@ -12,35 +12,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "encoder_watch.h"
+#include "exchange.h"
 #include "law.h"
 #include "link.h"
 #include "protocol.h"
-#include "supervisor.h"
 
 #define PATH_FIRMWARE_VERSION 0x0002u /* major * 256 + minor */
-#define PATH_SAMPLE_PERIOD_US 10000u
 _Static_assert(LAW_SAMPLE_PERIOD_US == PATH_SAMPLE_PERIOD_US, "the table was designed for another sample period");
 _Static_assert(LAW_U_M_SAFE_V == 0 && LAW_U_T_SAFE_V == 0, "the safe state of this board is an open power stage, 0 V");
 _Static_assert(sizeof(law_number) == 4, "numbers cross the line as 32-bit words");
 _Static_assert(LAW_PWM_TICKS <= INT16_MAX, "duties cross the line as int16_t");
-
-/* What the board knows of itself at the start. */
-typedef struct {
-    uint8_t unique_id[12];
-    uint8_t reset_cause; /* PROTOCOL_RESET_CAUSE_... */
-    uint32_t resets;     /* since power on */
-} board_identity;
-
-/* Faults that the board layer counts. */
-typedef struct {
-    uint32_t uart_overruns;
-    uint32_t uart_framing_errors;
-    uint32_t uart_noise_errors;
-    uint32_t rx_ring_overflows;
-    uint32_t tx_frames_dropped;
-    uint32_t tick_overruns;
-} board_faults;
 
 /* What a byte off the line, or a control tick, asks the main loop to do. */
 typedef enum {

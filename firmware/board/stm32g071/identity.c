@@ -1,4 +1,5 @@
 #include "board.h"
+#include "protocol.h"
 #include "stm32g071.h"
 
 /* Kept over a reset; the section is not cleared at start-up. */

@@ -1,4 +1,5 @@
 #include "board.h"
+#include "law.h"
 #include "stm32g071.h"
 #include "wiring.h"
 

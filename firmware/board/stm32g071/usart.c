@@ -1,5 +1,6 @@
 #include "board.h"
 #include "interrupts.h"
+#include "protocol.h"
 #include "stm32g071.h"
 #include "wiring.h"
 
