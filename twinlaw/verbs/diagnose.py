@@ -21,7 +21,8 @@ from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.why import why_text
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnose.each import HEADING, answers, facts, questions, rows
-from twinlaw.workflows.diagnose.together import diagnose_logs, widths, writable
+from twinlaw.workflows.diagnose.files import widths, writable
+from twinlaw.workflows.diagnose.together import diagnose_logs
 
 SCHEMA = "diagnoses/1"
 

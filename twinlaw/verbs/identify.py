@@ -27,7 +27,8 @@ from twinlaw.cli import console, options
 from twinlaw.pages.identify.report import identify_page
 from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
 from twinlaw.pages.page import page_text
-from twinlaw.workflows.identify.by_time import Wishes, free_names, identify, looked_at, read_inputs, read_limits
+from twinlaw.workflows.identify.by_time import Wishes, identify
+from twinlaw.workflows.identify.inputs import free_names, looked_at, read_inputs, read_limits
 from twinlaw.workflows.identify.proof import proven
 from twinlaw.workflows.reading import load_bound
 

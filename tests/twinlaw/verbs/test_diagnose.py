@@ -16,7 +16,7 @@ from sim.loop import fly_law
 from sim.manoeuvres import flight
 from tests.plants import bound, stated_table
 from twinlaw.command import main
-from twinlaw.workflows.diagnose.together import earlier_predictions, writable
+from twinlaw.workflows.diagnose.files import earlier_predictions, writable
 
 PLANT = "plants/ce150.toml"
 
@@ -119,7 +119,7 @@ def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files(tmp_path
 def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, log: RunLog, below: str
 ) -> None:
-    monkeypatch.setattr("twinlaw.workflows.diagnosing.read_material", lambda *_: pytest.fail("began to work"))
+    monkeypatch.setattr("twinlaw.workflows.diagnose.together.read_material", lambda *_: pytest.fail("began to work"))
     (tmp_path / "file").write_text("in the way")
     save_log(tmp_path / "run.csv", log)
     for each in ([], ["--each"]):

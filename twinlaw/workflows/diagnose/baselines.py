@@ -13,7 +13,8 @@ from records.log import load_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from twinlaw.workflows.diagnose.each import ANSWER, Parcel, Question, opened, parcel
+from twinlaw.workflows.diagnose.each import Parcel, Question, opened, parcel
+from twinlaw.workflows.diagnose.files import ANSWER
 from twinlaw.workflows.sweeping import swept
 
 

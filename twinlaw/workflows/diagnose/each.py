@@ -17,11 +17,11 @@ from records.diagnosis import Diagnosis, parse_diagnosis
 from records.errors import BadInput
 from records.files import remove_all
 from replay.table import TABLE_NAME
-from twinlaw.workflows.diagnose.together import earlier_predictions, read_material, result_files
+from twinlaw.workflows.diagnose.files import ANSWER, earlier_predictions, result_files
+from twinlaw.workflows.diagnose.material import read_material
 from twinlaw.workflows.sweeping import swept
 
 PLANT_NAME = "plant.toml"
-ANSWER = "diagnosis.json"
 HELD_OUT = "hold"  # what a case's logs to check on begin with
 
 

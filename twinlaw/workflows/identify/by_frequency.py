@@ -36,8 +36,8 @@ from twinlaw.pages.identify.frequency import (
 )
 from twinlaw.pages.identify.summary import HEADING, estimate_rows
 from twinlaw.pages.page import page_text
-from twinlaw.workflows.identify.by_time import Inputs, free_names, looked_at, read_limits, save_result, told_files
-from twinlaw.workflows.identify.progress import progress
+from twinlaw.workflows.identify.inputs import Inputs, free_names, looked_at, read_limits
+from twinlaw.workflows.identify.progress import progress, save_result, told_files
 
 OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
 

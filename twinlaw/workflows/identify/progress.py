@@ -1,13 +1,16 @@
 """What an identification leaves when it is interrupted: the fits that are done, and the best values so far of the one at hand."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 from identification.fit.belief import NOTHING, Belief
-from identification.results.result import Identification, identification, interrupted
+from identification.results.result import Identification, facts, identification, interrupted
 from identification.stages.estimate import Estimate
-from records.plant import Plant
+from records.files import write_atomic
+from records.plant import Plant, plant_text
 from twinlaw.cli import console
 
 Save = Callable[[Identification], None]
@@ -67,3 +70,14 @@ def progress(plant: Plant, save: Save, where: str) -> Iterator[Progress]:
         lambda: f"{where} {text}" if (text := found.left()) else "nothing was found yet, and nothing written"
     ):
         yield found
+
+
+def told_files(folder: Path) -> str:
+    """The files that an interrupted run leaves."""
+    return f"{folder / 'plant.toml'} and {folder / 'identification.json'} hold"
+
+
+def save_result(folder: Path, result: Identification) -> None:
+    """DIR/plant.toml and DIR/identification.json."""
+    write_atomic(folder / "plant.toml", plant_text(result.plant))
+    write_atomic(folder / "identification.json", json.dumps(facts(result), indent=1) + "\n")

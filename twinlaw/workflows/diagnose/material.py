@@ -1,0 +1,76 @@
+"""What a diagnosis begins with: plant and logs read, the logs looked at, the controller's own code run on them again."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from diagnosis.diagnose import Material
+from logcheck.clock import from_their_start
+from logcheck.integrity import demand, examine
+from logcheck.stretches import stretches
+from records.diagnosis import Firmware
+from records.errors import BadInput
+from records.log import RunLog, load_log
+from records.plant import load_plant
+from records.reasons import Note
+from records.table import ControllerTable
+from replay.firmware import FirmwareReplay
+from replay.table import replay_log, table_of
+from sim.added_effects import without_effects
+from sim.bind import BoundPlant, bind
+from sim.columns import log_columns
+from toolchain.memory import keep_freed_memory
+from twinlaw.pages.diagnose.firmware import differs
+
+
+def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) -> tuple[BoundPlant, Material]:
+    """What a diagnosis begins with; raises BadInput where plant or logs cannot be used."""
+    keep_freed_memory()
+    bound = bind(load_plant(plant))
+    nominal = without_effects(bound) if bound.effects else bound
+    return bound, _material(nominal, logs, holdout)
+
+
+def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:
+    columns = log_columns(bound.model)
+    read = [load_log(path, columns) for path in (*logs, *holdout)]
+    split = len(logs)
+    names = [path.stem for path in (*logs, *holdout)]
+    if len(set(names[split:])) != len(names[split:]):
+        raise BadInput("hold-out logs", "--holdout", "two of one name", "names that differ", "rename one")
+    integrity = examine(read[:split], bound, holdout=read[split:], names=names)
+    demand(integrity)
+    paths = (*logs, *holdout)
+    replays = [replay_log(log, path) for log, path in zip(read, paths, strict=True)]
+    firmware, told = _firmware(paths, replays)
+    used = [~entry.excluded for entry in integrity.logs]
+    timed, counted = from_their_start(read, names)
+    parts = stretches(timed[:split], used[:split], names[:split])
+    return Material(
+        logs=parts.logs,
+        names=parts.names,
+        holdout=timed[split:],
+        holdout_names=names[split:],
+        used=[*parts.used, *used[split:]],
+        firmware=firmware,
+        notes=(*integrity.notes, *told, *counted, *parts.notes),
+        tables=[_flown(*entry) for entry in zip(read[split:], holdout, replays[split:], strict=True)],
+    )
+
+
+def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:
+    """The table whose law flew a hold-out log; None where another firmware did: its error in the closed loop is not the model's."""
+    own = table_of(log, path)
+    return None if replay is not None and differs(replay.record()) else own
+
+
+def _firmware(
+    paths: Sequence[Path], replays: Sequence[FirmwareReplay | None]
+) -> tuple[Firmware | None, tuple[Note, ...]]:
+    """What running the controller's code again shows, of the first log where it differs, and a note for every log that it tells of."""
+    found = [(path.name, replay) for path, replay in zip(paths, replays, strict=True) if replay is not None]
+    if not found:
+        return None, ()
+    worst = min((replay for _, replay in found), key=lambda replay: (replay.bit_exact, replay.replayed))
+    return worst.record(), tuple(
+        Note("firmware", name, {}, f"{name}: {replay.sentence}") for name, replay in found if replay.sentence
+    )
