@@ -28,6 +28,13 @@ def out(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def demand_ending(path: Path, suffix: str) -> None:
+    """Raises BadInput where the file of --out has another ending than its kind."""
+    if path.suffix != suffix:
+        got, expected = f"a name that ends in {path.suffix!r}", f"NAME{suffix}"
+        raise BadInput("--out", str(path), got, expected, f"call it {suffix}")
+
+
 def as_json(parser: argparse.ArgumentParser) -> None:
     """--json."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables, and nothing besides")

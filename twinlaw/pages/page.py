@@ -7,6 +7,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from twinlaw.templates import TEMPLATES
 
+Row = tuple[str, ...]
+
 
 @dataclass(frozen=True)
 class Table:

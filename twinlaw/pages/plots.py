@@ -9,7 +9,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -18,7 +17,7 @@ Array = NDArray[np.float64]
 BLACK = "#000000"
 BLUE, ORANGE, GREEN, RED, GREY, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666", "#56B4E9"
 
-_STYLE: Any = {
+STYLE: Any = {
     "svg.hashsalt": "twinlaw",
     "svg.fonttype": "none",
     "font.family": "sans-serif",
@@ -59,18 +58,18 @@ class Panel:
 
 def stack(panels: Sequence[Panel], xlabel: str, *, panel_height_in: float = 1.9) -> str:
     """Panels one above the other over the same abscissa, as SVG text."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, panel_height_in * len(panels) + 0.5), layout="constrained")
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _draw(axes, panel)
         rows[-1].set_xlabel(xlabel)
-        return _svg(figure)
+        return svg(figure)
 
 
 def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False, height_in: float = 3.6) -> str:
     """Panels side by side with abscissas of their own, as SVG text; `equal` gives both axes one scale (pole maps)."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, height_in), layout="constrained")
         columns = figure.subplots(1, len(panels), squeeze=False)[0]
         for axes, panel, xlabel in zip(columns, panels, xlabels, strict=True):
@@ -78,14 +77,14 @@ def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False,
             axes.set_xlabel(xlabel)
             if equal:
                 axes.set_aspect("equal", adjustable="datalim")
-        return _svg(figure)
+        return svg(figure)
 
 
 def grid(
     lines: Sequence[Sequence[Panel]], titles: Sequence[str], xlabel: str, *, log_x: bool = False, height_in: float = 1.7
 ) -> str:
     """Lines of panels one above the other over one abscissa, each column with its title, one legend below, as SVG text."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, height_in * len(lines) + 0.8), layout="constrained")
         cells = figure.subplots(len(lines), len(titles), sharex=True, squeeze=False)
         for line, panels in zip(cells, lines, strict=True):
@@ -99,39 +98,16 @@ def grid(
             axes.set_xlabel(xlabel)
         handles = {label: handle for line in cells for axes in line for handle, label in _named(axes)}
         figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4, fontsize=8.0)
-        return _svg(figure)
+        return svg(figure)
 
 
 def _named(axes: Axes) -> list[tuple[Any, str]]:
     return list(zip(*axes.get_legend_handles_labels(), strict=True))
 
 
-@dataclass(frozen=True)
-class Bars:
-    """Bars between the `edges` of an abscissa, or one per name where `edges` are names; `within` bounds the ordinate."""
-
-    heights: Sequence[float]
-    edges: Sequence[tuple[float, float]] | Sequence[str]
-    ylabel: str
-    xlabel: str = ""
-    colours: Sequence[str] = (ORANGE,)
-    log: bool = False
-    log_height: bool = False
-    within: tuple[float, float] | None = None
-
-
-def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
-    """Bar charts side by side, as SVG text."""
-    with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(9.0, height_in), layout="constrained")
-        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
-            _draw_bars(axes, panel)
-        return _svg(figure)
-
-
 def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
     """Stated probabilities against the shares that were right: one point a bin (stated, right, count), larger for more cases."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.2, 4.2), layout="constrained")
         axes = figure.subplots()
         axes.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linestyle="--", label="as stated")
@@ -145,47 +121,7 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
             ylabel="share right",
         )
         axes.legend(loc="lower right")
-        return _svg(figure)
-
-
-class _PlainNumbers(LogFormatter):
-    """0.01, 0.1, 1 along an axis that grows by factors: powers of ten would be set by a program for formulas, which takes longer than
-    all the rest of a picture."""
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        return f"{x:g}" if super().__call__(x, pos) else ""
-
-
-def _by_factors(axis: Any) -> None:
-    axis.set_major_formatter(_PlainNumbers())
-    axis.set_minor_formatter(_PlainNumbers(minor_thresholds=(1.0, 0.5)))
-
-
-def _draw_bars(axes: Axes, panel: Bars) -> None:
-    colours = [panel.colours[i % len(panel.colours)] for i in range(len(panel.heights))]
-    if all(isinstance(edge, str) for edge in panel.edges):
-        drawn = axes.bar([str(edge) for edge in panel.edges], panel.heights, color=colours, width=0.7)
-        axes.bar_label(drawn, fmt="%.3g", fontsize=8.0)
-        axes.margins(y=0.15)
-    else:
-        left = np.array([float(edge[0]) for edge in panel.edges])
-        right = np.array([float(edge[1]) for edge in panel.edges])
-        axes.bar(left, panel.heights, right - left, align="edge", color=colours, edgecolor="white", linewidth=0.5)
-        axes.locator_params("x", nbins=5)  # three panels a row leave no more room for numbers such as -17.5
-    axes.set_ylabel(panel.ylabel)
-    axes.set_xlabel(panel.xlabel)
-    axes.set_axisbelow(True)
-    axes.grid(False, axis="x")
-    if panel.log:
-        axes.set_xscale("log")
-        _by_factors(axes.xaxis)
-    if panel.log_height:
-        axes.set_yscale("log")
-        _by_factors(axes.yaxis)
-        low, high = panel.within or (min(panel.heights), max(panel.heights))
-        axes.set_ylim(low / 3.0, high * 3.0)
-    elif panel.within is not None:
-        axes.set_ylim(*panel.within)
+        return svg(figure)
 
 
 def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
@@ -202,7 +138,8 @@ def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
 
 
-def _svg(figure: Figure) -> str:
+def svg(figure: Figure) -> str:
+    """The figure as SVG text without date or program."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     text = stream.getvalue()

@@ -9,17 +9,20 @@ to be beaten. The generator shares no code with simulation or diagnosis. What wa
 import argparse
 import json
 import shutil
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import blind
 from diagnosis.baselines import BASELINES
+from jobs.job import Done
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw.cli import options
 from twinlaw.pages import plots
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnose.baselines import plain_answers
-from twinlaw.workflows.diagnose.each import answers, questions
+from twinlaw.workflows.diagnose.each import Answered, answers, questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -86,28 +89,23 @@ def _diagnose(chosen: argparse.Namespace) -> int:
     asked = questions(Path(), _folders(chosen.cases), ())
     found = list(answers(asked, chosen.results, sweeping.crew_of(chosen)))
     new = sum(not entry.kept and entry.failure is None for entry in found)
-    status = sweeping.failures([(entry.name, entry.failure) for entry in found])
-    told = {"results": str(chosen.results), "cases": len(found), "new": new}
-    done = sum(entry.failure is None for entry in found)
-    print(
-        json.dumps(told)
-        if chosen.json
-        else f"{chosen.results}  {done} of {len(found)} cases answered, {new} of them now"
-    )
-    return status
+    return _answered(chosen, found, {"new": new}, f", {new} of them now")
 
 
 def _baseline(chosen: argparse.Namespace) -> int:
     asked = questions(Path(), _folders(chosen.cases), ())
-    done = list(plain_answers(asked, chosen.name, chosen.results, sweeping.crew_of(chosen)))
-    status = sweeping.failures([(entry.name, entry.failure) for entry in done])
-    told = {"results": str(chosen.results), "cases": len(done), "baseline": chosen.name}
-    answered = sum(entry.failure is None for entry in done)
-    print(
-        json.dumps(told)
-        if chosen.json
-        else f"{chosen.results}  {answered} of {len(done)} cases answered by {chosen.name}"
-    )
+    found = list(plain_answers(asked, chosen.name, chosen.results, sweeping.crew_of(chosen)))
+    return _answered(chosen, found, {"baseline": chosen.name}, f" by {chosen.name}")
+
+
+def _answered(
+    chosen: argparse.Namespace, found: Sequence[Answered] | Sequence[Done], facts: Mapping[str, Any], told: str
+) -> int:
+    """Those that failed on stderr, how many were answered on stdout; the exit status."""
+    status = sweeping.failures([(entry.name, entry.failure) for entry in found])
+    done = sum(entry.failure is None for entry in found)
+    line = f"{chosen.results}  {done} of {len(found)} cases answered{told}"
+    print(json.dumps({"results": str(chosen.results), "cases": len(found), **facts}) if chosen.json else line)
     return status
 
 

@@ -9,6 +9,7 @@ command goes on where it was interrupted.
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -21,6 +22,7 @@ from records.plant import plant_text
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
+from twinlaw.workflows.identify.repeated import repeated
 from twinlaw.workflows.reading import load_bound
 
 
@@ -57,7 +59,7 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _facts(found: list[Repetition]) -> dict[str, Any]:
+def _facts(found: Sequence[Repetition]) -> dict[str, Any]:
     covered = coverage(tuple(found))
     return {
         "coverage": covered,
@@ -69,14 +71,10 @@ def _facts(found: list[Repetition]) -> dict[str, Any]:
 
 
 def _repeat(bound: BoundPlant, chosen: argparse.Namespace) -> int:
-    found: list[Repetition] = []
     seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
     jobs = [Job(f"rig {seed}", repeat, RigOrder(bound.plant, seed)) for seed in seeds]
-    for answer in sweeping.answers("rigs identified", jobs, sweeping.crew_of(chosen), chosen.out / "jobs"):
-        found.append(Repetition(**answer))
-        facts = _facts(found)
-        # After each rig, so that an interrupted count leaves what it has.
-        write_atomic(chosen.out / "repetitions.json", json.dumps(facts, indent=1) + "\n")
+    path, crew = chosen.out / "repetitions.json", sweeping.crew_of(chosen)
+    found, facts = repeated("rigs identified", jobs, crew, path, Repetition, _facts)
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean", "all_inside")}))
         return 0

@@ -8,7 +8,6 @@ import json
 from pathlib import Path
 
 from recordings.mdf4_export import mdf4_bytes
-from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw.cli import options
 from twinlaw.workflows.reading import load_known_log
@@ -24,8 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Read, convert, write."""
     out: Path = chosen.out or chosen.log.with_suffix(".mf4")
-    if out.suffix != ".mf4":
-        raise BadInput("--out", str(out), f"a name that ends in {out.suffix!r}", "NAME.mf4", "call it .mf4")
+    options.demand_ending(out, ".mf4")
     log = load_known_log(chosen.log)
     write_atomic(out, mdf4_bytes(log))
     told = {"mf4": str(out), "rows": len(log.t_s)}

@@ -16,7 +16,7 @@ from rig.programming.emulated_flash import flash_emulated
 from rig.programming.flash import flash_through_boot_loader, flash_through_st_link
 from toolchain.elf import flash_content
 from twinlaw.cli import console, options
-from twinlaw.workflows.chain.boards import board_url
+from twinlaw.workflows.chain.boards import board_url, demand_image
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,10 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Choose the way, program, and say what was written."""
     image = chosen.out / ("firmware.bin" if chosen.port else "firmware.elf")
-    if not image.is_file():
-        raise BadInput(
-            "firmware image", str(image), "no such file", "an image", "build it with `twinlaw build` or `twinlaw run`"
-        )
+    demand_image(image)
     if chosen.arithmetic is not None:
         _demand_arithmetic(image, chosen.arithmetic)
     if chosen.port == "emulated":

@@ -17,12 +17,13 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from identification.results.result import facts
+from identification.results.result import Identification, facts
 from identification.runs.run import coefficient_names
 from identification.search.methods import METHODS, Search
 from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
+from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.identify.report import identify_page
 from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
@@ -104,11 +105,7 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
-    names, limits = free_names(bound, chosen.free), read_limits(chosen.bounds, coefficient_names(bound.model))
-    beside = tuple(method for method in ("gradient",) if method != chosen.search)
-    search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
-    only = None if chosen.free is None else names
-    wishes = Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
+    wishes = _wishes(chosen, bound)
     inputs = read_inputs(chosen.files, holdout, bound)
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
@@ -118,9 +115,23 @@ def run(chosen: argparse.Namespace) -> int:
     for name, picture in pictures.items():
         write_atomic(chosen.out / f"fig-{name}.svg", picture)
     write_atomic(chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections)))
+    _tell(chosen, result)
+    return 0
+
+
+def _wishes(chosen: argparse.Namespace, bound: BoundPlant) -> Wishes:
+    names = free_names(bound, chosen.free)
+    limits = read_limits(chosen.bounds, coefficient_names(bound.model))
+    beside = tuple(method for method in ("gradient",) if method != chosen.search)
+    search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
+    only = None if chosen.free is None else names
+    return Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
+
+
+def _tell(chosen: argparse.Namespace, result: Identification) -> None:
     if chosen.json:
         print(json.dumps(facts(result)))
-        return 0
+        return
     print(console.table(estimate_rows(result.estimates), HEADING))
     if result.aids:
         print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
@@ -129,4 +140,3 @@ def run(chosen: argparse.Namespace) -> int:
     for note in result.notes:
         print(f"- {note}")
     print(f"\n{chosen.out / 'plant.toml'}")
-    return 0

@@ -55,8 +55,7 @@ def run(chosen: argparse.Namespace) -> int:
     else:
         log = import_record(chosen.dataset, chosen.record)
     path = chosen.out or Path(f"{Path(chosen.dataset if is_file else chosen.record).stem}.csv")
-    if path.suffix != ".csv":
-        raise BadInput("--out", str(path), f"a name that ends in {path.suffix!r}", "NAME.csv", "call it .csv")
+    options.demand_ending(path, ".csv")
     log = _part(log, chosen.from_s, chosen.until_s, chosen.every)
     save_log(path, log)
     _tell(path, log, chosen.json)

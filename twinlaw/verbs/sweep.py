@@ -9,7 +9,7 @@ answer, so that the same command goes on where it was interrupted.
 
 import argparse
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -24,12 +24,12 @@ from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import check_plant
 from jobs.job import Job
 from records.errors import BadInput
-from records.files import write_atomic
 from records.log import RunLog, save_log
 from records.plant import Plant, load_plant
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.designing import design_controller
+from twinlaw.workflows.identify.repeated import repeated
 
 BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
 AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0.3)}
@@ -133,15 +133,11 @@ def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
 def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
-    found: list[Repetition] = []
     order = (plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats)
     seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
     jobs = [Job(f"flights {seed}", repeat, FlightOrder(*order, seed)) for seed in seeds]
-    for answer in sweeping.answers("flights identified", jobs, sweeping.crew_of(chosen), chosen.out / "jobs"):
-        found.append(Repetition(**answer))
-        facts = _coverage_facts(found)
-        # After each flight, so that an interrupted count leaves what it has.
-        write_atomic(chosen.out / "coverage.json", json.dumps(facts, indent=1) + "\n")
+    path, crew = chosen.out / "coverage.json", sweeping.crew_of(chosen)
+    found, facts = repeated("flights identified", jobs, crew, path, Repetition, _coverage_facts)
     if chosen.json:
         print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean")}))
         return 0
@@ -152,7 +148,7 @@ def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     return 0
 
 
-def _coverage_facts(found: list[Repetition]) -> dict[str, Any]:
+def _coverage_facts(found: Sequence[Repetition]) -> dict[str, Any]:
     shares = coverage(found)
     return {
         "coverage": dict(shares),
@@ -162,7 +158,7 @@ def _coverage_facts(found: list[Repetition]) -> dict[str, Any]:
     }
 
 
-def _coverage_rows(plant: Plant, found: list[Repetition]) -> list[tuple[str, ...]]:
+def _coverage_rows(plant: Plant, found: Sequence[Repetition]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for name, share in coverage(found).items():
         values = np.array([entry.value[name] for entry in found])

@@ -5,11 +5,8 @@ Origin are refused; all but the empty page needs the token, which stands behind 
 what changes anything is a POST of JSON with the token in a header that no form and no foreign script can send; no page may frame this one.
 """
 
-import base64
-import hashlib
 import hmac
 import json
-import re
 import secrets
 import threading
 from collections.abc import Callable, Mapping
@@ -20,6 +17,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from records.errors import BadInput
+from twinlaw.watching.headers import SAFETY, policy
 from twinlaw.watching.session import Session
 
 HOST = "127.0.0.1"
@@ -29,7 +27,6 @@ PAGES = 8
 HEARTBEAT_S = 1.0
 POLL_S = 0.05
 SILENCE_S = 20.0  # a connection that says nothing for so long is closed
-INLINE = re.compile(r"<(script|style)>(.*?)</\1>", flags=re.DOTALL)
 
 
 @dataclass
@@ -206,27 +203,6 @@ class Handler(BaseHTTPRequestHandler):
         if kind.startswith("text/html"):
             self.send_header("Content-Security-Policy", policy(self.server.site.page.decode()))
         self.end_headers()
-
-
-SAFETY: Mapping[str, str] = {
-    "Cache-Control": "no-store",
-    "X-Content-Type-Options": "nosniff",
-    "X-Frame-Options": "DENY",
-    "Referrer-Policy": "no-referrer",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Cross-Origin-Opener-Policy": "same-origin",
-}
-
-
-def policy(page: str) -> str:
-    """The content security policy of a page: its own inline script and style by their hashes, its own server, nothing else."""
-    hashes: dict[str, list[str]] = {"script": [], "style": []}
-    for kind, text in INLINE.findall(page):
-        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-        hashes[kind].append(f"'sha256-{digest}'")
-    own = [f"{kind}-src {' '.join(found)}" for kind, found in hashes.items()]
-    rest = ("connect-src 'self'", "img-src data:", "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'")
-    return "; ".join(("default-src 'none'", *own, *rest))
 
 
 def serve(server: Server) -> Callable[[], None]:

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 
 from records.board import STM32G071
 from twinlaw.pages.compare.comparison import Compared, spread_of
+from twinlaw.pages.page import Row
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
-Row = tuple[str, ...]
 COST_HEADING: Row = (
     "controller",
     "cycles",

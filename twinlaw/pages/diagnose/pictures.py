@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from diagnosis.explain.curve import Shape
 from records.diagnosis import Diagnosis
+from twinlaw.pages.bars import Bars, bars
 from twinlaw.pages.diagnose.words import shown
 from twinlaw.pages.page import Section
-from twinlaw.pages.plots import BLUE, GREY, ORANGE, RED, SKY, Bars, Curve, Panel, bars, row, stack
+from twinlaw.pages.plots import BLUE, GREY, ORANGE, RED, SKY, Curve, Panel, row, stack
 
 Array = NDArray[np.float64]
 _ZOOM_S = 8.0

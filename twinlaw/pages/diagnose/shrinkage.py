@@ -3,9 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from records.diagnosis import Agreement, ClosedLoop, Shrinkage
+from twinlaw.pages.bars import Bars, bars
 from twinlaw.pages.diagnose.words import percent, shown
 from twinlaw.pages.page import Section, Table
-from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, Bars, bars
+from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE
 
 _PANELS = 4  # columns that are drawn
 _FAR = 30.0  # between the least bar and the largest, from which both are to be seen on a logarithmic scale alone

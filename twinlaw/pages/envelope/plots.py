@@ -37,18 +37,12 @@ def points(found: Study) -> str:
     panels = []
     for loading in sorted({entry.condition.loading for entry in found.conditions}):
         groups = (
-            ("identified", [entry.condition for entry in found.conditions], BLUE, "o"),
-            ("left out", [entry.condition for entry in found.left_out], RED, "x"),
+            ([entry.condition for entry in found.conditions], "identified", BLUE, "o"),
+            ([entry.condition for entry in found.left_out], "left out", RED, "x"),
         )
-        curves = [_places([at for at in all_of if at.loading == loading], *style) for style, all_of in _split(groups)]
+        curves = [_places([at for at in members if at.loading == loading], *style) for members, *style in groups]
         panels.append(Panel(f"{loading}: altitude [ft]", curves))
     return row(panels, ["speed [kts]"] * len(panels), height_in=2.2)
-
-
-def _split(
-    groups: Sequence[tuple[str, list[Condition], str, str]],
-) -> list[tuple[tuple[str, str, str], list[Condition]]]:
-    return [((label, colour, marker), members) for label, members, colour, marker in groups]
 
 
 def _places(members: Sequence[Condition], label: str, colour: str, marker: str) -> Curve:
@@ -60,18 +54,7 @@ def _places(members: Sequence[Condition], label: str, colour: str, marker: str) 
 def controls(check: Check) -> str:
     """Figs. 1.4 and 2.2: the pilot's controls beside their trim, flights one after the other."""
     t_s = _times(check.data)
-    panels = [
-        Panel(
-            f"{name} [%]",
-            (
-                Curve(
-                    t_s,
-                    _chain(check.data.u[:, :, i]),
-                ),
-            ),
-        )
-        for i, name in enumerate(CONTROLS)
-    ]
+    panels = [Panel(f"{name} [%]", (Curve(t_s, _chain(check.data.u[:, :, i])),)) for i, name in enumerate(CONTROLS)]
     return stack(panels, "time [s]", panel_height_in=1.2)
 
 

@@ -12,7 +12,7 @@ from identification.envelope.flights.multistep import DOUBLET, PULSE, STEPS_2311
 from identification.envelope.output_equation.outputs import METHODS
 from identification.envelope.study import ConditionResult, Study
 from identification.margins import MARGINS, FOOT_m
-from twinlaw.pages.page import Table
+from twinlaw.pages.page import Row, Table
 
 # Table 2.1 of the thesis, open loop at HA6000ft-50kts [%].
 THESIS_FIT = (99.21, 99.51, 97.17, 99.42, 99.19, 99.55, 99.49, 99.38)
@@ -133,28 +133,23 @@ def _by_group(groups: Sequence[str], names: Sequence[str]) -> list[str]:
 
 def averages(found: Study, ways: Ways) -> Table:
     """Tables 3.4 and 4.1: points outside, mean over conditions, identification and validations apart."""
-    rows = []
-    for way in METHODS:
-        cells = []
-        for checks in _groups(found):
-            shares = np.array([[match.outside_percent for match in ways(check)[way]] for check in checks])
-            cells += [f"{value:.2f}" for value in shares.mean(axis=0)] if len(checks) else [""] * len(OUTPUTS)
-        rows.append((way, *cells))
+
+    def cells(way: str, checks: Sequence[Check]) -> list[str]:
+        shares = np.array([[match.outside_percent for match in ways(check)[way]] for check in checks])
+        return [f"{value:.2f}" for value in shares.mean(axis=0)]
+
+    rows = _by_method(found, cells, len(OUTPUTS))
     return Table(rows, ("equation [%]", *_by_group(("identification", "validation"), symbols(OUTPUTS))))
 
 
 def errors(found: Study, ways: Ways) -> Table:
     """What no weight and no criterion of taste enters: the rms error in margins, mean over signals, and how often each way's is least."""
-    rows, groups = [], _groups(found)
-    for way in METHODS:
-        cells = []
-        for checks in groups:
-            if not checks:
-                cells += ["", ""]
-                continue
-            mean = np.mean([error_margins(ways(check)[way]) for check in checks])
-            cells += [f"{mean:.3f}", f"{sum(_least(ways(check)) == way for check in checks)} of {len(checks)}"]
-        rows.append((way, *cells))
+
+    def cells(way: str, checks: Sequence[Check]) -> list[str]:
+        mean = np.mean([error_margins(ways(check)[way]) for check in checks])
+        return [f"{mean:.3f}", f"{sum(_least(ways(check)) == way for check in checks)} of {len(checks)}"]
+
+    rows = _by_method(found, cells, 2)
     return Table(rows, ("rms error [margins]", "identification", "least in", "validation", "least in"))
 
 
@@ -175,17 +170,13 @@ def scores(checks: Sequence[Check], ways: Ways) -> Table:
 
 def goodness(found: Study, ways: Ways) -> Table:
     """Tables 3.10 and 4.8: mean score over all conditions, the same without Theil's fit, and how many checks hold three seconds."""
-    rows = []
-    for way in METHODS:
-        cells = []
-        for checks in _groups(found):
-            if not checks:
-                cells += ["", "", ""]
-                continue
-            means = [np.mean([score_percent(ways(check)[way], by) for check in checks]) for by in (WEIGHTS, UNFITTED)]
-            held = sum(passed(ways(check)[way]) for check in checks)
-            cells += [*(f"{mean:.2f}" for mean in means), f"{held} of {len(checks)}"]
-        rows.append((way, *cells))
+
+    def cells(way: str, checks: Sequence[Check]) -> list[str]:
+        means = [np.mean([score_percent(ways(check)[way], by) for check in checks]) for by in (WEIGHTS, UNFITTED)]
+        held = sum(passed(ways(check)[way]) for check in checks)
+        return [*(f"{mean:.2f}" for mean in means), f"{held} of {len(checks)}"]
+
+    rows = _by_method(found, cells, 3)
     return Table(rows, ("equation", *_by_group(("identification", "validation"), ("score", "without fit", "held 3 s"))))
 
 
@@ -220,6 +211,14 @@ def margins() -> Table:
         scale, unit = units[name[len(symbol) + 1 :]]
         rows.append((f"{symbol} [{unit}]", *(f"{by_name[name] / scale:.4g}" for by_name in MARGINS.values())))
     return Table(rows, ("margin to either side", *MARGINS))
+
+
+def _by_method(found: Study, cells: Callable[[str, Sequence[Check]], list[str]], width: int) -> list[Row]:
+    """A row for each output equation: `width` cells of the identification flights, then as many of the validation flights."""
+    return [
+        (way, *(cell for checks in _groups(found) for cell in (cells(way, checks) if checks else [""] * width)))
+        for way in METHODS
+    ]
 
 
 def _groups(found: Study) -> tuple[list[Check], list[Check]]:

@@ -4,9 +4,9 @@ from records.board import STM32G071, Board
 from records.validation import Validation
 from records.verification import Verification
 from toolchain.elf import ImageSizes
+from twinlaw.pages.page import Row
 from twinlaw.pages.run.design import degrees
 
-Row = tuple[str, ...]
 _OUTCOMES = {"proved": "proved", "failed": "FAILS", "skipped": "skipped"}
 
 

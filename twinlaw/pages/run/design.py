@@ -6,8 +6,7 @@ from typing import Any
 
 from design.migration import SlowestPole
 from design.report import AxisReport, DesignReport
-
-Row = tuple[str, ...]
+from twinlaw.pages.page import Row
 
 _DESIGN_HEADING: Row = (
     "axis",

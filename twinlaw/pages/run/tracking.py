@@ -6,8 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from sim.tracking import Tracking
+from twinlaw.pages.page import Row
 
-Row = tuple[str, ...]
 TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|", "pushed by the other axis")
 
 

@@ -27,11 +27,15 @@ def board_url(port: str, elf: Path) -> str:
     """The pyserial URL of a board; `emulated` is the emulated board with the image `elf`, which must exist."""
     if port != "emulated":
         return port
-    if not elf.is_file():
-        raise BadInput(
-            "firmware image", str(elf), "no such file", "an image", "build it with `twinlaw build` or `twinlaw run`"
-        )
+    demand_image(elf)
     return f"emulated://{elf.resolve()}"
+
+
+def demand_image(image: Path) -> None:
+    """Raises BadInput where there is no such file."""
+    if not image.is_file():
+        remedy = "build it with `twinlaw build` or `twinlaw run`"
+        raise BadInput("firmware image", str(image), "no such file", "an image", remedy)
 
 
 def validate_board(table: FlownTable, url: str, steps: int, arithmetic: str = "float32") -> Validation:

@@ -2,7 +2,7 @@
 
 import re
 
-from twinlaw.pages.plots import Bars, bars
+from twinlaw.pages.bars import Bars, bars
 
 
 def test_an_axis_by_factors_has_plain_numbers() -> None:
