@@ -25,11 +25,12 @@ from records.diagnosis import (
 from records.plant import load_plant
 from records.reasons import Decision, Note
 from sim.bind import bind
-from twinlaw.pages.diagnose.pictures import curves, worst_of_the_retuned, worst_span
-from twinlaw.pages.diagnose.report import Predicted, diagnosis_page, verdict_sentence
+from twinlaw.pages.diagnose.pictures import Predicted, curves, worst_of_the_retuned, worst_span
+from twinlaw.pages.diagnose.report import diagnosis_page
 from twinlaw.pages.diagnose.retune import Moved, moved_most
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.summary import summary_text
+from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.why import why_text
 from twinlaw.pages.diagnose.words import class_in_words, plain_notes
 from twinlaw.pages.page import page_text

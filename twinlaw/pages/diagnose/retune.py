@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from diagnosis.result import Result
 from records.diagnosis import Diagnosis
 from records.plant import Plant
+from twinlaw.pages.diagnose.words import shown
 
 MOST = 3
 NOTHING = 0.1  # standard deviations below which a number has not moved
@@ -76,3 +77,16 @@ def lowered(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
         return {}
     pairs = {name: (rms, shrinkage.rms_before[name]) for name, rms in shrinkage.rms_nominal.items()}
     return {name: (stated, now) for name, (stated, now) in pairs.items() if now < LOWERED * stated}
+
+
+def retuned_sentence(diagnosis: Diagnosis, moved: Sequence[Moved]) -> str:
+    """How much re-tuning alone lowers the hold-out error, and which numbers moved; empty where neither is worth a sentence."""
+    parts = []
+    for output, (stated, now) in lowered(diagnosis).items():
+        name, unit, scale = shown(output)
+        parts.append(f"{name} from {scale * stated:.3g} to {scale * now:.3g} {unit.strip('[]')}".strip())
+    told = f"Re-tuning alone lowers the error of {', of '.join(parts)}. " if parts else ""
+    beside = " beside what was found" if diagnosis.found else ""
+    if moved:
+        told += f"What moved most{beside}, in standard deviations (sd) of what the plant file states: {moved_in_words(moved)}."
+    return told.strip()

@@ -32,12 +32,12 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
 
 
 def _page(result: Result, logs: Sequence[str]) -> Page:
-    from twinlaw.pages.diagnose import report
+    from twinlaw.pages.diagnose import pictures, report  # with Matplotlib, which the filter need not wait for
 
     bound = result.case.library.bound
     outputs = list(bound.model.outputs)
     curves = [
-        report.Predicted(
+        pictures.Predicted(
             name=flight.name,
             t_s=flight.t_s,
             measured={output: flight.y[:, place] for place, output in enumerate(outputs)},
