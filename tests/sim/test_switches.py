@@ -1,6 +1,7 @@
 """Equations behind switches: the C that leaves out what is off computes what the equations say, whatever is on."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -42,8 +43,10 @@ SEEN = f"""
 """
 
 
-def carried(plant: BoundPlant) -> tuple[str, ...]:
-    """The effects that a diagnosis has in its equations: those without states or axes of their own."""
+@cache
+def carried(name: str) -> tuple[str, ...]:
+    """The effects that a diagnosis has in a plant's equations: those without states or axes of their own."""
+    plant = bound(name)
     size = len(plant.model.states), len(plant.model.axes)
     found = []
     for name, effect in library(plant).items():
@@ -61,7 +64,7 @@ def plant(request: pytest.FixtureRequest) -> BoundPlant:
 
 @pytest.fixture(scope="module")
 def model(plant: BoundPlant) -> Model:
-    return switched_model(plant.plant.model, carried(plant))
+    return switched_model(plant.plant.model, carried(plant.plant.name))
 
 
 def compiled(model: Model):
@@ -86,31 +89,32 @@ def compiled(model: Model):
 
 def numbers(plant: BoundPlant, model: Model, on: set[str]) -> np.ndarray:
     """The vector p with effects of the size of their references, those of `on` switched on."""
-    names = [str(symbol) for symbol in model.parameter_symbols]
-    p = np.zeros(len(names))
+    places = {str(symbol): place for place, symbol in enumerate(model.parameter_symbols)}
+    effects = library(plant)
+    p = np.zeros(len(places))
     p[: len(plant.p)] = plant.p
-    for name in carried(plant):
-        effect = library(plant)[name]
-        for parameter, symbol in zip(effect.parameters, effect.symbols, strict=True):
-            p[names.index(str(symbol))] = parameter.reference or 0.5 * parameter.upper
+    for name in carried(plant.plant.name):
+        for parameter, symbol in zip(effects[name].parameters, effects[name].symbols, strict=True):
+            p[places[str(symbol)]] = parameter.reference or 0.5 * parameter.upper
         if name in on:
-            p[names.index(switch_name(effect))] = 1.0
+            p[places[switch_name(effects[name])]] = 1.0
     return p
 
 
 def test_what_is_on_counts_and_what_is_off_does_not(plant: BoundPlant, model: Model) -> None:
     # Truth: C of the same equations that takes a switch for a factor like any other. Rates and slopes within 1e-11 of the largest;
     # slopes by what is off, or by a switch, are nobody's concern.
-    seen, plain, names = compiled(model), compiled(replace(model, switches=())), carried(plant)
+    seen, plain, names = compiled(model), compiled(replace(model, switches=())), carried(plant.plant.name)
     random = np.random.default_rng(5)
     groups = [(), *((name,) for name in names), *random.permutation(list(combinations(names, 2)))[:100], tuple(names)]
     symbols = [str(symbol) for symbol in model.parameter_symbols]
+    own = {name: [symbols.index(str(symbol)) for symbol in library(plant)[name].symbols] for name in names}
+    switches = [symbols.index(str(switch)) for switch in model.switches]
     for group in groups:
         p = numbers(plant, model, set(group))
         x, u = random.uniform(-0.6, 0.6, len(model.states)), random.uniform(0.5, 3.0, len(model.inputs))
         sign = random.choice([-1.0, 1.0], len(model.axes))
-        off = [str(s) for name in names if name not in group for s in library(plant)[name].symbols]
-        unasked = [symbols.index(name) for name in (*off, *map(str, model.switches))]
+        unasked = [*(place for name in names if name not in group for place in own[name]), *switches]
         for found, expected in zip(seen(p, 0.7, x, u, sign), plain(p, 0.7, x, u, sign), strict=True):
             if found.shape[-1] == len(p):
                 found[:, unasked] = expected[:, unasked] = 0.0
@@ -124,7 +128,7 @@ def test_a_switched_effect_is_the_effect() -> None:
     # Truth: the plant with that effect alone. The others have no size; the corners of those of the input are rounded over 1e-9 V, which
     # moves an input by as much: rates within 1e-9 of the largest.
     plant = bound("aeroshield")
-    names, effects = carried(plant), library(plant)
+    names, effects = carried(plant.plant.name), library(plant)
     model = switched_model("aeroshield", names)
     symbols = [str(symbol) for symbol in model.parameter_symbols]
     random, truth = np.random.default_rng(6), reference(model)
