@@ -1,0 +1,53 @@
+"""An arm with one propeller, whose equations are the smallest: logs and cases for tests of single modules."""
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+
+from diagnosis.detect.linearisation import Linearisation, linearised
+from diagnosis.fit.nominal import nominal_fit
+from diagnosis.hypothesis.case import Case, make_case
+from diagnosis.library.effect_library import effect_library
+from records.log import RunLog
+from sim.added_effects import with_effects
+from sim.bind import BoundPlant
+from sim.columns import log_columns
+from sim.simulate import Noise, simulate
+from tests.plants import bound
+
+PERIOD_S, SECONDS = 0.01, 20.0
+
+
+@cache
+def arm() -> BoundPlant:
+    """The AeroShield with parameters that are known well."""
+    return bound("aeroshield")
+
+
+def arm_log(
+    effects: Mapping[str, Mapping[str, float]] | None = None, seed: int = 1, seconds: float = SECONDS
+) -> RunLog:
+    """A run in open loop under five sines of the input; nothing but the encoder and a little torque noise disturbs it."""
+    rng = np.random.default_rng(seed)
+    t_s = PERIOD_S * np.arange(round(seconds / PERIOD_S))
+    rates, phases = rng.uniform(0.5, 6.0, 5), rng.uniform(0.0, 2.0 * np.pi, 5)
+    u = 1.8 + 0.28 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)
+    rig = with_effects(arm(), effects) if effects else arm()
+    process = np.zeros(len(rig.model.states))
+    process[1] = 0.01
+    run = simulate(rig, t_s, np.zeros(2), u[:, None], noise=Noise(seed, process_sd=process), keep="y")
+    y = np.asarray(run.y).reshape(len(t_s), -1)
+    return RunLog(log_columns(arm().model), PERIOD_S, "open", t_s, u[:, None], y)
+
+
+def arm_case(*logs: RunLog) -> Case:
+    """A case of the arm with these logs."""
+    return make_case(effect_library(arm()), list(logs))
+
+
+@cache
+def plain_linearisation() -> Linearisation:
+    """The fit of a run without any effect, as score tests are taken from it."""
+    case = arm_case(arm_log())
+    return linearised(case, nominal_fit(case))

@@ -1,0 +1,53 @@
+"""What scores show of an input's steps, what logs could have shown at all, and which stated numbers a fit moved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.detect.input_steps import likely_steps
+from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.detect.visibility import cannot_tell, hidden, judged
+from diagnosis.fit.moved import moved_effects, moved_parameters
+from diagnosis.fit.nominal import nominal_fit
+from tests.diagnosis.arm import arm_case, arm_log, plain_linearisation
+
+STEP_V = 0.2
+
+
+def test_steps_of_an_input_are_found_near_their_size() -> None:
+    # Truth: the rig rounds its command to 0.2 V. Candidates lie half a percent apart, so one must lie within 1 %.
+    case = arm_case(arm_log({"input.quantization": {"q": STEP_V}}))
+    found = likely_steps(linearised(case, nominal_fit(case)), "input")
+    assert min(abs(step / STEP_V - 1.0) for step in found) < 0.01
+
+
+def scored(effect: str, power: float) -> ScoreTest:
+    return ScoreTest(effect, {}, 0.0, 0.0, 0.0, power)
+
+
+def test_data_cannot_tell_where_most_of_the_library_would_go_unseen() -> None:
+    case = plain_linearisation().case
+    loud = [scored(name, 8.0) for name in case.library.candidates]
+    assert hidden(case, loud) == {}
+    assert not cannot_tell(case, loud)
+    quiet = [replace(entry, power=1.0) for entry in loud]
+    # Truth: a score of 4 is asked for, so what scores 1 at its reference size would have to be four times as large.
+    assert set(hidden(case, quiet).values()) == {4.0}
+    assert cannot_tell(case, quiet)
+    assert judged(case, loud) == list(case.library.candidates)
+    assert all(ratio == np.inf for ratio in hidden(case, []).values())
+
+
+def test_numbers_that_left_their_spread_are_told_furthest_first() -> None:
+    linearisation = plain_linearisation()
+    assert moved_parameters(linearisation.case, np.array([0.5, -4.0, 3.5]), 3.0) == [1, 2]
+    assert moved_effects(linearisation.fit, 3.0) == []  # the plant file states no effect
+
+
+@pytest.mark.parametrize("far", [1.0, 100.0])
+def test_a_plain_run_moves_nothing_far(far: float) -> None:
+    linearisation = plain_linearisation()
+    theta = linearisation.fit.hypothesis.theta
+    assert len(moved_parameters(linearisation.case, theta, far)) == int((np.abs(theta) > far).sum())
