@@ -1,0 +1,167 @@
+"""Each part of the log check by itself, on made-up columns of a CE150 whose truth is what was put in."""
+
+import numpy as np
+import pytest
+
+from logcheck.between import duplicate_findings, plant_pair_findings, shared_rows
+from logcheck.dead import amount, dead_findings, read_again
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Found, in_words
+from logcheck.held import held_findings
+from logcheck.inputs import input_findings
+from logcheck.locked import locked_findings
+from logcheck.motion import motion_findings
+from logcheck.plant import grid_step, plant_facts, plant_findings
+from logcheck.seams import seam_findings
+from logcheck.stamps import timing, timing_findings
+from logcheck.units import rate_unit, reference_unit
+from logcheck.values import excitations, saturations, value_findings
+from records.log import RunLog
+from sim.columns import log_columns
+from tests.plants import bound
+
+STEP_RAD = 2.0 * np.pi / 4096.0
+STEPS = {"psi_rad": STEP_RAD, "phi_rad": STEP_RAD}
+LIMITS = {"u_M_V": (0.0, 10.0), "u_T_V": (-10.0, 10.0)}
+PLANT = bound("ce150")
+
+
+def rounded(angle: np.ndarray) -> np.ndarray:
+    return STEP_RAD * np.round(angle / STEP_RAD)
+
+
+def log_of(rows: int = 2000, **extra: np.ndarray) -> RunLog:
+    """Both axes swing by some 0.3 rad, each its own way, read by encoders; the inputs move with them."""
+    t_s = 0.01 * np.arange(rows)
+    psi, phi = 0.3 * np.sin(1.3 * t_s + 0.2), 0.35 * np.sin(0.9 * t_s) + 0.1 * np.sin(2.1 * t_s)
+    u = np.column_stack([6.0 + np.sin(1.3 * t_s), 2.0 * np.sin(0.9 * t_s)])
+    return RunLog(log_columns(PLANT.model), 0.01, "closed", t_s, u, rounded(np.column_stack([psi, phi])), extra=extra)
+
+
+def kinds(found: list[Found]) -> dict[str, str]:
+    return {entry.finding.kind: entry.finding.severity for entry in found}
+
+
+def test_a_plain_log_is_not_remarked_on_by_any_part() -> None:
+    log = log_of()
+    again = read_again(log)
+    facts = plant_facts(PLANT)
+    assert not again.any()
+    for found in (
+        dead_findings(log, "a", again, STEPS),
+        held_findings(log, "a"),
+        input_findings(log, "a", LIMITS),
+        locked_findings(log, "a", PLANT),
+        motion_findings(log, "a", PLANT),
+        plant_findings(log, "a", PLANT, facts),
+        seam_findings(log, "a", STEPS, again),
+        timing_findings(log, "a", timing(log)),
+        value_findings(log, "a", STEPS),
+    ):
+        assert list(found) == []
+
+
+def test_an_output_that_stands_while_its_axis_goes_on_is_told_with_its_times() -> None:
+    log = log_of()
+    log.y[320:380, 1] = log.y[320, 1]  # 0.6 s in the middle of a fast swing
+    (found,) = dead_findings(log, "a", read_again(log), STEPS)
+    assert (found.finding.column, found.finding.severity) == ("phi_rad", NOTE)
+    assert (found.finding.start_s, found.finding.end_s) == (pytest.approx(3.2, abs=0.02), pytest.approx(3.8, abs=0.02))
+    assert amount(3.0 * STEP_RAD, "phi_rad", STEP_RAD) == "3 steps"
+    assert (in_words(1, "row"), in_words(3, "row")) == ("1 row", "3 rows")
+
+
+def test_readings_that_are_repeated_until_the_next_one_are_left_out() -> None:
+    log = log_of()
+    log.y[:] = log.y[4 * (np.arange(2000) // 4)]
+    (found,) = held_findings(log, "a")
+    assert found.finding.severity == EXCLUDE
+    assert found.excluded is not None
+    assert found.excluded.mean() == pytest.approx(0.75, abs=0.01)
+
+
+def test_inputs_at_a_limit_and_held_within_it_are_told() -> None:
+    log = log_of()
+    log.u[:, 0] = np.clip(log.u[:, 0], None, 6.5)
+    log.u[:300, 1] = 10.0
+    found = list(input_findings(log, "a", LIMITS))
+    assert {entry.finding.column for entry in found} == {"u_M_V", "u_T_V"}
+    assert all(entry.finding.severity == NOTE for entry in found)
+    assert saturations(log, LIMITS)["u_T_V"].upper == pytest.approx(300 / 2000)
+
+
+def test_an_axis_that_never_moves_though_it_would_is_refused() -> None:
+    log = log_of()
+    log.y[:, 1] = 0.0
+    log.u[:, 1] = 5.0  # the tail rotor at half of what it can: no base stands under that
+    (found,) = locked_findings(log, "a", PLANT)
+    assert found.finding.severity == REFUSE
+    assert "phi_rad" in (found.finding.column or found.finding.sentence)
+
+
+def test_shuffled_rows_are_no_motion() -> None:
+    log = log_of()
+    np.random.default_rng(1).shuffle(log.y)
+    assert set(kinds(list(motion_findings(log, "a", PLANT))).values()) == {REFUSE}
+
+
+def test_degrees_are_no_radians_and_a_grid_is_found_by_its_step() -> None:
+    log = log_of()
+    assert grid_step(log.y[:, 0]) == pytest.approx(STEP_RAD)
+    log.y[:] = np.degrees(log.y)
+    found = list(plant_findings(log, "a", PLANT, plant_facts(PLANT)))
+    assert REFUSE in kinds(found).values()
+    assert any("degrees" in entry.finding.sentence for entry in found)
+
+
+def test_two_recordings_in_one_file_leap_in_all_outputs_at_once() -> None:
+    log = log_of()
+    log.y[1000:] += rounded(np.array([0.5, -0.6]))
+    (found,) = seam_findings(log, "a", STEPS, read_again(log))
+    assert found.finding.severity == REFUSE
+    assert "10" in found.finding.sentence  # s, where the second begins
+
+
+def test_missing_rows_and_another_period_are_seen_in_the_stamps() -> None:
+    log = log_of()
+    kept = np.delete(np.arange(2000), np.arange(700, 705))
+    gappy = RunLog(log.columns, 0.01, "closed", log.t_s[kept], log.u[kept], log.y[kept])
+    told = timing(gappy)
+    assert (told.rows, told.missing_by_time) == (1995, 5)
+    assert "missing_rows" in kinds(list(timing_findings(gappy, "a", told)))
+    slow = RunLog(log.columns, 0.01, "closed", 1.01 * log.t_s, log.u, log.y)
+    assert timing(slow).period_error_ppm == pytest.approx(1e4, rel=1e-3)
+
+
+def test_units_of_references_and_rates_follow_from_what_they_equal() -> None:
+    t_s = log_of().t_s
+    psi_dot = 0.39 * np.cos(1.3 * t_s + 0.2)
+    log = log_of(psi_ref_rad=np.degrees(log_of().y[:, 0]), psi_dot_rad_s=np.degrees(psi_dot))
+    (reference,) = reference_unit(log, "a", "psi_rad")
+    (rate,) = rate_unit(log, "a", PLANT.model)
+    for found in (reference, rate):
+        assert found.finding.severity == REFUSE
+        assert "degrees" in found.finding.sentence
+    right = log_of(psi_ref_rad=log_of().y[:, 0], psi_dot_rad_s=psi_dot)
+    assert list(reference_unit(right, "a", "psi_rad")) == list(rate_unit(right, "a", PLANT.model)) == []
+
+
+def test_numbers_that_are_missing_or_fly_off_are_left_out_and_motion_is_counted() -> None:
+    log = log_of()
+    log.y[100, 0] += 2.0
+    log.y[200:210, 1] = np.nan
+    found = {entry.finding.column: entry for entry in value_findings(log, "a", STEPS)}
+    assert found["psi_rad"].excluded is not None
+    assert np.flatnonzero(found["psi_rad"].excluded).tolist() == [100]
+    assert "10 rows" in found["phi_rad"].finding.sentence
+    assert excitations(log_of(), STEPS)["u_M_V"].greatest == pytest.approx(7.0, abs=1e-3)
+
+
+def test_rows_that_stand_in_two_logs_and_rigs_that_differ_are_seen_between_them() -> None:
+    one, other = log_of(), log_of()
+    other.y[:1500] = rounded(other.y[:1500] + 0.01)
+    rows = shared_rows(one, other)
+    assert rows[1500:].all()
+    assert not rows[:1400].any()
+    ((_, twice),) = duplicate_findings([one], ["a"], [other], ["b"])
+    assert twice.finding.severity == REFUSE  # of rows to fit and rows to check on
+    assert list(plant_pair_findings([one, one], ["a", "b"])) == []
