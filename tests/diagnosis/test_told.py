@@ -1,0 +1,151 @@
+"""What an answer tells: shrinkage, notes and their sentences, a re-tune beyond the spread, the run that would reveal more, the exit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer import no_gap
+from diagnosis.baselines.bic import by_bic
+from diagnosis.baselines.residual_size import by_residual_size
+from diagnosis.decide.weighing import Weighed
+from diagnosis.detect.detection import detect
+from diagnosis.detect.score_tests import ScoreTest
+from diagnosis.diagnose import borne_out, diagnose
+from diagnosis.experiment.revealing import revealing_experiment
+from diagnosis.explain.notes import notes_of
+from diagnosis.explain.sentences import plain_sentence, sentence, sentences
+from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.nominal import nominal_fit
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import effect_library
+from diagnosis.result import Exit, Material, Seen
+from diagnosis.search.retune import places_of, retune
+from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage
+from records.reasons import Note
+from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
+
+
+def predicted(before: float, after: float) -> tuple[Predicted, ...]:
+    """Ten windows in which each model is off by so much of the floor, up and down in turn."""
+    case = plain_linearisation().case
+    floor = float(np.sqrt(case.flights[0].filter_input.single[0]))
+    t_s = 0.01 * np.arange(1000)
+    sign = np.where(np.arange(1000) % 2, 1.0, -1.0)[:, None]
+    by = {name: floor * size * sign for name, size in (("nominal", 9.0), ("before", before), ("after", after))}
+    return (Predicted("hold", t_s, np.zeros((1000, 1)), by, {}),)
+
+
+def test_the_share_that_is_gone_is_of_what_lies_above_the_floor() -> None:
+    # Truth by CONTRACT.md's formula, errors in floors: (b^2 - a^2) / (b^2 - 1).
+    found = shrinkage(plain_linearisation().case, predicted(5.0, 2.0))
+    assert found.fraction == pytest.approx((25.0 - 4.0) / (25.0 - 1.0))
+    assert found.fraction_ci95 == pytest.approx((found.fraction, found.fraction))
+    assert error(plain_linearisation().case, predicted(5.0, 2.0), "after") == pytest.approx(4.0)
+    assert shrinkage(plain_linearisation().case, predicted(0.5, 0.5)).fraction is None  # nothing is removable
+
+
+def test_a_model_predicts_its_own_log_within_a_few_floors() -> None:
+    linearisation = plain_linearisation()
+    own = linearisation.fit.hypothesis
+    found = predict_all(linearisation.case, ["own"], dict.fromkeys(("nominal", "before", "after"), own))
+    assert error(linearisation.case, found, "after") < 9.0**2
+
+
+def test_notes_are_records_and_each_kind_has_its_sentence() -> None:
+    case, fitted = plain_linearisation().case, plain_fit()
+    quiet = [ScoreTest(name, {}, 0.0, 0.0, 0.999, 1.0) for name in case.library.candidates]
+    found = notes_of(case, quiet, fitted, None)
+    assert {"imitated", "hidden"} <= {note.kind for note in found}
+    assert all(sentences(found))
+    moved = Note("moved_parameter", "K", {"deviations": -4.21, "value": 0.0123456, "stated": 0.01})
+    assert sentence(moved) == "parameter K is -4.2 standard deviations from its stated value: 0.01235 instead of 0.01"
+    assert sentence(Note("any", "log", {}, "as it was said")) == "as it was said"
+    told = Note("contradiction", "b", {"gain_nats": 251.0, "moved": {"K": 4.0}})
+    assert "251 nats likelier" in sentence(told)
+    assert "e^251 times likelier" in plain_sentence(told)
+    with pytest.raises(KeyError):
+        sentence(Note("of no kind", "log"))
+
+
+def plain_fit() -> FittedHypothesis:
+    return FittedHypothesis((), plain_linearisation().fit, evidence(plain_linearisation().fit))
+
+
+def test_a_parameter_far_beyond_its_spread_is_found_with_its_place() -> None:
+    # Truth: the rig's thrust is 1.6 times what the file states, which the file takes to know to 1 %.
+    known = replace(arm(), sd=np.where(arm().sd > 0.0, 0.01 * np.abs(arm().p), 0.0))
+    names = [str(symbol) for symbol in arm().model.parameter_symbols]
+    p = arm().p.copy()
+    p[names.index("K")] /= 1.6
+    wrong = replace(known, p=p)
+
+    case = make_case(effect_library(wrong), [arm_log()], [None], wrong)
+    found = retune(case, nominal_fit(case))
+    assert found is not None
+    assert "K" in found.parameters
+    assert places_of(case, "K")[0] in found.places
+    assert retune(plain_linearisation().case, plain_linearisation().fit) is None
+
+
+def test_the_run_that_reveals_most_shows_more_than_a_rest() -> None:
+    log = arm_log()
+    still = replace(log, u=np.zeros_like(log.u), y=np.zeros_like(log.y))
+    told = revealing_experiment(arm_case(still), plain_linearisation().fit.hypothesis)
+    assert told is not None
+    shown, now = (
+        int(part.split()[place]) for part, place in zip(told["expected_outcome"].split("; "), (0, 3), strict=True)
+    )
+    assert shown > now
+
+
+def seen() -> Seen:
+    linearisation = plain_linearisation()
+    tests = tuple(ScoreTest(name, {}, 0.0, 0.0, 0.0, 9.0) for name in linearisation.case.library.candidates)
+    return Seen(
+        linearisation.case, None, plain_fit(), linearisation, tests, None, detect(linearisation.case, linearisation, ())
+    )
+
+
+def test_an_answer_without_a_gap_names_its_exit_and_keeps_notes_rules_and_chance() -> None:
+    kept = Note("firmware", "log", {}, "log: something")
+    found = no_gap(seen(), Material([], [], [], [], notes=(kept,)), None, Exit.NOT_BORNE_OUT).diagnosis
+    assert (found.verdict, found.verdict_reason) == ("no gap", "not_borne_out")
+    assert found.note_records[0] == kept
+    assert found.notes[0] == "log: something"
+    assert found.false_alarm_probability == seen().detection.p
+
+
+def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance() -> None:
+    small = seen()
+    small = replace(small, detection=replace(small.detection, p=4e-13, largest=30.0))
+    after, stands = borne_out(small, Weighed((), (), 0.66, 0.34, 10.0))
+    assert not stands
+    assert after.detection.p == 4e-13
+    assert after.decisions[-1].rule == "borne_out"
+    assert (after.decisions[-1].value, after.decisions[-1].limit) == (0.34, 0.66)
+    assert borne_out(small, Weighed((), (), 0.2, 0.8, 10.0))[1]
+
+
+def test_a_rig_as_stated_ends_where_nothing_is_seen_and_every_rule_is_told() -> None:
+    found = diagnose(arm(), Material([arm_log()], [], [], [None])).diagnosis
+    assert found.verdict_reason == "nothing_seen"
+    assert [entry.rule for entry in found.decisions] == [
+        "largest_gain", "parameters_together", "parameter_furthest", "false_alarm"
+    ]  # fmt: skip
+    told = found.decisions[-1]
+    assert (told.value, told.limit, told.outcome) == (found.false_alarm_probability, 0.01, "no gap")
+
+
+ROUGH = {"arm.coulomb": {"b": 5e-4}}
+
+
+def test_residuals_alone_see_that_friction_is_missing() -> None:
+    assert by_residual_size(arm(), [arm_log(ROUGH)]).verdict == "gap"
+
+
+@pytest.mark.soak
+def test_the_information_criterion_sees_it_too_and_its_probabilities_sum_to_one_at_most() -> None:
+    found = by_bic(arm(), [arm_log(ROUGH)])
+    assert found.verdict == "gap"
+    assert sum(entry.probability for entry in found.effects) <= 1.0 + 1e-9
