@@ -7,6 +7,9 @@ import sys
 
 import pytest
 
+from tests.controllers.rows import ROWS, designed
+from tests.soak import sampled
+
 PROGRAM = """
 from pathlib import Path
 from controllers.table import CONTROLLERS
@@ -22,6 +25,11 @@ for name, controller in CONTROLLERS.items():
 KERNELS = ("Prescott", "Sandybridge", "Haswell", "SkylakeX")
 
 
+def own_digests() -> str:
+    """By the kernels that this processor gets."""
+    return "".join(f"{name} {designed(name)[1].digest}\n" for name in ROWS)
+
+
 def digests(kernels: str) -> str:
     environment = {**os.environ, "OPENBLAS_CORETYPE": kernels, "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=False)
@@ -32,6 +40,6 @@ def digests(kernels: str) -> str:
 
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="kernels are named for x86-64")
-def test_other_kernels_make_the_same_table() -> None:
-    found = {text for text in map(digests, KERNELS) if text}
-    assert len(found) == 1, found
+@pytest.mark.parametrize("kernels", sampled(KERNELS, keep=["Prescott"]))
+def test_other_kernels_make_the_same_table(kernels: str) -> None:
+    assert digests(kernels) in ("", own_digests())
