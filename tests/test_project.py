@@ -107,3 +107,12 @@ def test_no_generated_or_fetched_file_is_tracked() -> None:
     if not tracked:
         pytest.skip("this copy of the project is no git checkout")
     assert not [name for name in tracked if name.endswith((".so", ".elf", ".bin", ".mat", ".pyc"))]
+
+
+@pytest.mark.parametrize("package", ["diagnosis", "logcheck", "replay"])
+def test_each_module_of_the_diagnosis_is_called_directly_by_some_test(package: str) -> None:
+    code = "\n".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "tests").rglob("*.py")))
+    for path in sorted((ROOT / package).rglob("*.py")):
+        folder, name = re.escape(".".join(path.relative_to(ROOT).parent.parts)), path.stem
+        asked = rf"from {folder}\.{name} import|from {folder} import [^\n]*\b{name}\b|{folder}\.{name}\b"
+        assert name == "__init__" or re.search(asked, code), f"{path.relative_to(ROOT)} is called by no test"
