@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from identification.fit.levenberg_marquardt import MARQUARDT, trials
 from identification.runs.prediction import Block, blocks
 from identification.runs.run import Run, state_places, with_starts
 
@@ -20,7 +21,6 @@ Array = NDArray[np.float64]
 MAX_STEPS = 60
 SETTLED = 1e-3  # a step below this many standard deviations, squared and summed, changes nothing
 ROUNDING = 1e-12
-DAMPING_TOO_HIGH = 1e12
 INFORMED = 2.0  # information on a direction, relative to its size: 1 is that it has a size at all
 
 
@@ -99,18 +99,18 @@ def solve(problem: Problem, watch: Watch | None = None, settled: float = SETTLED
     From a start whose motion leaves the range of numbers no slope leads away: it is given back.
     """
     point = at(problem, problem.start, problem.runs)
-    damping, done = 1e-3, 0
-    while np.isfinite(point.cost) and done < MAX_STEPS and damping < DAMPING_TOO_HIGH:
+    if not np.isfinite(point.cost):
+        return point
+
+    def moved(point: Point, damping: float) -> Point | None:
         theta, runs, length = _step(problem, point, damping)
-        if length < settled:
-            break
-        trial = at(problem, theta, runs)
-        if trial.cost < point.cost:
-            point, damping, done = replace(trial, steps=done + 1), max(damping / 10.0, 1e-12), done + 1
-            if watch is not None:
-                watch(point)
-        else:
-            damping *= 10.0
+        return None if length < settled else at(problem, theta, runs)
+
+    better = filter(None, trials(point, moved, MARQUARDT))
+    for steps, found in zip(range(1, MAX_STEPS + 1), better, strict=False):
+        point = replace(found, steps=steps)
+        if watch is not None:
+            watch(point)
     return point
 
 

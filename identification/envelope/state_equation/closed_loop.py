@@ -5,12 +5,15 @@ starts afterwards and knows no drift; without it an error of the trim, which a f
 """
 
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from identification.envelope.flights.flight import Deviations
 from identification.envelope.state_equation.free_run import DIVERGED, Model, free_run, slopes, windows
+from identification.fit.levenberg_marquardt import NIELSEN, trials
 
 Array = NDArray[np.float64]
 
@@ -66,6 +69,21 @@ class _Normal:
     cross: Array
 
 
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A model with its windows' own numbers, and the cost there."""
+
+    task: _Task
+    model: Model
+    own: Own
+    cost: float
+
+    @cached_property
+    def normal(self) -> _Normal:
+        """The normal equations there, made when a step is asked for."""
+        return _normal(self.model, self.own, self.task)
+
+
 def optimise(model: Model, data: Deviations, margins: Array, lengths_s: tuple[float, ...] = LENGTHS_s) -> Training:
     """Minimise the squared error of free runs, each state in units of its margin (8,).
 
@@ -83,21 +101,24 @@ def optimise(model: Model, data: Deviations, margins: Array, lengths_s: tuple[fl
 
 def _stage(model: Model, task: _Task) -> tuple[Model, Own, list[float]]:
     """One length of windows."""
-    own = Own(task.x[:, 0].copy(), np.zeros_like(task.x[:, 0]))
-    damping, growth = 1e-3, 2.0
-    costs, normal = [_cost(model, own, task)], _normal(model, own, task)
-    for _ in range(ROUNDS):
-        trial = _moved(model, own, _solved(normal, damping))
-        cost = _cost(*trial, task)
-        if cost >= costs[-1]:
-            damping, growth = damping * growth, growth * 2.0
+    point = _point(model, Own(task.x[:, 0].copy(), np.zeros_like(task.x[:, 0])), task)
+    costs = [point.cost]
+    for better in islice(trials(point, _stepped, NIELSEN), ROUNDS):
+        if better is None:
             continue
-        (model, own), damping, growth = trial, max(damping / 3.0, 1e-12), 2.0
-        costs.append(cost)
+        point = better
+        costs.append(point.cost)
         if costs[-2] - costs[-1] < SETTLED * costs[-2]:
             break
-        normal = _normal(model, own, task)
-    return model, own, costs
+    return point.model, point.own, costs
+
+
+def _point(model: Model, own: Own, task: _Task) -> _Point:
+    return _Point(task, model, own, _cost(model, own, task))
+
+
+def _stepped(point: _Point, damping: float) -> _Point:
+    return _point(*_moved(point.model, point.own, _solved(point.normal, damping)), point.task)
 
 
 def _cost(model: Model, own: Own, task: _Task) -> float:
