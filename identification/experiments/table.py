@@ -20,9 +20,16 @@ def _coefficients(name: str, count: int) -> tuple[str, ...]:
 _MAIN = (*_coefficients("p_bM", 3), "K_M", *_coefficients("p_FM", 5))
 _TAIL = (*_coefficients("p_bT", 3), "K_T", *_coefficients("p_FT", 5))
 _BOTH = ("elevation", "azimuth")
+AID_UNITS: Mapping[str, str] = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}
 _LEVER = {"Psi_m": None, "lever": ("lever_m", "lever_sd_m"), "lever_angle": ("lever_rad", "lever_sd_rad")}
 _ARM = ("J_E", "b_vE", "b_cE")
 _TURN = ("J_A", "b_vA", "b_cA")
+# Input columns without which a record tells nothing of a parameter of the CE150.
+EXCITED_BY: Mapping[str, str] = {
+    **dict.fromkeys(_MAIN, "u_M_V"),
+    **dict.fromkeys(_TAIL, "u_T_V"),
+    "K_E": "turning_rad_s",
+}
 _perform_tail, _perform_main = partial(rotors.perform, tail=True), partial(rotors.perform, tail=False)
 _swing_arm, _swing_turn = partial(swings.perform, azimuth=False), partial(swings.perform, azimuth=True)
 _steps, _by_hand = partial(elevation.perform, by_hand=False), partial(elevation.perform, by_hand=True)
@@ -52,6 +59,14 @@ def kinds_of(plant: str) -> Mapping[str, Kind]:
             "plant", "experiments", repr(plant), f"one of {', '.join(BY_PLANT)}", "identify other plants from run logs"
         )
     return BY_PLANT[plant]
+
+
+def kind_of(experiment: Experiment) -> Kind:
+    """What experiment a record is of; raises BadInput for an unknown plant or kind."""
+    kinds = kinds_of(experiment.plant)
+    if experiment.kind not in kinds:
+        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(kinds)}", "correct its file")
+    return kinds[experiment.kind]
 
 
 def informed(plant: str) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.information import inverse
-from identification.fit.solve import Prior
+from identification.fit.problem import Prior
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]

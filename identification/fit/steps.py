@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.solve import Point, Problem, leaned
+from identification.fit.normal_equations import Point, leaned
+from identification.fit.problem import Problem
 from identification.runs.prediction import predicted
 from identification.runs.run import Run
 from records.errors import BadInput

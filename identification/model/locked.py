@@ -27,7 +27,7 @@ def _locked(model: Model, held: tuple[tuple[str, float], ...]) -> Model:
         for name, expression in model.outputs.items()
         if not (expression.free_symbols and expression.free_symbols <= set(constants))
     }
-    axes = tuple(_beside(axis, constants) for axis in model.axes if axis.name not in dict(held))
+    axes = tuple(axis_beside(axis, constants) for axis in model.axes if axis.name not in dict(held))
     return Model(
         name=f"{model.name}_locked",
         states=tuple(state for state in model.states if state not in constants),
@@ -40,8 +40,8 @@ def _locked(model: Model, held: tuple[tuple[str, float], ...]) -> Model:
     )
 
 
-def _beside(axis: Axis, constants: Mapping[sympy.Symbol, sympy.Expr]) -> Axis:
-    """An axis that moves while others are held."""
+def axis_beside(axis: Axis, constants: Mapping[sympy.Symbol, sympy.Expr | int]) -> Axis:
+    """An axis that moves while the states `constants` are held."""
     inertia, torque, coulomb = (
         sympy.sympify(term).subs(constants) for term in (axis.inertia, axis.torque, axis.coulomb)
     )

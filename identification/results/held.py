@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.belief import stated
-from identification.fit.solve import Prior, Problem, at
+from identification.fit.normal_equations import at
+from identification.fit.problem import Prior, Problem
 from identification.runs.run import coefficient_names
 from identification.stages.estimate import Estimate
 from sim.bind import BoundPlant

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from identification.results.held import Leaning
 from identification.stages.estimate import Estimate
-from identification.uncertainty.correlation import Direction
+from identification.uncertainty.identifiability import Direction
 
 LEAST_CHANCE = 1e-300
 MOST_DIRECTIONS = 3

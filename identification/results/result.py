@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from identification.experiments.table import AID_UNITS
 from identification.fit.belief import Belief
 from identification.results.notes import relative, stage_notes
 from identification.search.methods import Searched
@@ -71,9 +72,6 @@ class Identification:
             return ()
         remedy = "free fewer of them (--free), or add experiments that tell them apart"
         return (f"these data are too poor for {', '.join(poor)}; the plant file's value is kept: {remedy}",)
-
-
-AID_UNITS = {"Psi_m": "rad", "lever": "m", "lever_angle": "rad"}
 
 
 def _share(entry: Estimated) -> str:

@@ -1,22 +1,22 @@
 """A run log as a run for the estimator: cut into windows whose starts are free, which holds an unstable plant to its data."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from identification.model.driven import driven_model
-from identification.model.motion import move
+from identification.model.locked import locked_model
 from identification.model.subsystem import subsystem
-from identification.runs.run import Carried, Run
+from identification.runs.driven_start import driven_start
+from identification.runs.run import Run
 from identification.runs.window_starts import window_starts
 from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
+from sim.columns import log_columns
 
 Array = NDArray[np.float64]
-FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
-MOST_WAITED = 0.25  # of a log, until how its driven states began no longer shows; in a shorter one that is estimated
 
 
 def log_run(
@@ -30,7 +30,7 @@ def log_run(
     or a plant with effects on the way of its inputs or outputs.
     """
     _check(bound, log, name)
-    model, driven = bound.model, _driven(bound, log, at_first)
+    model, driven = bound.model, driven_start(bound, log, at_first)
     begins, stops = _windows(log.t_s, window_s, every, driven.known_after_s)
     used = np.concatenate([np.arange(a, b) for a, b in zip(begins, stops, strict=True)])
     rows = np.isfinite(log.y) & np.isin(np.arange(log.t_s.size), used)[:, None]
@@ -60,6 +60,21 @@ def log_run(
     )
 
 
+def run_of(bound: BoundPlant, log: RunLog, name: str, window_s: float, every: int = 1) -> Run:
+    """A log as a run; axes that it says were locked stand still at the median of their readings."""
+    if not log.locked:
+        return log_run(bound, log, name, window_s, every)
+    positions = {str(axis.position): axis.name for axis in bound.model.axes if axis.name in log.locked}
+    held = {
+        positions[str(state)]: float(np.nan_to_num(np.nanmedian(log.column(output))))
+        for output, state in bound.model.outputs.items()
+        if str(state) in positions
+    }
+    part = subsystem(bound, locked_model(bound.model, held))
+    kept = [place for place, output in enumerate(bound.model.outputs) if output in part.model.outputs]
+    return log_run(part, replace(log, columns=log_columns(part.model), y=log.y[:, kept]), name, window_s, every)
+
+
 def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
     if log.t_s.size < 2:
         raise BadInput("log", name, f"{log.t_s.size} row", "at least two rows", "give a longer log")
@@ -73,60 +88,6 @@ def _check(bound: BoundPlant, log: RunLog, name: str) -> None:
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
             "identify from the plant without them",
         )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class _Driven:
-    """States that only the inputs drive: where they run on from, how long until that is known, or which are free and by how much.
-
-    sd (n, free) is how far off they may be at each row.
-    """
-
-    carried: Carried | None
-    known_after_s: float
-    free: tuple[str, ...]
-    sd: Array
-
-
-def _driven(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> _Driven:
-    model, part, known = bound.model, driven_model(bound.model), np.zeros((log.t_s.size, 0))
-    if part is None:
-        return _Driven(None, 0.0, (), known)
-    own = subsystem(bound, part)
-    if at_first is not None:
-        x0 = np.asarray(at_first, dtype=float)[[model.states.index(state) for state in part.states]]
-        return _Driven(Carried(own, x0), 0.0, (), known)
-    u = np.ascontiguousarray(log.u[:, [model.inputs.index(variable) for variable in part.inputs]])
-    rest = np.zeros(len(part.states))
-    forgotten_s = _forgotten_s(own, log.t_s, u)
-    if forgotten_s <= MOST_WAITED * (log.t_s[-1] - log.t_s[0]):
-        return _Driven(Carried(own, rest), forgotten_s, (), known)
-    held = _run_on(own, log.t_s, np.tile(u[0], (log.t_s.size, 1)), rest)[-1]
-    return _Driven(Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held))
-
-
-def _forgotten_s(driven: BoundPlant, t_s: Array, u: Array) -> float:
-    """How long after the first row it still shows with what states the log began: two runs from far starts are compared."""
-    still = _run_on(driven, t_s, u, np.zeros(len(driven.model.states)))
-    reach = np.max(np.abs(still), axis=0)
-    apart = np.flatnonzero(np.any(np.abs(_run_on(driven, t_s, u, reach) - still) > FORGOTTEN * reach, axis=1))
-    return float(t_s[apart[-1]] - t_s[0]) if apart.size else 0.0
-
-
-def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
-    """What is left, row by row (n, driven), of a start as far from x0 (driven,) as any inputs could have brought it."""
-    largest = np.tile(_largest_inputs(driven), (t_s.size, 1))
-    reach = np.max(np.abs(_run_on(driven, t_s, largest, np.zeros(x0.size))), axis=0)
-    left = np.abs(_run_on(driven, t_s, u, x0 + reach) - _run_on(driven, t_s, u, x0))
-    return np.asarray(np.maximum(left, FORGOTTEN * reach))
-
-
-def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
-    return move(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
-
-
-def _largest_inputs(bound: BoundPlant) -> Array:
-    return np.array([max(bound.limits(variable), key=abs) for variable in bound.model.inputs])
 
 
 def _sds(y: Array, channel: NDArray[np.int64], step: Array, noise: Array) -> Array:

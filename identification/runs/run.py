@@ -111,6 +111,12 @@ def state_places(model: Model) -> Mapping[str, int]:
     return {str(state): place for place, state in enumerate(model.states)}
 
 
+def free_places(run: Run) -> list[int]:
+    """Where the free ones stand among the states."""
+    places = state_places(run.bound.model)
+    return [places[name] for name in run.free]
+
+
 def known_names(run: Run, names: Sequence[str]) -> tuple[tuple[int, str], ...]:
     """Of the parameters `names` those that the run's model has: place in `names` and the model's own name."""
     known = {*_places(run.bound.model), *offset_names(run.bound.model)}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, differential_evolution
 
-from identification.fit.solve import Problem
+from identification.fit.problem import Problem
 from identification.runs.prediction import predicted
 
 Array = NDArray[np.float64]

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.solve import Point, Problem, Tell, Told, by_name, solve
+from identification.fit.normal_equations import Point
+from identification.fit.problem import Problem, Tell, Told, by_name
+from identification.fit.solve import solve
 from identification.search.evolution import evolution
 from identification.search.genetic import Code, evolve
 from identification.search.population import absolute_error

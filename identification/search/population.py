@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.solve import Problem
+from identification.fit.problem import Problem
 from identification.runs.prediction import predicted
 from identification.runs.run import Run, coefficient_names, known_names
 from sim.simulate import simulate

@@ -1,6 +1,6 @@
 """One stage of identification: fit, weigh the readings by what they turn out to be worth, state how far the result may be off."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,27 +9,21 @@ from scipy.special import stdtrit
 
 from identification.fit.belief import Belief, prior, widened
 from identification.fit.information import inverse, marginal
+from identification.fit.normal_equations import Point
+from identification.fit.problem import Problem, Told, by_name
 from identification.fit.ranges import Range
-from identification.fit.solve import Point, Problem, Told, Watch, by_name, solve
+from identification.fit.solve import Watch, solve
 from identification.fit.steps import MOST, SHIFT_SD, finer, shift_sd
-from identification.runs.run import Run, with_sd
+from identification.runs.run import Run
 from identification.search.methods import Search, Searched, search, started
-from identification.uncertainty.correlation import Direction, inflations, pieces, unseen
+from identification.stages.weights import by_channel, by_correlation
+from identification.uncertainty.contradiction import Contradiction, contradictions
+from identification.uncertainty.correlation import pieces
 from identification.uncertainty.discord import Discord, discords
-from identification.uncertainty.residuals import ResidualTest, residual_tests
+from identification.uncertainty.identifiability import Direction, unseen
+from identification.uncertainty.residuals import ResidualTest, tests_at
 
 Array = NDArray[np.float64]
-CONTRADICTION_SD, CONTRADICTION_MOVE = 5.0, 3.0
-
-
-@dataclass(frozen=True)
-class Contradiction:
-    """A parameter that this stage's data pull away from what earlier data said: by how many standard deviations, from where to where."""
-
-    name: str
-    sds: float
-    before: float
-    after: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +91,6 @@ def _estimate(
 ) -> Estimate:
     """What the optimum tells."""
     after = Belief(problem.names, point.theta, inverse(point.H + problem.prior.information))
-    fitted = zip(point.runs, point.blocks, strict=True)
     return Estimate(
         belief=after,
         own=own,
@@ -105,9 +98,9 @@ def _estimate(
         cost=point.cost,
         steps=point.steps,
         unseen=_unseen(problem, point, own, before),
-        contradictions=_contradictions(before, after),
+        contradictions=contradictions(before, after),
         at_bound=_at_bound(problem, point),
-        residuals=tuple(test for run, blocks in fitted for test in residual_tests(run, blocks)),
+        residuals=tests_at(point),
         runs=point.runs,
         searched=searched,
         discords=discords(problem, point),
@@ -140,8 +133,8 @@ def _fitted(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]
 def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, Point]:
     """Fit, weigh by channel, fit, weigh by correlation, fit; the first `known` parameters are held by what is known of them."""
     point = solve(problem, watch)
-    for weigh in (_by_channel, _by_correlation):
-        problem = _recentred(_weighed(problem, point, weigh), known)
+    for weigh in (by_channel, by_correlation):
+        problem = _recentred(replace(problem, start=point.theta, runs=weigh(problem, point)), known)
         point = solve(problem, watch)
     return problem, point
 
@@ -168,47 +161,7 @@ def _weak(problem: Problem, before: Belief) -> Array:
     return np.asarray(weak)
 
 
-def _weighed(problem: Problem, point: Point, weigh: Callable[[Problem, Point], tuple[Run, ...]]) -> Problem:
-    """The problem from its optimum with other weights."""
-    return replace(problem, start=point.theta, runs=weigh(problem, point))
-
-
 def _recentred(problem: Problem, known: int) -> Problem:
     """What merely gives a new parameter a size holds it where it is by now: weights that fell must not let it pull back to a far start."""
     mean = np.concatenate([problem.prior.mean[:known], problem.start[known:]])
     return replace(problem, prior=replace(problem.prior, mean=mean))
-
-
-def _by_channel(_: Problem, point: Point) -> tuple[Run, ...]:
-    """Each channel's sd set to the rms of its residuals; that of rounded readings only upwards, as their least is known."""
-    runs = []
-    for run, blocks in zip(point.runs, point.blocks, strict=True):
-        sd, residual = run.sd.copy(), np.concatenate([block.residual for block in blocks])
-        for number in range(len(run.channels)):
-            mine = run.channel == number
-            if mine.sum() > 1:
-                rounded = run.step.size > 0 and run.step[number] > 0.0
-                sd[mine] *= max(float(np.sqrt(np.mean(residual[mine] ** 2))), 1.0 if rounded else 1e-3)
-        runs.append(with_sd(run, sd))
-    return tuple(runs)
-
-
-def _by_correlation(problem: Problem, point: Point) -> tuple[Run, ...]:
-    """All sd of a channel widened by as much as its residuals' correlation asks."""
-    weak = np.diag(1.0 / problem.scale**2)
-    return tuple(
-        with_sd(run, run.sd * np.sqrt(found)[run.channel])
-        for run, found in zip(point.runs, inflations(point, weak), strict=True)
-    )
-
-
-def _contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
-    """Parameters that moved by more than new data can explain: the variance of an update is that before less that after."""
-    found = []
-    for place, name in enumerate(before.names):
-        spread = before.covariance[place, place] - after.covariance[place, place]
-        moved = float(after.mean[place] - before.mean[place])
-        sds = abs(moved) / float(np.sqrt(max(spread, 1e-4 * before.covariance[place, place])))
-        if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
-            found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
-    return tuple(found)

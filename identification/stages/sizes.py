@@ -1,18 +1,39 @@
-"""The size of a parameter that is absent from a plant file (value and sd 0), by what it would do to these data."""
+"""Where the parameters of logs may lie; one that is absent from a plant file (value and sd 0) is sized by what it would do to them."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.ranges import Range
+from identification.fit.ranges import Range, ranges_of
 from identification.runs.prediction import blocks
-from identification.runs.run import Run
+from identification.runs.run import Run, coefficient_names, offset_names
+from records.log import RunLog
+from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
 SHARE = 0.1  # an absent parameter is taken to matter a tenth as much as the others
 LEAST = 1e-9  # a friction of exactly 0 has no slope: it does not act at all
 REACH, BOUND = 100.0, 1e-3
+
+
+def ranges_of_logs(
+    bound: BoundPlant,
+    logs: Mapping[str, RunLog],
+    coarse: Sequence[Run],
+    names: Sequence[str],
+    limits: Mapping[str, tuple[float, float]],
+    offsets: bool,
+) -> dict[str, Range]:
+    """Where each parameter may lie; one of value and sd 0 gets its size from what it would do to these logs."""
+    ranges = ranges_of(bound, tuple(dict.fromkeys(names)), limits)
+    places = {name: place for place, name in enumerate(coefficient_names(bound.model))}
+    absent = [
+        name for name in ranges if not bound.p[places[name]] and not bound.sd[places[name]] and name not in limits
+    ]
+    if offsets:
+        ranges |= _offset_ranges(bound, logs)
+    return with_sizes(coarse, ranges, absent)
 
 
 def with_sizes(runs: Sequence[Run], ranges: Mapping[str, Range], absent: Sequence[str]) -> dict[str, Range]:
@@ -44,3 +65,12 @@ def _range(old: Range, size: float) -> Range:
     never_negative = old.lower >= 0.0
     lower = BOUND * size if never_negative else -REACH * size
     return Range(size if never_negative else 0.0, lower, REACH * size, size)
+
+
+def _offset_ranges(bound: BoundPlant, logs: Mapping[str, RunLog]) -> dict[str, Range]:
+    """An input's offset lies within so much as the input itself moves."""
+    spread = np.maximum(np.max([np.std(log.u, axis=0) for log in logs.values()], axis=0), 1e-9)
+    return {
+        name: Range(0.0, -5.0 * float(size), 5.0 * float(size), float(size))
+        for name, size in zip(offset_names(bound.model), spread, strict=True)
+    }

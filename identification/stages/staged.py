@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.experiments.kind import Kind
-from identification.experiments.table import informed, kinds_of
+from identification.experiments.table import EXCITED_BY, informed, kind_of
 from identification.fit.belief import NOTHING, Belief
+from identification.fit.problem import Told
 from identification.fit.ranges import Range, ranges_of
-from identification.fit.solve import Told
 from identification.runs.run import Run, coefficient_names, known_names
 from identification.search.methods import Search
 from identification.stages.estimate import Estimate, estimate
-from records.errors import BadInput
+from identification.stages.setup import check_mount, check_setup
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 
 ANGLE_SIZE_RAD = 0.1
-POOR = 5.0  # residuals so many times above what the sensor leaves call for a look at the mount
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,37 +44,13 @@ def identify_staged(
 
 def in_order(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
     """The experiments in the order of the paper's numbers; raises BadInput for an unknown kind."""
-    return tuple(sorted(experiments, key=lambda entry: _kind(entry).number))
+    return tuple(sorted(experiments, key=lambda entry: kind_of(entry).number))
 
 
 def title(experiment: Experiment) -> str:
     """Number and name of an experiment."""
-    kind = _kind(experiment)
+    kind = kind_of(experiment)
     return f"experiment {kind.number}, {kind.title}"
-
-
-def _kind(experiment: Experiment) -> Kind:
-    kinds = kinds_of(experiment.plant)
-    if experiment.kind not in kinds:
-        raise BadInput("kind", "experiment", repr(experiment.kind), f"one of {', '.join(kinds)}", "correct its file")
-    return kinds[experiment.kind]
-
-
-def check_setup(experiment: Experiment, bound: BoundPlant) -> None:
-    """Refuse a record of another plant, or of a rig that stood otherwise than the experiment's equations say; raises BadInput."""
-    where = f"experiment {experiment.kind}"
-    if experiment.plant != bound.model.name:
-        raise BadInput(
-            "plant", where, repr(experiment.plant), repr(bound.model.name), "give the record and the plant of one rig"
-        )
-    kind = _kind(experiment)
-    informs = ", ".join(kind.own)
-    if experiment.mount != kind.mount:
-        raise BadInput("mount", where, repr(experiment.mount), repr(kind.mount),
-                       f"run it again on that mount: gravity acts differently on this one, and {informs} would come out wrong")  # fmt: skip
-    if set(experiment.locked) != set(kind.locked):
-        raise BadInput("locked axes", where, repr(list(experiment.locked)), repr(list(kind.locked)),
-                       f"lock these and run it again: {informs} follow from the equations of the other axis alone")  # fmt: skip
 
 
 def identify_stage(
@@ -95,7 +70,7 @@ def identify_stage(
     parameters as soon as there are any. Raises BadInput for a wrong plant, mount or lock, also where only the motion shows it.
     """
     check_setup(experiment, bound)
-    kind = _kind(experiment)
+    kind = kind_of(experiment)
     run = kind.run(experiment, bound)
     own = tuple(name for name in needed(run, kind, belief) if _is_free(name, bound, free))
     ranges = ranges_of(bound, [*belief.names, *own], _limits(kind, limits, wanted)) | _aid_ranges(kind, experiment)
@@ -106,36 +81,6 @@ def identify_stage(
     check_mount(run, kind, result, ranges, before)
     names = tuple(name for name in result.belief.names if name not in kind.aids)
     return Stage(experiment.kind, result, result.belief.part(names), result.belief.part(tuple(kind.aids)))
-
-
-def check_mount(run: Run, kind: Kind, result: Estimate, ranges: Mapping[str, Range], before: Belief) -> None:
-    """Raise BadInput where the motion is badly predicted on the stated mount and far better on the other."""
-    poor = any(test.floor > 0.0 and test.rms > POOR * test.floor for test in result.residuals)
-    other = _on_other_mount(run)
-    if not poor or other is None:
-        return
-    there = estimate([other], result.own, ranges, before)
-    own_rms, other_rms = (max(test.rms for test in found.residuals) for found in (result, there))
-    if other_rms < own_rms / POOR:
-        moved = {"turned": "upright", "upright": "turned"}[kind.mount]
-        raise BadInput(
-            "mount", f"experiment {run.name}", f"a motion as on the mount {moved!r} (residuals {other_rms:.2g} there, {own_rms:.2g} here)",
-            f"one as on the mount {kind.mount!r}", f"run it again on that mount: {', '.join(kind.own)} cannot come from this record",
-        )  # fmt: skip
-
-
-def _on_other_mount(run: Run) -> Run | None:
-    """The run as it would be with gravity in the other direction; None where no axis moves."""
-    names, p = list(coefficient_names(run.bound.model)), run.bound.p.copy()
-    if "mount_rad" in names:
-        place = names.index("mount_rad")
-        p[place] = 0.0 if p[place] else -math.pi / 2
-    elif "turned" in names:
-        place = names.index("turned")
-        p[place] = 1.0 - p[place]
-    else:
-        return None
-    return replace(run, bound=replace(run.bound, p=p))
 
 
 def needed(run: Run, kind: Kind, belief: Belief) -> tuple[str, ...]:
@@ -165,9 +110,7 @@ def _limits(
 def _excited(run: Run, name: str) -> bool:
     """Whether the run's inputs move what the parameter acts on: without voltage a rotor's parameters are not asked for."""
     inputs = [str(variable) for variable in run.bound.model.inputs]
-    acts = {"M": "u_M_V", "T": "u_T_V"}
-    rotor = name.split("_")[1][-1:] if name.startswith(("p_b", "p_F")) else name[2:] if name in ("K_M", "K_T") else ""
-    column = "turning_rad_s" if name == "K_E" else acts.get(rotor)
+    column = EXCITED_BY.get(name)
     return column not in inputs or bool(np.any(run.u[:, inputs.index(column)]))
 
 

@@ -1,4 +1,4 @@
-"""How far estimates may be off: errors that last (rounding, a model's misfit) counted as such, and what the data cannot tell."""
+"""Errors that last (rounding, a model's misfit): how many independent readings a run's correlated residuals are worth."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,21 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.solve import Point, Starts
+from identification.fit.normal_equations import Point, Starts
 from identification.runs.prediction import Block
 from identification.runs.run import Run
 
 Array = NDArray[np.float64]
 PIECE_S = 1.0
-BLIND = 0.5  # a direction whose sd is above half of the parameters' size is not identified
-
-
-@dataclass(frozen=True)
-class Direction:
-    """A combination of parameters, each relative to its size, of which the data know nothing, or just so much: its relative sd."""
-
-    weights: tuple[tuple[str, float], ...]
-    relative_sd: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,21 +71,3 @@ def pieces(point: Point) -> int:
         for run, own in zip(point.runs, point.blocks, strict=True)
         for block in own
     )
-
-
-def unseen(names: Sequence[str], H: Array, scale: Array) -> tuple[Direction, ...]:
-    """Directions of the scaled information S H S whose relative sd is above `BLIND`, worst first; by its eigenvectors (its SVD)."""
-    values, vectors = np.linalg.eigh(H * np.outer(scale, scale))
-    found = []
-    for value, vector in zip(values, vectors.T, strict=True):
-        sd = float(1.0 / np.sqrt(max(value, 1e-24)))
-        if sd > BLIND:
-            found.append(Direction(_weights(names, vector), sd))
-    return tuple(found)
-
-
-def _weights(names: Sequence[str], vector: Array) -> tuple[tuple[str, float], ...]:
-    """The components that matter, largest first and positive."""
-    order = np.argsort(-np.abs(vector))
-    sign = np.sign(vector[order[0]])
-    return tuple((names[place], float(sign * vector[place])) for place in order if abs(vector[place]) > 0.3)

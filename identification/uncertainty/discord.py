@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.information import inverse
-from identification.fit.solve import Point, Problem, alone
+from identification.fit.normal_equations import Point, alone
+from identification.fit.problem import Problem
 
 Array = NDArray[np.float64]
 DISCORD_SD = 5.0

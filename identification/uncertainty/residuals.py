@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
+from identification.fit.normal_equations import Point
 from identification.runs.prediction import Block
 from identification.runs.run import Run
 
@@ -35,6 +36,12 @@ class ResidualTest:
     def white(self) -> bool:
         """Not to be told from white at the level of one in a hundred."""
         return self.whiteness_p > 0.01
+
+
+def tests_at(point: Point) -> tuple[ResidualTest, ...]:
+    """All channels of all runs of a fit."""
+    fitted = zip(point.runs, point.blocks, strict=True)
+    return tuple(test for run, blocks in fitted for test in residual_tests(run, blocks))
 
 
 def residual_tests(run: Run, blocks: tuple[Block, ...]) -> tuple[ResidualTest, ...]:

@@ -6,7 +6,7 @@ import pytest
 from identification.experiments.table import kinds_of, perform
 from identification.experiments.velagic.experiments import KINDS
 from identification.fit.belief import NOTHING
-from identification.fit.solve import Prior, Problem
+from identification.fit.problem import Prior, Problem
 from identification.runs.prediction import predicted
 from identification.search.genetic import Code, Settings, evolve
 from identification.search.methods import Search, search

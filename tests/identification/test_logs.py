@@ -9,9 +9,11 @@ import pytest
 from design.settings import read_settings
 from design.table import design
 from identification.fit.belief import Belief, stated
+from identification.runs.log_run import run_of
 from identification.search.methods import Search
+from identification.stages.best_fit import apart_sd, best_fit
 from identification.stages.estimate import interval_factor
-from identification.stages.logs import apart_sd, best_fit, identify_logs, run_of
+from identification.stages.logs import identify_logs
 from recordings.files import datasets_folder
 from recordings.library import import_record
 from records.correlation import Correlation

@@ -7,8 +7,10 @@ import pytest
 
 from identification.fit import solve as solver
 from identification.fit.belief import NOTHING
+from identification.fit.normal_equations import at
+from identification.fit.problem import Prior
 from identification.fit.ranges import ranges_of
-from identification.fit.solve import Prior, at, solve
+from identification.fit.solve import solve
 from identification.proof.bench import task
 from identification.runs.log_run import log_run
 from identification.runs.run import coefficient_names

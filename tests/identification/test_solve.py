@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from identification.fit.belief import NOTHING, Belief
+from identification.fit.normal_equations import _starts
 from identification.fit.ranges import Range, ranges_of
-from identification.fit.solve import _informed_step, _starts, solve
+from identification.fit.solve import _informed_step, solve
 from identification.proof import bench
 from identification.runs.log_run import log_run
 from identification.runs.prediction import blocks

@@ -11,7 +11,8 @@ from identification.fit.ranges import ranges_of
 from identification.runs.log_run import log_run
 from identification.search.evolution import evolution
 from identification.stages.estimate import problem_of
-from identification.stages.logs import identify_logs, prediction_tests
+from identification.stages.holdout import prediction_tests
+from identification.stages.logs import identify_logs
 from records.errors import BadInput
 from records.log import RunLog
 from records.plant import load_plant

@@ -8,10 +8,11 @@ from scipy.signal import lfilter
 
 from identification.experiments.ce150.elevation import turning_rad_s
 from identification.experiments.ce150.windows import fastest_row
-from identification.fit.solve import Starts
+from identification.fit.normal_equations import Starts
 from identification.model.driven import driven_model
 from identification.runs.prediction import Block
-from identification.uncertainty.correlation import score, unseen
+from identification.uncertainty.correlation import score
+from identification.uncertainty.identifiability import unseen
 from sim.plants import MODELS
 
 

@@ -7,8 +7,9 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
+from identification.runs.log_run import run_of
 from identification.runs.window_starts import crawling
-from identification.stages.logs import identify_logs, run_of
+from identification.stages.logs import identify_logs
 from sim.loop import fly_law
 from sim.manoeuvres import flight
 

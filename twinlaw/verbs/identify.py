@@ -18,9 +18,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from identification.results.result import Identification, facts
+from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from identification.search.methods import METHODS, Search
-from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
 from sim.bind import BoundPlant

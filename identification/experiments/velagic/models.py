@@ -7,6 +7,7 @@ from functools import cache
 import sympy
 from numpy.random import Generator
 
+from identification.model.locked import axis_beside
 from records.experiment import Experiment
 from sim.bind import BoundPlant
 from sim.model import Axis, Model, named_symbols
@@ -47,7 +48,7 @@ def _part(name: str, held: dict[sympy.Symbol, sympy.Expr | int]) -> Model:
     """The model with the states `held` as constants; parameters that nothing holds any more are left out."""
     model = plant.model()
     rates = {state: sympy.sympify(rate).subs(held) for state, rate in model.rates.items() if state not in held}
-    axes = tuple(_held(axis, held) for axis in model.axes if axis.velocity not in held)
+    axes = tuple(axis_beside(axis, held) for axis in model.axes if axis.velocity not in held)
     terms = [*rates.values(), *(term for axis in axes for term in _terms(axis))]
     used = set().union(*(term.free_symbols for term in terms))
     limits = {u: pair for u, pair in model.input_limits.items() if u in used}
@@ -67,8 +68,3 @@ def _part(name: str, held: dict[sympy.Symbol, sympy.Expr | int]) -> Model:
 def _terms(axis: Axis) -> list[sympy.Expr]:
     stops = [stop for stop in (axis.lower, axis.upper) if stop is not None]
     return [axis.inertia, axis.torque, axis.coulomb, *stops]
-
-
-def _held(axis: Axis, held: dict[sympy.Symbol, sympy.Expr | int]) -> Axis:
-    inertia, torque, coulomb = (sympy.sympify(term).subs(held) for term in (axis.inertia, axis.torque, axis.coulomb))
-    return replace(axis, inertia=inertia, torque=torque, coulomb=coulomb)

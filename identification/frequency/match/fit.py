@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from identification.fit.solve import Tell, Told, by_name
+from identification.fit.problem import Tell, Told, by_name
 from identification.frequency.flights.sweep import RECORD_PERIODS, WINDOW_PERIODS, highest_rad_s
 from identification.frequency.match.cost import N_OMEGA, Target, residual, target, with_response
 from identification.frequency.match.intervals import covariance, slopes

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.fit.solve import Told
+from identification.fit.problem import Told
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import UNITS, check_plant, log_columns
 from identification.frequency.match.fit import match
@@ -17,8 +17,8 @@ from identification.frequency.models.lateral_record import lateral_model, latera
 from identification.frequency.models.linear_model import LinearModel, operating_point_model
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
+from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
-from identification.stages.logs import trimmed
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log

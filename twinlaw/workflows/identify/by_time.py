@@ -11,8 +11,10 @@ from identification.results.held import leaning
 from identification.results.notes import leaning_notes
 from identification.results.result import Identification
 from identification.search.methods import Search
+from identification.stages.best_fit import best_fit
 from identification.stages.estimate import Estimate
-from identification.stages.logs import best_fit, fits_of_logs, prediction_tests
+from identification.stages.holdout import prediction_tests
+from identification.stages.logs import fits_of_logs
 from identification.stages.staged import identify_stage, title
 from records.errors import BadInput
 from records.experiment import Experiment

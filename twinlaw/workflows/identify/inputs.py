@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.stages.logs import without_readings
-from identification.stages.staged import check_setup, in_order
+from identification.runs.rows import without_readings
+from identification.stages.setup import check_setup
+from identification.stages.staged import in_order
 from logcheck.finding import EXCLUDE, Finding
 from logcheck.integrity import LogIntegrity, demand, examine
 from records.errors import BadInput

@@ -1,0 +1,75 @@
+"""How a log's driven states began, which no window's start can tell: waited for until it no longer shows, or estimated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from identification.model.driven import driven_model
+from identification.model.motion import move
+from identification.model.subsystem import subsystem
+from identification.runs.run import Carried
+from records.log import RunLog
+from sim.bind import BoundPlant
+
+Array = NDArray[np.float64]
+FORGOTTEN = 2e-4  # of a driven state's reach: ten times that, as thrust, is as much as good bearings' friction, and moved J_E by 8 sd
+MOST_WAITED = 0.25  # of a log, until how its driven states began no longer shows; in a shorter one that is estimated
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenStart:
+    """States that only the inputs drive: where they run on from, how long until that is known, or which are free and by how much.
+
+    sd (n, free) is how far off they may be at each row.
+    """
+
+    carried: Carried | None
+    known_after_s: float
+    free: tuple[str, ...]
+    sd: Array
+
+
+def driven_start(bound: BoundPlant, log: RunLog, at_first: ArrayLike | None) -> DrivenStart:
+    """From `at_first` (states,) where it is given, else from rest once that no longer shows, else free in each window.
+
+    Free ones are guessed where the first row's inputs would have brought them; without driven states there is nothing to know.
+    """
+    model, part, known = bound.model, driven_model(bound.model), np.zeros((log.t_s.size, 0))
+    if part is None:
+        return DrivenStart(None, 0.0, (), known)
+    own = subsystem(bound, part)
+    if at_first is not None:
+        x0 = np.asarray(at_first, dtype=float)[[model.states.index(state) for state in part.states]]
+        return DrivenStart(Carried(own, x0), 0.0, (), known)
+    u = np.ascontiguousarray(log.u[:, [model.inputs.index(variable) for variable in part.inputs]])
+    rest = np.zeros(len(part.states))
+    forgotten_s = _forgotten_s(own, log.t_s, u)
+    if forgotten_s <= MOST_WAITED * (log.t_s[-1] - log.t_s[0]):
+        return DrivenStart(Carried(own, rest), forgotten_s, (), known)
+    held = _run_on(own, log.t_s, np.tile(u[0], (log.t_s.size, 1)), rest)[-1]
+    return DrivenStart(Carried(own, held), 0.0, tuple(map(str, part.states)), _left_of_others(own, log.t_s, u, held))
+
+
+def _forgotten_s(driven: BoundPlant, t_s: Array, u: Array) -> float:
+    """How long after the first row it still shows with what states the log began: two runs from far starts are compared."""
+    still = _run_on(driven, t_s, u, np.zeros(len(driven.model.states)))
+    reach = np.max(np.abs(still), axis=0)
+    apart = np.flatnonzero(np.any(np.abs(_run_on(driven, t_s, u, reach) - still) > FORGOTTEN * reach, axis=1))
+    return float(t_s[apart[-1]] - t_s[0]) if apart.size else 0.0
+
+
+def _left_of_others(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
+    """What is left, row by row (n, driven), of a start as far from x0 (driven,) as any inputs could have brought it."""
+    largest = np.tile(_largest_inputs(driven), (t_s.size, 1))
+    reach = np.max(np.abs(_run_on(driven, t_s, largest, np.zeros(x0.size))), axis=0)
+    left = np.abs(_run_on(driven, t_s, u, x0 + reach) - _run_on(driven, t_s, u, x0))
+    return np.asarray(np.maximum(left, FORGOTTEN * reach))
+
+
+def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
+    return move(driven.model, t_s, u, driven.p, (slice(0, t_s.size),), x0[None, :], ()).x
+
+
+def _largest_inputs(bound: BoundPlant) -> Array:
+    return np.array([max(bound.limits(variable), key=abs) for variable in bound.model.inputs])

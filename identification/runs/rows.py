@@ -1,0 +1,27 @@
+"""Which rows of a log count: a part of its time, or all but those whose readings are in doubt."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+from records.log import RunLog
+
+
+def trimmed(log: RunLog, begin_s: float, end_s: float) -> RunLog:
+    """The rows of a log from `begin_s` to `end_s`; raises BadInput where fewer than two are left."""
+    kept = (log.t_s >= begin_s) & (log.t_s <= end_s)
+    if kept.sum() < 2:
+        whole = f"{log.t_s[0]:g} s to {log.t_s[-1]:g} s"
+        raise BadInput(
+            "log", "trimming", f"no rows from {begin_s:g} s to {end_s:g} s", f"a part of {whole}", "choose other times"
+        )
+    extra = {name: values[kept] for name, values in log.extra.items()}
+    seq = None if log.seq is None else log.seq[kept]
+    return replace(log, t_s=log.t_s[kept], u=log.u[kept], y=log.y[kept], extra=extra, seq=seq)
+
+
+def without_readings(log: RunLog, rows: NDArray[np.bool_]) -> RunLog:
+    """The log with nothing measured in these of its rows (n,); their times and inputs stand."""
+    return replace(log, y=np.where(rows[:, None], np.nan, log.y)) if np.any(rows) else log

@@ -1,0 +1,75 @@
+"""Of fits over shorter and longer windows the one to keep: what a model explains decides how long its windows may be."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.fit.belief import Belief
+from identification.fit.normal_equations import Point
+from identification.fit.problem import Prior, Problem
+from identification.fit.solve import solve
+from identification.runs.run import Run
+from identification.stages.estimate import Estimate
+from identification.uncertainty.contradiction import CONTRADICTION_SD
+from identification.uncertainty.residuals import ResidualTest, tests_at
+
+Array = NDArray[np.float64]
+WORSE, MOST_LEFT = 1.5, 0.3
+SENSORS = 1.1  # times what a sensor alone leaves: as good as that
+NEARLY = 2.0  # times that from a fit that has not settled
+
+
+def best_fit(found: Sequence[Estimate]) -> Estimate:
+    """Of fits over shorter and longer windows the one that leaves the least volume open.
+
+    Over long windows a fit may have caught a wrong phase, or nothing at all, or what the model lacks has grown into its parameters: one
+    that predicts the shortest windows clearly worse than the best does not count, nor one that leaves more than `MOST_LEFT` of what its
+    own readings do, nor one that contradicts the shortest windows by more than both intervals allow.
+    """
+    if len(found) == 1:
+        return found[0]
+    costs = [with_best_starts(found[0].runs, entry.belief.names, entry.belief.mean).cost for entry in found]
+    sound = [
+        entry
+        for entry, cost in zip(found, costs, strict=True)
+        if cost <= WORSE**2 * min(costs)
+        and all(test.fit > 1.0 - MOST_LEFT or _of_the_sensor(test) for test in entry.residuals)
+        and apart_sd(found[0].belief, entry.belief) <= CONTRADICTION_SD
+    ]
+    return min(sound or found[:1], key=_volume)
+
+
+def may_explain(first: Point) -> bool:
+    """The model explains short windows, if not to the last bit yet; where it does not, a whole log is not worth a fit."""
+    return all(test.rms <= NEARLY * test.floor for test in tests_at(first))
+
+
+def nothing_left(whole: Estimate) -> bool:
+    """The model and one start of each log explain all readings: what is left is white, and no more than the sensors' own errors."""
+    return all(test.white and _of_the_sensor(test) for test in whole.residuals)
+
+
+def _of_the_sensor(test: ResidualTest) -> bool:
+    """No more is left than the sensor's own errors: so it is of an axis at rest, too, none of whose readings are explained."""
+    return test.rms <= SENSORS * test.floor
+
+
+def apart_sd(one: Belief, other: Belief) -> float:
+    """The largest difference of a parameter between two estimates of the same names, in standard deviations of both together."""
+    return float(np.max(np.abs(one.mean - other.mean) / np.hypot(one.sd, other.sd), initial=0.0))
+
+
+def with_best_starts(runs: tuple[Run, ...], names: tuple[str, ...], theta: Array) -> Point:
+    """Criterion (10) over these runs with the parameters held and the windows' starts fitted.
+
+    A fit begins from these starts: over long windows guessed ones are so far off that parameters which follow them lose their way.
+    """
+    free = Prior(theta, np.zeros((theta.size, theta.size)))
+    return solve(Problem(names, theta, np.abs(theta) + 1e-12, theta, theta, runs, free))
+
+
+def _volume(found: Estimate) -> float:
+    """The logarithm of the volume that the estimate leaves open."""
+    part = found.belief.part(found.own)
+    return float(np.linalg.slogdet(part.correlation)[1] / 2.0 + np.sum(np.log(part.sd)))

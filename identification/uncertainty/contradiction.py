@@ -1,0 +1,34 @@
+"""New data against old: parameters that move by more than what was said of them before allows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.fit.belief import Belief
+
+CONTRADICTION_SD = 5.0  # sd of what the new data may move: once in a million by chance
+CONTRADICTION_MOVE = (
+    3.0  # and sd of what was known before: a move within that is no news, however sure the new data are
+)
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """A parameter that this stage's data pull away from what earlier data said: by how many standard deviations, from where to where."""
+
+    name: str
+    sds: float
+    before: float
+    after: float
+
+
+def contradictions(before: Belief, after: Belief) -> tuple[Contradiction, ...]:
+    """Parameters that moved by more than new data can explain: the variance of an update is that before less that after."""
+    found = []
+    for place, name in enumerate(before.names):
+        spread = before.covariance[place, place] - after.covariance[place, place]
+        moved = float(after.mean[place] - before.mean[place])
+        sds = abs(moved) / float(np.sqrt(max(spread, 1e-4 * before.covariance[place, place])))
+        if sds > CONTRADICTION_SD and abs(moved) > CONTRADICTION_MOVE * before.sd[place]:
+            found.append(Contradiction(name, sds, float(before.mean[place]), float(after.mean[place])))
+    return tuple(found)
