@@ -8,7 +8,8 @@ import numpy as np
 from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import Match, passed, score_percent
 from identification.envelope.flights.flight import INPUTS, OUTPUTS, STATES
-from identification.envelope.study import ConditionResult, Interpolated, Study
+from identification.envelope.one_condition import ConditionResult, Interpolated
+from identification.envelope.study import Study
 
 SCHEMA = "envelope/1"
 

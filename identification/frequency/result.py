@@ -14,7 +14,8 @@ from identification.frequency.models.linear_model import held_response
 from identification.frequency.models.linear_run import linear_run
 from identification.frequency.notes import notes_on
 from identification.frequency.responses.record import Record
-from identification.results.result import Identification, facts, identification
+from identification.results.facts import facts
+from identification.results.result import Identification, identification
 from records.plant import Plant
 
 Array = NDArray[np.float64]

@@ -1,16 +1,16 @@
 """Many rigs with other true parameters, each identified anew: do the intervals hold what they promise?"""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from identification.experiments.table import kinds_of, perform
 from identification.runs.run import coefficient_names
-from identification.stages.estimate import interval_factor
-from identification.stages.staged import Stage, identify_staged
+from identification.stages.estimate import interval_factors
+from identification.stages.staged import identify_staged
 from records.plant import Plant
 from sim.bind import BoundPlant, bind
 
@@ -50,7 +50,7 @@ def repetition(bound: BoundPlant, seed: int) -> Repetition:
     """Perform the plant's experiments on `other_rig` and identify it from the plant file's values."""
     truth = other_rig(bound, seed)
     stages = identify_staged(bound, [perform(kind, truth, seed) for kind in kinds_of(bound.model.name)])
-    belief, factors = stages[-1].belief, interval_factors(stages)
+    belief, factors = stages[-1].belief, interval_factors(stage.result for stage in stages)
     known = dict(zip(coefficient_names(truth.model), truth.p.tolist(), strict=True))
     value = dict(zip(belief.names, belief.mean.tolist(), strict=True))
     sd = dict(zip(belief.names, belief.sd.tolist(), strict=True))
@@ -71,16 +71,15 @@ def repeat(order: RigOrder) -> dict[str, Any]:
     return asdict(repetition(bind(order.plant), order.seed))
 
 
-def interval_factors(stages: tuple[Stage, ...]) -> dict[str, float]:
-    """Half widths of the 95 % intervals in standard deviations, by the degrees of freedom of the first stage about a parameter."""
-    factors: dict[str, float] = {}
-    for stage in stages:
-        for name in stage.result.own:
-            factors.setdefault(name, interval_factor(stage.result.dof))
-    return factors
+class Covered(Protocol):
+    """A repetition that tells of each parameter whether the truth lies within its interval."""
+
+    @property
+    def inside(self) -> Mapping[str, bool]:
+        """By parameter."""
 
 
-def coverage(repetitions: tuple[Repetition, ...]) -> dict[str, float]:
+def coverage(repetitions: Sequence[Covered]) -> dict[str, float]:
     """Share of the repetitions in which each parameter lies within its interval."""
     names = repetitions[0].inside
     return {name: float(np.mean([entry.inside[name] for entry in repetitions])) for name in names}

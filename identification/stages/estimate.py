@@ -1,6 +1,6 @@
 """One stage of identification: fit, weigh the readings by what they turn out to be worth, state how far the result may be off."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,6 +51,15 @@ class Estimate:
 def interval_factor(dof: float) -> float:
     """Half the width of a 95 % interval in standard deviations, by Student's distribution."""
     return float(stdtrit(max(dof, 1.0), 0.975))
+
+
+def interval_factors(stages: Iterable[Estimate]) -> dict[str, float]:
+    """The same for each parameter, by the degrees of freedom of the first stage about it."""
+    factors: dict[str, float] = {}
+    for stage in stages:
+        for name in stage.own:
+            factors.setdefault(name, interval_factor(stage.dof))
+    return factors
 
 
 def estimate(

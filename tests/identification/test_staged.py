@@ -13,7 +13,8 @@ from identification.fit.belief import NOTHING
 from identification.proof.linear_rotor import linear_rotor
 from identification.proof.monte_carlo import coverage, other_rig, repetition
 from identification.proof.validation import compare_flights
-from identification.results.result import facts, identification
+from identification.results.facts import facts
+from identification.results.result import identification
 from identification.runs.prediction import blocks
 from identification.stages.staged import identify_stage, identify_staged
 from identification.uncertainty.residuals import residual_tests

@@ -17,7 +17,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from identification.results.result import Identification, facts
+from identification.results.facts import facts
+from identification.results.result import Identification
 from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from identification.search.methods import METHODS, Search

@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from identification.frequency.coverage import FlightOrder, Repetition, coverage, repeat
 from identification.frequency.flights.helicopter import SAMPLE_PERIOD_S, sweep_flights
 from identification.frequency.flights.plant_sweep import closed_loop_sweeps
 from identification.frequency.flights.sweep import design_sweep
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import check_plant
+from identification.proof.monte_carlo import coverage
+from identification.proof.monte_carlo_frequency import FlightOrder
 from jobs.job import Job
 from records.errors import BadInput
 from records.log import RunLog, save_log

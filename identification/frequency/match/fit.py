@@ -1,6 +1,5 @@
 """A linear model matched with the frequency responses of records: points, search, correction for finite windows, intervals."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.problem import Tell, Told, by_name
-from identification.frequency.flights.sweep import RECORD_PERIODS, WINDOW_PERIODS, highest_rad_s
+from identification.frequency.match.band import band_of, window_lengths_s
 from identification.frequency.match.cost import N_OMEGA, Target, residual, target, with_response
 from identification.frequency.match.intervals import covariance, slopes
 from identification.frequency.match.secant import Found, Residual, restarted, secant_search
@@ -21,7 +20,6 @@ from records.errors import BadInput
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 POINTS = 3 * N_OMEGA
-LENGTHS = 5  # of windows, each half of the one before
 CORRECTIONS = 4
 CORRECTED = 1e-3  # a correction that moves the residual by less than this share of J is the last
 SLOPE_STEP = 1e-5
@@ -207,36 +205,3 @@ def _slopes(F: Residual, theta: Array, size: Array) -> tuple[Array, tuple[int, .
         (b, upper), (a, lower) = [*found, (0.0, here)][:2]
         columns.append((upper - lower) / ((b - a) * by[place]) if b != a else np.zeros(here.size))
     return np.column_stack(columns), tuple(held)
-
-
-def band_of(records: Sequence[Record], wanted: tuple[float, float] | None) -> tuple[float, float]:
-    """Lowest and highest frequency in rad/s that the records carry, or those wanted where they do; raises BadInput."""
-    longest = max(records, key=lambda record: record.duration_s)
-    most = highest_rad_s(longest.period_s)
-    if wanted is None:
-        return RECORD_PERIODS * 2.0 * math.pi / longest.duration_s, most
-    low, high = wanted
-    if not 0.0 < low < high <= most:
-        raise BadInput(
-            "band",
-            "command line",
-            f"{low:g} to {high:g} rad/s",
-            f"0 < lowest < highest <= {most:.4g} rad/s",
-            "give another",
-        )
-    least_s = RECORD_PERIODS * 2.0 * math.pi / low
-    if longest.duration_s < least_s * 0.999:
-        raise BadInput(
-            "record", longest.name, f"{longest.duration_s:.4g} s",
-            f"at least {least_s:.4g} s, {RECORD_PERIODS:g} periods of the lowest frequency, {low:g} rad/s",
-            f"sweep longer, or ask from {RECORD_PERIODS * 2.0 * math.pi / longest.duration_s:.3g} rad/s on",
-        )  # fmt: skip
-    return low, high
-
-
-def window_lengths_s(records: Sequence[Record], low_rad_s: float) -> tuple[float, ...]:
-    """Five lengths, each half of the one before; the longest holds two and a half periods of the lowest frequency."""
-    longest_s = max(record.duration_s for record in records)
-    first_s = min(longest_s, 1.25 * WINDOW_PERIODS * 2.0 * math.pi / low_rad_s)
-    least_s = 32.0 * records[0].period_s
-    return tuple(first_s / 2.0**k for k in range(LENGTHS) if first_s / 2.0**k >= least_s or k == 0)

@@ -10,7 +10,8 @@ from identification.envelope.criteria import error_margins, outside_percent, pas
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import joined
 from identification.envelope.flights.shortcomings import poor, unused
-from identification.envelope.study import Interpolated, study
+from identification.envelope.one_condition import Interpolated
+from identification.envelope.study import study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.linear import linearised

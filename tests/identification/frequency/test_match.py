@@ -5,7 +5,6 @@ import pytest
 
 from design.settings import read_settings
 from design.table import design
-from identification.frequency.coverage import coverage, repetition
 from identification.frequency.flights.helicopter import sweep_flights
 from identification.frequency.flights.plant_sweep import closed_loop_sweeps
 from identification.frequency.flights.sweep import design_sweep, sweep_input
@@ -15,6 +14,8 @@ from identification.frequency.models.lateral_record import lateral_model, latera
 from identification.frequency.models.linear_model import held_response, operating_point_model
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import frequency_facts, frequency_identification, time_check
+from identification.proof.monte_carlo import coverage
+from identification.proof.monte_carlo_frequency import repetition
 from records.errors import BadInput
 from records.plant import load_plant
 from tests.plants import PLANTS, bound

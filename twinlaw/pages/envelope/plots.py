@@ -9,8 +9,9 @@ from identification.envelope.check import FINAL, Check, margins_of
 from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import CONTROLS, OUTPUTS, STATES, Deviations
 from identification.envelope.flights.multistep import multistep, spectrum
+from identification.envelope.one_condition import ConditionResult
 from identification.envelope.state_equation.free_run import one_step
-from identification.envelope.study import ConditionResult, Study
+from identification.envelope.study import Study
 from twinlaw.pages.envelope.tables import INPUTS, symbols
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid, row, stack
 

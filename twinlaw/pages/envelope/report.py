@@ -6,8 +6,9 @@ from typing import Any
 from identification.envelope.by_hand import Tried
 from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import outside_percent
+from identification.envelope.one_condition import ConditionResult
 from identification.envelope.record import summary
-from identification.envelope.study import ConditionResult, Study
+from identification.envelope.study import Study
 from twinlaw.pages.envelope import plots, tables
 from twinlaw.pages.page import Page, Section, Table
 

@@ -9,8 +9,9 @@ from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import WEIGHTS, Match, error_margins, outside_percent, passed, score_percent
 from identification.envelope.flights.flight import OUTPUTS, STATES
 from identification.envelope.flights.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
+from identification.envelope.one_condition import ConditionResult
 from identification.envelope.output_equation.outputs import METHODS
-from identification.envelope.study import ConditionResult, Study
+from identification.envelope.study import Study
 from identification.margins import MARGINS, FOOT_m
 from twinlaw.pages.page import Row, Table
 

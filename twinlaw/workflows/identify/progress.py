@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from identification.fit.belief import NOTHING, Belief
-from identification.results.result import Identification, facts, identification, interrupted
+from identification.results.facts import facts
+from identification.results.result import Identification, identification, interrupted
 from identification.stages.estimate import Estimate
 from records.files import write_atomic
 from records.plant import Plant, plant_text

@@ -1,6 +1,6 @@
 """How often the truth lies within the intervals: flights of one plant with other noise each, matched from other starts each."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from identification.frequency.match.fit import match
 from identification.frequency.models.lateral_record import lateral_model, lateral_records
 from records.plant import Plant
 
-FACTOR = 1.96
+FACTOR = 1.96  # sd, half of a 95 % interval of a normal distribution
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +55,3 @@ class FlightOrder:
 def repeat(order: FlightOrder) -> dict[str, Any]:
     """A repetition as plain data, for a worker."""
     return asdict(repetition(order.plant, order.sweep, order.amplitudes, order.repeats, order.seed))
-
-
-def coverage(repetitions: Sequence[Repetition]) -> Mapping[str, float]:
-    """Share of the repetitions in which each parameter lies within its interval."""
-    return {name: float(np.mean([entry.inside[name] for entry in repetitions])) for name in repetitions[0].inside}
