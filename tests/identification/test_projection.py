@@ -7,13 +7,13 @@ import pytest
 
 from identification.fit import solve as solver
 from identification.fit.belief import NOTHING
-from identification.fit.normal_equations import at
+from identification.fit.normal_equations import at, reduced
 from identification.fit.problem import Prior
 from identification.fit.ranges import ranges_of
 from identification.fit.solve import solve
 from identification.proof.bench import task
 from identification.runs.log_run import log_run
-from identification.runs.run import coefficient_names
+from identification.runs.run import coefficient_names, with_starts
 from identification.stages.estimate import problem_of
 
 NAMES = ("J_E", "b_vE", "K_M")
@@ -34,7 +34,7 @@ def moved(run, seed):
     x0 = run.x0.copy()
     places = [[str(state) for state in run.bound.model.states].index(name) for name in run.free]
     x0[:, places] += 0.1 * run.start_sd * np.random.default_rng(seed).standard_normal(run.start_sd.shape)
-    return solver.with_starts(run, x0)
+    return with_starts(run, x0)
 
 
 def whole_system(problem, point):
@@ -79,7 +79,7 @@ def test_gradient_and_curvature_are_those_of_the_cost_that_the_starts_minimise(p
     """dV = -2 (g + prior) and, near the truth, where residuals are small, d2V = 2 (H + prior), by differences."""
     theta = problem.start * 1.0005 / 1.01
     here = minimised(problem, theta)
-    g = solver._reduced(here, 0.0)[1] + problem.prior.information @ (problem.prior.mean - theta)
+    g = reduced(here, 0.0)[1] + problem.prior.information @ (problem.prior.mean - theta)
     A = here.H + problem.prior.information
     assert A[2, 2] < 0.8 * here.JtJ[2, 2]  # the starts take a good part of what the readings tell
     for place, name in enumerate(NAMES):
