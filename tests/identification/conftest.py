@@ -1,14 +1,18 @@
-"""The CE150, one rig drawn from what its file states, and the nine experiments on that rig."""
+"""The CE150, its controller and a flight; one rig drawn from what its file states, and the nine experiments on that rig."""
 
 from pathlib import Path
 
 import pytest
 
+from design.settings import read_settings
+from design.table import design
 from identification.experiments.table import KINDS, perform
 from identification.proof.monte_carlo import other_rig
 from identification.stages.staged import identify_staged
 from records.plant import load_plant
 from sim.bind import bind
+from sim.loop import fly_law
+from sim.manoeuvres import flight
 
 PLANTS = Path(__file__).parents[2] / "plants"
 SEED = 3
@@ -17,6 +21,18 @@ SEED = 3
 @pytest.fixture(scope="session")
 def bound():
     return bind(load_plant(PLANTS / "ce150.toml"))
+
+
+@pytest.fixture(scope="session")
+def table(bound):
+    """The controller designed for it."""
+    return design(bound, read_settings(bound))[0]
+
+
+@pytest.fixture(scope="session")
+def flown(bound, table):
+    """The project's flight over both halves of the elevation: a closed loop about an unstable plant."""
+    return fly_law(bound, table, flight(bound), substeps=4)
 
 
 @pytest.fixture(scope="session")

@@ -4,8 +4,6 @@ from dataclasses import replace
 
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from identification.fit.belief import NOTHING
 from identification.fit.ranges import ranges_of
 from identification.proof.bench import task
@@ -13,9 +11,10 @@ from identification.results.notes import stage_notes
 from identification.runs.log_run import log_run
 from identification.stages.estimate import estimate
 from identification.stages.logs import identify_logs
-from sim.bind import bind
 from sim.loop import fly_law
 from sim.manoeuvres import flight
+from tests.identification.flights import cut, off
+from tests.soak import sampled
 
 NAMES = ("J_A", "b_vA", "J_E")
 
@@ -23,8 +22,7 @@ NAMES = ("J_A", "b_vA", "J_E")
 @pytest.fixture(scope="module")
 def other(bound):
     """A rig whose azimuth has a fifth more inertia."""
-    J_A = bound.plant.parameters["J_A"]
-    return bind(replace(bound.plant, parameters={**bound.plant.parameters, "J_A": replace(J_A, value=1.2 * J_A.value)}))
+    return off(bound, {"J_A": 1.2})
 
 
 def run_of(rig, seed, nominal):
@@ -57,26 +55,22 @@ def test_two_logs_that_contradict_each_other_are_told_once(bound, other):
 
 
 @pytest.fixture(scope="module")
-def table(bound):
-    """The nominal plant's controller."""
-    return design(bound, read_settings(bound))[0]
+def flown_by_other(other, table):
+    """The project's flight of the other rig under the nominal plant's controller."""
+    return fly_law(other, table, flight(other), substeps=4)
 
 
-def closed_loop(rig, table, from_s):
-    """Forty seconds of the project's flight of that rig under the nominal plant's controller."""
-    log, rows = fly_law(rig, table, flight(rig), substeps=4), slice(100 * from_s, 100 * from_s + 4000)
-    return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
-
-
-def test_closed_loops_of_two_rigs_are_told_apart_though_each_bears_the_other_s_misfit(bound, other, table):
+def test_closed_loops_of_two_rigs_are_told_apart_though_each_bears_the_other_s_misfit(bound, flown, flown_by_other):
     """J_A and 1.2 J_A, within 2 %; by the common fit's residuals alone, 25 times the sensors', they would be one."""
-    logs = {"one": closed_loop(bound, table, 15), "another": closed_loop(other, table, 15)}
+    logs = {"one": cut(flown, 64, 12), "another": cut(flown_by_other, 64, 12)}
     found = identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE"))
     assert [entry.name for entry in found.discords] == ["J_A"]
     assert found.discords[0].own == pytest.approx(bound.parameter("J_A"), rel=0.02)
     assert found.discords[0].others == pytest.approx(1.2 * bound.parameter("J_A"), rel=0.02)
 
 
-def test_closed_loops_of_one_rig_agree(bound, table):
-    logs = {"early": closed_loop(bound, table, 15), "late": closed_loop(bound, table, 60)}
+@pytest.mark.parametrize(("begins_s", "length_s"), sampled([((40, 64), 12), ((15, 60), 40)], keep=[((40, 64), 12)]))
+def test_closed_loops_of_one_rig_agree(bound, flown, begins_s, length_s):
+    """Twelve seconds explain each log whole, forty do so in windows."""
+    logs = {f"from {begin_s} s": cut(flown, begin_s, length_s) for begin_s in begins_s}
     assert identify_logs(bound, logs, ("J_A", "b_vA", "J_E", "b_vE")).discords == ()

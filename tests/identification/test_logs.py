@@ -6,8 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from identification.fit.belief import Belief, stated
 from identification.runs.log_run import run_of
 from identification.search.methods import Search
@@ -22,33 +20,19 @@ from records.log import RunLog
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from sim.loop import fly_law
-from sim.manoeuvres import flight
 from sim.simulate import simulate
+from tests.identification.flights import cut, off
+from tests.soak import SOAK
 
 PLANTS = Path(__file__).parents[2] / "plants"
 NAMES = ("K_M", "J_E", "b_vE", "K_T", "J_A", "b_vA", "K_A")
 real = pytest.mark.skipif(not (datasets_folder() / "emps").is_dir(), reason="the published recordings are not here")
 
 
-@pytest.fixture(scope="module")
-def flown(bound):
-    """The project's flight over both halves of the elevation: a closed loop about an unstable plant."""
-    table, _ = design(bound, read_settings(bound))
-    return fly_law(bound, table, flight(bound), substeps=4)
-
-
-def off(bound, factors):
-    parameters = dict(bound.plant.parameters)
-    for name, factor in factors.items():
-        parameters[name] = replace(parameters[name], value=parameters[name].value * factor)
-    return bind(replace(bound.plant, parameters=parameters))
-
-
 def test_an_unstable_plant_in_a_closed_loop_comes_back_within_its_intervals(bound, flown):
-    """Started 25 % off; true values within 4 sd, and these below 2 %."""
+    """Started 25 % off, from the 40 s in which both axes move most; true values within 4 sd, and these below 2 %."""
     signs = dict(zip(NAMES, (1.25, 0.75, 1.25, 0.75, 1.25, 0.75, 1.25), strict=True))
-    found = identify_logs(off(bound, signs), {"flight": flown}, NAMES)
+    found = identify_logs(off(bound, signs), {"flight": cut(flown, 64.0, 40.0)}, NAMES)
     for name in NAMES:
         sd = float(found.belief.sd[found.belief.names.index(name)])
         assert abs(found.belief.value(name) - bound.parameter(name)) < 4.0 * sd, name
@@ -85,10 +69,9 @@ def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):
 
 def test_a_search_finds_the_way_from_the_edge_of_the_range(bound, flown):
     """Inertia and damping four times off, the same seed twice: the truth, and the same numbers."""
-    start = off(bound, {"J_A": 4.0, "b_vA": 0.25})
+    start, log = off(bound, {"J_A": 4.0, "b_vA": 0.25}), {"flight": cut(flown, 60.0, 12.0)}
     one, other = (
-        identify_logs(start, {"flight": flown}, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution"))
-        for _ in range(2)
+        identify_logs(start, log, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution")) for _ in range(2)
     )
     np.testing.assert_array_equal(one.belief.mean, other.belief.mean)
     assert one.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
@@ -129,21 +112,19 @@ def test_a_log_that_begins_in_flight_is_used_once_its_rotors_start_no_longer_sho
     assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.01)
 
 
-def cut(log, begin_s, length_s):
-    rows = slice(round(begin_s * 100), round((begin_s + length_s) * 100) + 1)
-    return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
-
-
 def test_intervals_from_three_seconds_hold_though_the_rotors_turned_before(bound, flown):
-    """Of what is known to 60 % at least 95 % lies inside; where rotors at rest were believed 0.75 s later it was 32 of 38."""
+    """Of what is known to 60 % at least 95 % lies inside; where rotors at rest were believed 0.75 s later it was 31 of 35.
+
+    The four that were outside then came from the logs at 40, 68 and 72 s, twice as far off as their intervals.
+    """
     names, inside = ("J_E", "b_vE", "J_A", "b_vA"), []
     truth = np.array([bound.parameter(name) for name in names])
-    for begin_s in range(8, 100, 2):
+    for begin_s in range(8, 100, 2) if SOAK else (40, 68, 72):
         found = identify_logs(bound, {"log": cut(flown, begin_s, 3.0)}, names)
         reach = interval_factor(found.dof) * found.belief.sd
         told = reach < 0.6 * np.maximum(truth, found.belief.mean)
         inside += (np.abs(found.belief.mean - truth) <= reach)[told].tolist()
-    assert len(inside) >= 38
+    assert len(inside) >= (38 if SOAK else 6)
     assert np.mean(inside) >= 0.95
 
 

@@ -119,7 +119,8 @@ def test_a_direction_of_which_the_data_know_nothing_is_left_unless_it_promises_a
 
 def test_a_start_from_which_no_motion_comes_back_is_given_back(bound, work):
     """A reaction of 1e150 N m s leaves the range of numbers within a sample."""
-    run = log_run(bound, work.log, "log", 2.0, at_first=work.x0)
+    log = replace(work.log, t_s=work.log.t_s[:50], u=work.log.u[:50], y=work.log.y[:50])
+    run = log_run(bound, log, "log", 2.0, at_first=work.x0)
     point = solve(problem_of((run,), ("K_A",), {"K_A": Range(1e150, 0.0, 1e151, 1e150)}, NOTHING))
     assert point.theta.tolist() == [1e150]
     assert point.steps == 0

@@ -5,25 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from identification.runs.log_run import run_of
 from identification.runs.window_starts import crawling
 from identification.stages.logs import identify_logs
-from sim.loop import fly_law
-from sim.manoeuvres import flight
-
-
-@pytest.fixture(scope="module")
-def flown(bound):
-    """The project's flight."""
-    table, _ = design(bound, read_settings(bound))
-    return fly_law(bound, table, flight(bound), substeps=4)
-
-
-def cut(log, begin_s, length_s):
-    rows = slice(round(begin_s * 100), round((begin_s + length_s) * 100) + 1)
-    return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
+from tests.identification.flights import cut
 
 
 @pytest.fixture(scope="module")
