@@ -22,7 +22,7 @@ from identification.frequency.flights.sweep import design_sweep
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import check_plant
 from identification.proof.monte_carlo import coverage
-from identification.proof.monte_carlo_frequency import FlightOrder
+from identification.proof.monte_carlo_frequency import FlightOrder, Repetition, repeat
 from jobs.job import Job
 from records.errors import BadInput
 from records.log import RunLog, save_log
