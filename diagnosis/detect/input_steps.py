@@ -47,7 +47,13 @@ def _errors(filter_input: FilterInput, column: int, steps: Array) -> Disturbance
     the innovations as its answer
     says; what the model would add moves them the other way."""
     u, h = filter_input.u[:, column, None], np.append(np.diff(filter_input.t_s), 0.0)[:, None]
-    return lambda part: (u[part] - steps * np.round(u[part] / steps)) * h[part]
+
+    def disturbance(part: slice) -> Array:
+        errors: Array = u[part] - steps * np.round(u[part] / steps)
+        pushed: Array = errors * h[part]
+        return pushed
+
+    return disturbance
 
 
 def _target(linearisation: Linearisation, variable: sympy.Symbol) -> int | None:

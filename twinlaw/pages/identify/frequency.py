@@ -130,7 +130,12 @@ def _gain(found: FrequencyIdentification, o: int, i: int) -> Panel:
 def _phase(found: FrequencyIdentification, o: int, i: int) -> Panel:
     """Unwrapped along the model; what is measured goes to the turn next to it."""
     model = np.unwrap(np.angle(found.fit.T[:, o, i]))
-    return Panel("phase [deg]", _curves(found, o, i, lambda T: np.degrees(model + np.angle(T / found.fit.T[:, o, i]))))
+
+    def shown(T: Complex) -> Array:
+        beside: Array = np.angle(T / found.fit.T[:, o, i])
+        return np.degrees(model + beside)
+
+    return Panel("phase [deg]", _curves(found, o, i, shown))
 
 
 def _curves(found: FrequencyIdentification, o: int, i: int, shown: Callable[[Complex], Array]) -> tuple[Curve, ...]:
