@@ -1,9 +1,28 @@
-"""One thread for the linear algebra of every test, as for `twinlaw` itself (this import comes before NumPy's), and no soaks unasked."""
+"""What all tests share: one thread for the linear algebra, as for `twinlaw` itself, no soaks unasked, and one run of the whole chain."""
+
+import fcntl
+import os
+from pathlib import Path
 
 import pytest
 
-import twinlaw as twinlaw
+import twinlaw as twinlaw  # before NumPy, whose threads it counts
 from tests.soak import SOAK
+
+
+@pytest.fixture(scope="session")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """What `make run` leaves, by one process for all tests and all workers of pytest, and what it prints. Nobody may write into it."""
+    from tests.docs import readme  # which needs all of twinlaw, where many tests need little
+
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    folder, printed = shared / "ran", shared / "ran.txt"
+    with (shared / "ran.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not printed.exists():
+            printed.write_text(readme.told(folder), encoding="utf-8")
+    return folder, printed.read_text(encoding="utf-8")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -77,6 +77,7 @@ def shell(command: str, folder: Path) -> None:
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("page", TRIED)
 def test_the_commands_of_a_page_work_in_their_order(page: str, built: Path, tmp_path: Path) -> None:
     if page == "docs/real-data.md" and not (datasets_folder() / "emps").is_dir():

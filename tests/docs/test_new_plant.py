@@ -8,6 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from tests.test_project import PACKAGES, ROOT
 from toolchain.cache import CACHE_DIR
 
@@ -50,6 +52,7 @@ def test_the_page_is_made_of_files_a_diff_programs_and_their_output() -> None:
     assert {block.language for block in found} == {"python", "diff", "toml", "text", "sh"}
 
 
+@pytest.mark.soak
 def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
     for package in PACKAGES:
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))

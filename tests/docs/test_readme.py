@@ -12,34 +12,28 @@ PAGE = readme.README.read_text(encoding="utf-8")
 RENEW = "renew it: .venv/bin/python -m tests.docs.readme"
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    folder = tmp_path_factory.mktemp("readme")
-    return folder, readme.told(folder)
-
-
 def without_figures(text: str) -> list[str]:
     """Lines with every number and the width of every column taken out: figures move with compiler and chip, words must not."""
     return [" ".join(re.sub(r"\b[0-9a-f]{16}\b|-?\d+(\.\d+)?|-{2,}", "#", line).split()) for line in text.splitlines()]
 
 
-def test_the_page_shows_what_a_run_prints(run: tuple[Path, str]) -> None:
-    assert without_figures(readme.shown(PAGE)) == without_figures(run[1]), RENEW
+def test_the_page_shows_what_a_run_prints(ran: tuple[Path, str]) -> None:
+    assert without_figures(readme.shown(PAGE)) == without_figures(ran[1]), RENEW
 
 
-def test_no_figure_on_the_page_is_far_from_the_run_s(run: tuple[Path, str]) -> None:
+def test_no_figure_on_the_page_is_far_from_the_run_s(ran: tuple[Path, str]) -> None:
     """Within 15 %, or 0.01: so far a new compiler may move a figure; a change that the page missed moves it further."""
     digests = re.compile(r"table [0-9a-f]{16}")
     numbers = [
         [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", digests.sub("", text))]
-        for text in (readme.shown(PAGE), run[1])
+        for text in (readme.shown(PAGE), ran[1])
     ]
     assert numbers[0] == pytest.approx(numbers[1], rel=0.15, abs=0.01), RENEW
 
 
-def test_the_plot_is_labelled_as_the_run_s(run: tuple[Path, str]) -> None:
+def test_the_plot_is_labelled_as_the_run_s(ran: tuple[Path, str]) -> None:
     labels = [
-        re.findall(r"<text[^>]*>([^<]*)<", text) for text in (readme.PLOT.read_text("utf-8"), readme.plot(run[0]))
+        re.findall(r"<text[^>]*>([^<]*)<", text) for text in (readme.PLOT.read_text("utf-8"), readme.plot(ran[0]))
     ]
     assert labels[0] == labels[1], RENEW
 

@@ -35,6 +35,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.soak
 def test_every_command_of_the_page_works_and_the_gap_gets_its_name(folder: Path) -> None:
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "TWINLAW_CACHE": str(CACHE_DIR)}

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.soak import sampled
 from toolchain.cache import CACHE_DIR
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -33,10 +34,10 @@ def on_a_terminal(command: list[str], **environment: str) -> str:
     return shown.decode()
 
 
-@pytest.mark.parametrize(
-    ("environment", "coloured"),
-    [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
-)
+TERMINALS = [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)]
+
+
+@pytest.mark.parametrize(("environment", "coloured"), sampled(TERMINALS, keep=TERMINALS[:2]))
 def test_an_error_is_red_where_the_terminal_wants_it(environment: dict[str, str], coloured: bool) -> None:
     shown = on_a_terminal(FAILS, **environment)
     assert "missing.toml" in shown
@@ -56,7 +57,7 @@ def test_who_has_no_home_hears_nothing_of_it() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", sampled(["2>&-", ">&-", "<&- >&- 2>&-"], keep=["<&- >&- 2>&-"]))
 def test_a_stream_that_the_caller_closed_changes_no_exit_status(closed: str) -> None:
     done = subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", *FAILS], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 2

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from records.plant import load_plant
+from records.table import table_text
+from tests.plants import stated_table
 from twinlaw.command import main
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -169,9 +171,9 @@ def test_an_output_folder_that_cannot_be_made_is_named(tmp_path: Path, capsys: p
 
 @pytest.fixture(scope="module")
 def table_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("table")
-    assert main(["design", "--plant", str(ROOT / "plants/ce150.toml"), "--out", str(out)]) == 0
-    return out / "controller.json"
+    path = tmp_path_factory.mktemp("table") / "controller.json"
+    path.write_text(table_text(stated_table("ce150")), encoding="utf-8")
+    return path
 
 
 @pytest.mark.parametrize(

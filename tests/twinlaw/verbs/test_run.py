@@ -2,7 +2,7 @@
 
 import json
 import re
-import tomllib
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -36,10 +36,8 @@ FILES = {
 
 
 @pytest.fixture(scope="module")
-def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("run")
-    assert main(["run", "--plant", str(PLANT), "--out", str(folder)]) == 0
-    return folder
+def out(ran: tuple[Path, str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return shutil.copytree(ran[0], tmp_path_factory.mktemp("run") / "build")
 
 
 def test_run_leaves_the_files_of_the_contract_and_no_others(out: Path) -> None:
@@ -239,11 +237,6 @@ def test_a_board_that_is_lost_in_its_flight_is_one_clear_line_and_not_validated(
     assert "device disconnected" in said
     assert len(said.splitlines()) == 1
     assert {path.name for path in out.iterdir()} == FILES
-
-
-def test_simulate_flies_without_a_board(tmp_path: Path) -> None:
-    assert main(["simulate", "--plant", str(PLANT), "--out", str(tmp_path)]) == 0
-    assert tomllib.loads((tmp_path / "simulation.toml").read_text())["plant"] == "ce150"
 
 
 def test_nothing_is_shown_while_it_works_in_a_pipe(

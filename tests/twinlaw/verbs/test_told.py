@@ -1,6 +1,7 @@
 """What `design` and `simulate` tell of a table and of a flight, as text and as JSON."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -42,10 +43,17 @@ def test_design_says_the_same_to_a_program(tmp_path: Path, capsys: pytest.Captur
         assert said["worst_margins"][axis]["sensitivity"] > 1.0
 
 
-def test_simulate_tells_the_error_of_its_integration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_simulate_flies_and_tells_the_error_of_its_integration(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["simulate", "--json", "--out", str(tmp_path)]) == 0
     said = json.loads(capsys.readouterr().out)
     assert set(said["step_error_rad"]) == {"psi_rad", "phi_rad"}
     assert 0.0 < max(said["step_error_rad"].values()) < 1e-7
+    assert tomllib.loads((tmp_path / "simulation.toml").read_text())["plant"] == "ce150"
+
+
+@pytest.mark.soak
+def test_simulate_says_the_same_to_a_person(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "--out", str(tmp_path)]) == 0
     assert "error of one integration step a sample, by halving it: psi_rad" in capsys.readouterr().out
