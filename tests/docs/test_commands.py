@@ -27,7 +27,7 @@ NOT_TRIED = {
     r"twinlaw run$": "as `make run`: tests/docs/test_readme.py",
     r"twinlaw run --plant plants/mine\.toml": "the chain with another file: docs/identification.md",
     r"twinlaw flash$|twinlaw .*--port /dev/": "needs a board",
-    r"twinlaw flash --port emulated": "needs stm32flash; tests/rig/test_flash.py",
+    r"twinlaw flash --port emulated": "needs stm32flash; tests/rig/programming/test_flash.py",
     r"twinlaw watch": "runs until it is ended; tests/docs/test_tutorial.py does",
     r"twinlaw compare|cp build-compare": "takes minutes; tests/twinlaw/verbs/test_compare.py with fewer flights",
     r"twinlaw envelope": "takes a minute; tests/twinlaw/verbs/test_envelope.py with one condition",

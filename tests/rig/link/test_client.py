@@ -15,7 +15,7 @@ from rig.link.client import BoardClient
 from rig.link.frames import DELIMITER, FrameReceiver, encode_frame
 from rig.link.numbers import Float32Numbers
 from tests.firmware.box import DIGEST
-from tests.rig.box_port import BoxPort
+from tests.rig.link.box_port import BoxPort
 
 TABLE = DIGEST.hex()
 LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")

@@ -1,6 +1,6 @@
 """Frames by the thousand over a line in changing weather, and an account of every one of them.
 
-`.venv/bin/python -m tests.rig.campaign 1000000` prints the account that docs/faults.md shows.
+`.venv/bin/python -m tests.rig.link.campaign 1000000` prints the account that docs/faults.md shows.
 """
 
 import struct
@@ -26,7 +26,7 @@ from rig.link.hostile_line_faults import (
     TruncateFrames,
 )
 from tests.firmware.box import DIGEST, word
-from tests.rig.line_box import LineBox
+from tests.rig.link.line_box import LineBox
 
 SAMPLE = PROTOCOL.message("SAMPLE").code
 BATCH = 500

@@ -23,9 +23,9 @@ from rig.link.hostile_line_faults import (
 from rig.link.port import open_port
 from rig.programming.image import build_firmware
 from tests.firmware.box import stand_in_law
-from tests.rig.campaign import usual_faults
-from tests.rig.hostile_sessions import connect, counted_steps, session
-from tests.rig.timed_box import TimedBox
+from tests.rig.link.campaign import usual_faults
+from tests.rig.link.hostile_sessions import connect, counted_steps, session
+from tests.rig.link.timed_box import TimedBox
 
 UP = Direction.TO_BOARD
 FRAME = b"\x03\x11\x22\x33\x44\x00"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rig.campaign import REFUSALS, Campaign, flown, told
+from tests.rig.link.campaign import REFUSALS, Campaign, flown, told
 from tests.soak import SOAK
 
 FRAMES = 1_000_000 if SOAK else 100_000
@@ -49,7 +49,7 @@ def test_every_piece_that_the_host_heard_is_in_exactly_one_counter(campaign):
 
 @pytest.mark.soak
 def test_the_documented_account_is_that_of_a_million_frames(campaign, counted):
-    page = Path(__file__).resolve().parents[2] / "docs" / "faults.md"
+    page = Path(__file__).resolve().parents[3] / "docs" / "faults.md"
     assert told(campaign, counted) in page.read_text(encoding="utf-8")
 
 

@@ -9,8 +9,8 @@ from rig.flight.timing import ROUNDS, SAMPLES, line_timing
 from rig.link.client import Refused
 from rig.link.hostile_line import HostileLine
 from rig.link.hostile_line_faults import HostPause
-from tests.rig.hostile_sessions import connect, counted_steps
-from tests.rig.timed_box import BYTE_S, TICK_S, TimedBox
+from tests.rig.link.hostile_sessions import connect, counted_steps
+from tests.rig.link.timed_box import BYTE_S, TICK_S, TimedBox
 
 LONGER_THAN_PATIENCE_S = 0.15
 RAMP = 8

@@ -1,6 +1,6 @@
 """Steps of the fixed-point law by the thousand, each a frame to the whole image and one back, over a line in bad weather.
 
-`.venv/bin/python -m tests.rig.image_campaign 1000000` prints the account that docs/faults.md shows.
+`.venv/bin/python -m tests.rig.link.image_campaign 1000000` prints the account that docs/faults.md shows.
 """
 
 import sys
@@ -23,7 +23,7 @@ from rig.link.numbers import numbers_of
 from rig.link.port import open_port
 from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
-from tests.rig.campaign import REFUSALS, usual_faults
+from tests.rig.link.campaign import REFUSALS, usual_faults
 from verification.fixed_stimuli import fixed_sequences
 from verification.host_law import host_law
 from verification.stateless import Stateless

@@ -4,8 +4,8 @@ import pytest
 
 from rig.link.hostile_line import HostileLine
 from rig.link.hostile_line_faults import AtByte, Direction
-from tests.rig.hostile_sessions import complete_or_one_line, connect, counted_steps, session
-from tests.rig.timed_box import BYTE_S, TICK_S, TimedBox
+from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session
+from tests.rig.link.timed_box import BYTE_S, TICK_S, TimedBox
 from tests.soak import SOAK
 
 SAMPLES = 200

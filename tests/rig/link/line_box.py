@@ -10,7 +10,7 @@ from rig.programming.image import FIRMWARE_DIR, control_sources
 from tests.firmware.box import HERE as BOX
 from toolchain.host import CText, build_shared, load_shared
 
-HERE = BOX.parent / "rig"
+HERE = BOX.parent / "rig" / "link"
 LINE = EMULATOR / "line"
 BIT_PS = 1_085_069
 _CDEF = """

@@ -10,7 +10,7 @@ from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
 from tests.law_tables import ce150_table
 from tests.verification.cycles import nasty_floats, stimuli
-from tests.verification.static_programs import program
+from tests.verification.static_bound.static_programs import program
 from verification.static_bound import static_bound
 
 Words = NDArray[np.uint32]

@@ -27,8 +27,8 @@ from rig.link.hostile_line_faults import (
 from rig.link.port import open_port
 from rig.programming.image import build_firmware
 from tests.firmware.box import stand_in_law
-from tests.rig.campaign import usual_faults
-from tests.rig.hostile_sessions import complete_or_one_line, connect, counted_steps, session
+from tests.rig.link.campaign import usual_faults
+from tests.rig.link.hostile_sessions import complete_or_one_line, connect, counted_steps, session
 from tests.soak import SOAK
 
 TICK_S = 0.01

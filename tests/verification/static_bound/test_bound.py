@@ -4,7 +4,7 @@ import pytest
 
 from records.errors import BadInput, VerificationFailed
 from rig.emulator.board import EmulatedBoard
-from tests.verification.static_programs import INSTRUCTIONS, RETURN_CYCLES, instruction_name, program
+from tests.verification.static_bound.static_programs import INSTRUCTIONS, RETURN_CYCLES, instruction_name, program
 from verification.static_bound import LoopBound, exception_stack_bytes, static_bound, thumb_cycles
 
 SCRATCH = 0x20000100

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from records.errors import BadInput
-from tests.verification.static_programs import program
+from tests.verification.static_bound.static_programs import program
 from verification.static_bound import kept, kept_bound, static_bound
 
 
