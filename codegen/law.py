@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import jinja2
@@ -72,7 +73,13 @@ def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[st
         raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
     context = shared_context(table, arithmetic) | _CONTEXTS[arithmetic](table)
     templates = _TEMPLATES[arithmetic]
-    return {name: c_environment().get_template(template).render(context) for name, template in templates.items()}
+    return {name: _environment().get_template(template).render(context) for name, template in templates.items()}
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    """Those of this stage alone; a template is compiled once, which takes longer than to render it."""
+    return c_environment()
 
 
 def c_environment(*loaders: jinja2.BaseLoader) -> jinja2.Environment:

@@ -1,6 +1,9 @@
 """The declared serial protocol as C text: `protocol.h` and `protocol.c`."""
 
+from functools import cache
 from pathlib import Path
+
+import jinja2
 
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 from toolchain.templates import text_templates
@@ -10,8 +13,6 @@ _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 def protocol_source(protocol: Protocol) -> dict[str, str]:
     """Return {"protocol.h": ..., "protocol.c": ...}: a pure function, the same text for the same declaration."""
-    environment = text_templates(_TEMPLATES)
-    environment.filters["c_name"] = _c_name
     facts = {
         "protocol": protocol,
         "schema_bytes": ", ".join(f"0x{byte:02x}" for byte in protocol.schema_hash),
@@ -23,7 +24,14 @@ def protocol_source(protocol: Protocol) -> dict[str, str]:
         "unpack_lines": _unpack_lines,
         "declaration": _declaration,
     }
-    return {name: environment.get_template(f"{name}.j2").render(facts) for name in ("protocol.h", "protocol.c")}
+    return {name: _environment().get_template(f"{name}.j2").render(facts) for name in ("protocol.h", "protocol.c")}
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = text_templates(_TEMPLATES)
+    environment.filters["c_name"] = _c_name
+    return environment
 
 
 def _c_name(name: str) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import cache
 from typing import Any
 
 import jinja2
@@ -32,10 +33,15 @@ def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> M
         "gain_fields": [(field.name, _shape(getattr(gains, field.name))) for field in fields(gains)],
         "test": self_test(table, EquationTwin(equations, table)),
     }
+    templates = {"law.h": "law.h.j2", "law.c": template, "law_self_test.c": "law_self_test.c.j2"}
+    return {name: _environment().get_template(file).render(context) for name, file in templates.items()}
+
+
+@cache
+def _environment() -> jinja2.Environment:
     environment = c_environment(jinja2.PackageLoader("controllers", "templates"))
     environment.globals["initialiser"] = initialiser
-    templates = {"law.h": "law.h.j2", "law.c": template, "law_self_test.c": "law_self_test.c.j2"}
-    return {name: environment.get_template(file).render(context) for name, file in templates.items()}
+    return environment
 
 
 def initialiser(value: Any) -> str:
