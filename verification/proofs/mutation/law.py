@@ -1,9 +1,9 @@
 """Mutants of the generated C against the stimuli of the equality checks and the self-test."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from verification.host_law import HostLaw
-from verification.proofs.mutation.judge import whole_behaviour
+from verification.proofs.mutation.judge import Behaviour, whole_behaviour
 from verification.proofs.mutation.mutants_c import Mutant, mutated_c
 from verification.stimuli import Stimulus
 
@@ -23,21 +23,24 @@ class MutatedLaw(HostLaw):
 
 
 def judged_c(
-    law: Mapping[str, str], arithmetic: str, stimuli: Sequence[Sequence[Stimulus]]
+    law: Mapping[str, str],
+    arithmetic: str,
+    stimuli: Sequence[Sequence[Stimulus]],
+    look: Callable[[HostLaw, Sequence[Stimulus]], Behaviour] = whole_behaviour,
 ) -> Iterator[tuple[Mutant, bool]]:
-    """Each mutant of law.c and whether it is noticed by the first or a later one of the `stimuli`, short ones first.
+    """Each mutant of law.c and whether a `look` at it notices it under the first or a later one of the `stimuli`, short ones first.
 
     Raises ValueError where the unmutated copy is not the law.
     """
     made = mutated_c(dict(law), "law.c")
     mutated = MutatedLaw({**law, "law.c": made.text}, arithmetic, flags=_FLAGS)
     original = HostLaw(law, arithmetic)
-    truths = [whole_behaviour(original, part) for part in stimuli]
+    truths = [look(original, part) for part in stimuli]
     mutated.choose(0)
-    if any(truth.differs(whole_behaviour(mutated, part)) for truth, part in zip(truths, stimuli, strict=True)):
+    if any(truth.differs(look(mutated, part)) for truth, part in zip(truths, stimuli, strict=True)):
         raise ValueError("the copy of law.c for mutants is not the law without them")
     for mutant in made.mutants:
         mutated.choose(mutant.number)
         pairs = zip(truths, stimuli, strict=True)
-        yield mutant, any(truth.differs(whole_behaviour(mutated, part)) for truth, part in pairs)
+        yield mutant, any(truth.differs(look(mutated, part)) for truth, part in pairs)
     mutated.choose(0)

@@ -20,7 +20,7 @@ from verification.proofs.deviations import Finding, judge, load_deviations
 from verification.proofs.mutation.judge import stepped, stimuli_of
 from verification.proofs.mutation.law import judged_c
 from verification.proofs.mutation.mutants_python import mutated_twin, python_mutants
-from verification.proofs.mutation.twin import Truth, is_table_noticed, is_twin_noticed, table_mutants
+from verification.proofs.mutation.twin import Truth, is_table_noticed, is_twin_noticed, table_mutants, twin_facts
 from verification.proofs.subject import Subject
 
 NAME = "mutation score"
@@ -94,8 +94,10 @@ def twin_score(subject: Subject) -> Score:
     """Mutants of the twin's own text, against the compiled C."""
     law = {name: text for name, text in subject.generated.items() if name.startswith("law")}
     truths = _truths(HostLaw(law, subject.arithmetic), subject)
-    mutants = _sampled(list(python_mutants(subject.arithmetic)), subject)
-    judged = [(str(mutant), is_twin_noticed(subject.table, subject.arithmetic, mutant, truths)) for mutant in mutants]
+    table, arithmetic = subject.table, subject.arithmetic
+    facts = twin_facts(mutated_twin(arithmetic, None)(table), table)
+    mutants = _sampled(list(python_mutants(arithmetic)), subject)
+    judged = [(str(mutant), is_twin_noticed(table, arithmetic, mutant, facts, truths)) for mutant in mutants]
     return _score("twin", judged, subject)
 
 

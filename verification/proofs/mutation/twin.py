@@ -19,6 +19,8 @@ from verification.proofs.mutation.judge import Behaviour, stepped
 from verification.proofs.mutation.mutants_python import PythonMutant, mutated_twin
 from verification.stimuli import Stimulus
 
+Facts = tuple[object, ...]
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -32,19 +34,18 @@ _ANGLES = [(0, 0), (1, -1), (7, 9), (-511, 403), (1024, 1365), (2**31 - 1, -(2**
 _VOLTAGES = (math.nan, 0.0, 5.0, -5.0, 0.0015625, -0.0015625, 10.0, -10.0, 1e4, -1e4)
 
 
-def is_twin_noticed(table: ControllerTable, arithmetic: str, mutant: PythonMutant, truths: Sequence[Truth]) -> bool:
-    """Whether the twin with this change is told from the C by one of the `truths`."""
+def is_twin_noticed(
+    table: ControllerTable, arithmetic: str, mutant: PythonMutant, facts: Facts, truths: Sequence[Truth]
+) -> bool:
+    """Whether the twin with this change is told by the `facts` of the unchanged one, or from the C by one of the `truths`."""
     try:
         twin = mutated_twin(arithmetic, mutant)(table)
-        genuine = mutated_twin(arithmetic, None)(table)
-        if twin_facts(twin, table) != twin_facts(genuine, table):
-            return True
-        return is_table_noticed(twin, truths)
+        return twin_facts(twin, table) != facts or is_table_noticed(twin, truths)
     except Exception:  # a twin that stops, for whatever reason, is noticed
         return True
 
 
-def twin_facts(twin: Any, table: ControllerTable) -> tuple[object, ...]:
+def twin_facts(twin: Any, table: ControllerTable) -> Facts:
     """What a twin says before it was reset, what it records for the self-test, its angles and its duties."""
     fresh = twin.step(0.1, 0.1, 0.0, 0.0)
     angles = tuple(
