@@ -13,7 +13,7 @@ from records.protocol import PROTOCOL
 from toolchain.calls import callers_of
 from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
 from toolchain.host import CText, Source
-from toolchain.target import TARGET_FLAGS, build_image
+from toolchain.target import build_image
 
 FIRMWARE_DIR = Path(__file__).resolve().parents[2] / "firmware"
 # Routines of the ARM run-time ABI and of compiler-rt for floats, doubles and divisions.
@@ -34,7 +34,7 @@ class FirmwareImage:
 
 
 def build_firmware(
-    generated: Mapping[str, str], out_dir: Path | None = None, *, optimisation: str = "-O2", board: Board = STM32G071
+    generated: Mapping[str, str], out_dir: Path | None = None, *, board: Board = STM32G071
 ) -> FirmwareImage:
     """Build the firmware of `board` around the `generated` law (file name -> text: law.h, law.c and what they include).
 
@@ -47,11 +47,8 @@ def build_firmware(
         *board_sources(board),
         *(CText(name, text) for name, text in sorted(texts.items())),
     ]
-    flags = (optimisation, *(flag for flag in TARGET_FLAGS if not flag.startswith("-O")))
     folders = [FIRMWARE_DIR / "control", *board_folders(board)]
-    elf = build_image(
-        "firmware", sources, linker_script(board), include_dirs=folders, flags=flags, core=board.core
-    ).read_bytes()
+    elf = build_image("firmware", sources, linker_script(board), include_dirs=folders, core=board.core).read_bytes()
     image = describe_image(elf, "firmware.elf")
     if "#define LAW_ARITHMETIC_CODE 1 " in texts.get("law.h", ""):
         refuse_soft_arithmetic(image)

@@ -22,11 +22,12 @@ from codegen.law_equations import (
 from codegen.twin import Float32Lanes, Float32Scalars, Float32Twin
 from records.table import ControllerTable
 from tests.law_tables import ce150_table, changed_axis, dense_table
+from tests.soak import SOAK
 from verification.affine import AffineArithmetic, half_ulp
 from verification.ranges import LawRanges, Motion, declared_ranges, share_within
 from verification.rounding import restricted_voltages, rounding_bound
 
-SAMPLES = 200_000
+SAMPLES = 200_000 if SOAK else 50_000
 AXES = ("elevation", "azimuth")
 Lanes = NDArray[np.float32]
 

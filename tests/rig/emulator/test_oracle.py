@@ -17,9 +17,11 @@ from tests.rig.emulator.thumb import (
     random_instruction,
     random_registers,
 )
+from tests.soak import SOAK, sampled
 
 FLASH, RAM = STM32G071.flash, STM32G071.ram
-SHARDS, SLOTS, VISITS = 4, 6900, 8  # 220 800 instructions, of which some 7 % are unaligned accesses
+# 220 800 instructions in a soak, 13 800 else; some 7 % are unaligned accesses.
+SHARDS, SLOTS, VISITS = range(4), 6900, 8 if SOAK else 2
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
 STRIDE = 8
 SOFT = """
@@ -56,7 +58,7 @@ def told(instruction: Instruction, registers: list[int], xpsr: int) -> str:
     return f"{instruction.kind} {[hex(h) for h in instruction.halfwords]} with {[hex(r) for r in registers]} {xpsr:#x}"
 
 
-@pytest.mark.parametrize("shard", range(SHARDS))
+@pytest.mark.parametrize("shard", sampled(SHARDS, keep=[0]))
 def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicorn(shard: int) -> None:
     rng = np.random.default_rng(7100 + shard)
     flash, instructions = laid_out(rng)
@@ -81,9 +83,9 @@ def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicor
             assert ours == theirs, told(instruction, registers, xpsr)
             executed[instruction.kind] = executed.get(instruction.kind, 0) + (not ours.faulted)
         assert board.read_memory(RAM.start, RAM.size_bytes) == oracle.sram()
-    assert compared >= 50_000
+    assert compared >= 0.9 * SLOTS * VISITS
     assert set(executed) == {*CLASSES, *HIGH_CLASSES, *LONG_CLASSES}
-    assert min(executed.values()) > 100, executed
+    assert min(executed.values()) > 12 * VISITS, executed
 
 
 @pytest.mark.parametrize("name", ["scale", "divide", "product"])

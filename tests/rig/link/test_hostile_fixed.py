@@ -14,9 +14,9 @@ from verification.fixed_stimuli import fixed_sequences
 from verification.stimuli import Stimulus
 
 TABLE = ce150_table()
-STEPS = 20
+STEPS = 20 if SOAK else 8
 EVERY_NTH = 1 if SOAK else 149  # byte of a session
-FRAMES = 1_000_000 if SOAK else 1_500
+FRAMES = 1_000_000 if SOAK else 750
 LANE_STEPS = 250
 
 

@@ -31,7 +31,7 @@ def attacked(direction: Direction, how: str, n: int, samples: int) -> bool:
 @pytest.mark.parametrize("direction", list(Direction), ids=lambda direction: direction.value)
 @pytest.mark.parametrize("how", SURVIVED)
 def test_a_session_attacked_at_its_nth_byte_ends_well_or_in_one_line_and_the_next_works_at_once(direction, how):
-    samples = SAMPLES if SOAK else 4
+    samples = SAMPLES if SOAK else 1
     n = 0
     while attacked(direction, how, n, samples):
         n += 1
@@ -40,9 +40,9 @@ def test_a_session_attacked_at_its_nth_byte_ends_well_or_in_one_line_and_the_nex
 
 @pytest.mark.parametrize("direction", list(Direction), ids=lambda direction: direction.value)
 @pytest.mark.parametrize("how", SURVIVED)
-def test_so_does_a_long_session_at_every_397th_byte(direction, how):
-    struck = [attacked(direction, how, n, SAMPLES) for n in range(40, 8_000, 397)]
-    assert sum(struck) > 10
+def test_so_does_a_long_session_at_a_byte_of_each_of_its_parts(direction, how):
+    struck = [attacked(direction, how, n, SAMPLES) for n in range(40, 8_000, 397 if SOAK else 1_985)]
+    assert sum(struck) > len(struck) // 2
 
 
 def test_telemetry_of_an_earlier_host_is_not_taken_for_that_of_the_next():

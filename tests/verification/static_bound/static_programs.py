@@ -77,6 +77,7 @@ KEPT unsigned large_frame(unsigned a) {
     for (unsigned i = 0; i < 300; i++) v[i] = a + i;
     return v[a & 15u];
 }
+KEPT unsigned byte_quotient(unsigned a, unsigned b) { return (a & 0xffu) / (b & 0xffu); }
 KEPT unsigned quotient(unsigned a, unsigned b) { return a / b; }
 KEPT float sum(float a, float b) { return a + b; }
 KEPT float product(float a, float b) { return a * b; }

@@ -10,6 +10,7 @@ from unicorn import UC_ARCH_ARM, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
 from unicorn.arm_const import UC_ARM_REG_APSR, UC_ARM_REG_R0, UC_CPU_ARM_CORTEX_M0
 
 from records.errors import VerificationFailed
+from tests.soak import SOAK
 from verification.static_bound import words
 from verification.static_bound.elf_image import ElfImage
 from verification.static_bound.state import UNKNOWN_FLAGS, State, assume_all
@@ -18,7 +19,8 @@ from verification.static_bound.thumb import CONDITIONS, Instruction, decode
 from verification.static_bound.words import MASK, Word
 
 CODE = 0x08000000
-PROGRAMS, LENGTH, SEED = 3000, 4, 30
+PROGRAMS, LENGTH, SEED = 3000 if SOAK else 600, 4, 30
+EXAMPLES = 300 if SOAK else 60
 NOTHING = ElfImage((), {}, {}, ())
 
 
@@ -139,14 +141,14 @@ BINARY: dict[str, tuple[Callable[[Word, Word], Word], Callable[[int, int], int]]
 
 
 @pytest.mark.parametrize("name", BINARY)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 @given(a=WORDS, b=WORDS, seed=st.integers(0, 2**32))
 def test_an_operation_on_sets_holds_the_operation_on_members(name: str, a: int, b: int, seed: int) -> None:
     rng, (on_sets, on_numbers) = random.Random(seed), BINARY[name]
     assert contains(on_sets(set_around(a, rng), set_around(b, rng)), on_numbers(a, b) & MASK)
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=2 * EXAMPLES, deadline=None)
 @given(a=WORDS, low=WORDS, span=WORDS, seed=st.integers(0, 2**32))
 def test_cutting_and_listing_a_set_loses_no_member(a: int, low: int, span: int, seed: int) -> None:
     word = set_around(a, random.Random(seed))
