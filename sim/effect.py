@@ -2,14 +2,48 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 
 import sympy
 
 from sim.model import Model, ParameterSpec
 from sim.paths.path import InputStage, OutputStage
+from sim.prior import RARE, Prior, Unlikely
 
 Values = Mapping[str, float]
 TOUCH = 1e-9
+
+
+class Role(Enum):
+    """What a number of a formula is: by it, not by a name, a diagnosis knows how to look for it. One of each in an effect at most.
+
+    NUMBER is found by its slopes from its `starts`, as most are. An effect with an INSTANT is an event: instants, and the DURATION of
+    what ends, are found from the answers to steps in time. One with a PHASE swings: RATE (rad/s) or WAVES (rad a unit of the way) are
+    found from the answers to sines. The others: see each.
+    """
+
+    NUMBER = "nothing further"
+    INSTANT = "when it happens, s from the log's beginning"
+    DURATION = "how long it lasts, s"
+    RATE = "how fast a sine goes in time"
+    WAVES = "how often a sine goes on the way"
+    PHASE = "where a sine begins"
+    LATENESS = "by how much a signal is late, s"
+    JITTER = (
+        "by how much lateness scatters, s: found by the likelihood, as readings that are less sure have no slope by it"
+    )
+    STEP = (
+        "the step of a grid: on a sensor read off the readings, on an input found from the answers to rounding errors"
+    )
+    JUMP = "a jump of a reading by counts: less than a count is none"
+    LEVEL = "an input's largest size: nothing happens below it, so it is tried at shares of the largest command"
+    SLOPE = "an input's largest rate: nothing happens below it"
+    LOSS = "the share of commands that are lost, each run other ones: found from the answers to each frame's loss"
+    STRENGTH = "standard deviation of what is random, each run anew: found by the likelihood beside MEMORY"
+    MEMORY = "correlation time of what is random, s"
+
+
+LIMITS = (Role.LEVEL, Role.SLOPE)
 
 
 @dataclass(frozen=True)
@@ -18,7 +52,9 @@ class EffectParameter:
 
     `zero` is the value at which the effect vanishes, None for a number that only shapes it; `reference` is a size that one may meet
     on such a rig. `starts` are the values from which a fit begins where one is not enough; all lie within [lower, upper]. One that is
-    `refining` is 0 in the effect's plain formula, and a plant file may leave it out.
+    `refining` is 0 in the effect's plain formula, and a plant file may leave it out. Where `rough`, the likelihood by it has too many
+    tops for slopes: a fit tries values beside it, and the choice among them costs evidence. `unlikely` values make another cause
+    of what fits.
     """
 
     symbol: str
@@ -29,6 +65,9 @@ class EffectParameter:
     zero: float | None = None
     starts: tuple[float, ...] = ()
     refining: bool = False
+    role: Role = Role.NUMBER
+    rough: bool = False
+    unlikely: Unlikely | None = None
 
     @property
     def is_size(self) -> bool:
@@ -46,6 +85,21 @@ class EffectParameter:
         return self.first + TOUCH * (self.reference - self.first)
 
 
+@dataclass(frozen=True)
+class FilterState:
+    """The state by which a filter carries what a simulation carries otherwise: on the way of a signal, or as one draw of many.
+
+    edit(model, on, *symbols) is the model with the state `name`, without anything of it where the switch `on` is 0. It begins at 0, or
+    where the output that it `follows` is first read. One that noise drives has noise(values) -> intensity of the noise on its rate
+    [unit^2/s], and its variance [unit^2] at the start.
+    """
+
+    name: str
+    edit: Callable[..., Model]
+    follows: str = ""
+    noise: Callable[[Values], tuple[float, float]] | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Effect:
     """One effect at one place of one plant.
@@ -59,7 +113,12 @@ class Effect:
 
     It acts in one of three ways. `edit` changes the equations: edit(model, *symbols). `applied` says what arrives of the inputs at the
     equations, without memory: applied(*symbols) -> {input: expression}. `on_input` and `on_output` give a stage with memory on the way
-    of the inputs or of one output from the values by symbol.
+    of the inputs or of one output from the values by symbol. A filter carries it likewise, or by a `filter_state`.
+
+    `prior` is what one believes of it before any log. Where `holds_at_rest` is true it is dry friction that keeps its axis at rest by
+    its level, of which slopes in motion know nothing. Where `needs_gravity` it is gone when the rig is mounted so that gravity turns no
+    axis. `term` is the term of angle and speed that it is in a plain regression, `said` its kind in words where that is more than the
+    name without underscores.
     """
 
     name: str
@@ -77,6 +136,12 @@ class Effect:
     same_as: str = ""
     names_a_gap: bool = True
     repeats: bool = True
+    filter_state: FilterState | None = None
+    prior: Prior = RARE
+    holds_at_rest: bool = False
+    needs_gravity: bool = False
+    term: str = ""
+    said: str = ""
 
     @property
     def place(self) -> str:
@@ -99,9 +164,65 @@ class Effect:
         return {parameter.symbol: parameter for parameter in self.parameters}
 
     @property
+    def absent(self) -> Values:
+        """Values at which it is not there, its shapes middling."""
+        return {parameter.symbol: parameter.first for parameter in self.parameters}
+
+    @property
     def size(self) -> EffectParameter:
         """The first parameter with which it vanishes."""
         return next(parameter for parameter in self.parameters if parameter.is_size)
+
+    def having(self, *roles: Role) -> EffectParameter | None:
+        """Its parameter of one of these roles; None where it has none."""
+        return next((parameter for parameter in self.parameters if parameter.role in roles), None)
+
+    def symbol(self, *roles: Role) -> str:
+        """The symbol of that parameter; an error where it has none."""
+        found = self.having(*roles)
+        if found is None:
+            raise LookupError(f"{self.name} has no {' or '.join(role.name for role in roles)} (sim/effect.py, Role)")
+        return found.symbol
+
+    @property
+    def is_event(self) -> bool:
+        """Whether it happens at an instant."""
+        return self.having(Role.INSTANT) is not None
+
+    @property
+    def swings(self) -> bool:
+        """Whether it is a sine of something."""
+        return self.having(Role.PHASE) is not None
+
+    @property
+    def is_limit(self) -> bool:
+        """Whether it does nothing at all until its size is reached."""
+        return self.having(*LIMITS) is not None
+
+    @property
+    def shown_in_readings(self) -> bool:
+        """Whether its number is read off the log: a sensor's coarse readings lie on its grid, and on no grid a little beside it."""
+        return self.on_output is not None and self.having(Role.STEP) is not None
+
+    @property
+    def loses_commands(self) -> bool:
+        """Whether commands are lost by it."""
+        return self.having(Role.LOSS) is not None
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether a filter carries it as a state that noise drives."""
+        return self.filter_state is not None and self.filter_state.noise is not None
+
+    @property
+    def is_random(self) -> bool:
+        """Whether each run has it anew, so that no prediction can know it."""
+        return self.loses_commands or self.is_noise
+
+    @property
+    def reads_late(self) -> bool:
+        """Whether a filter carries it as a state that follows an output, and reads that."""
+        return self.filter_state is not None and bool(self.filter_state.follows)
 
     @property
     def on_equations(self) -> bool:

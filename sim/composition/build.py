@@ -66,7 +66,8 @@ def paths_with(nominal: Model, values: Mapping[str, Values]) -> tuple[tuple[Inpu
 
 
 def _follows_equations(effect: Effect) -> bool:
-    return effect.kind in ("slew_limit", "lag") and not effect.place.endswith("_sensor")
+    """Whether an effect is a stage behind those that change an input without memory."""
+    return effect.on_input is not None and effect.on_input(effect.absent).order > Memoryless.order
 
 
 def _added(model: Model, effect: Effect) -> Model:

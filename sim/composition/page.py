@@ -1,10 +1,12 @@
 """docs/effects.md: every effect of the library in plain words, made from the library itself."""
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 
 from sim.effect import Effect, EffectParameter
 from sim.effects import effects_for
 from sim.plants import MODELS
+from sim.prior import COMMON, RARE, Unlikely
 
 INTRODUCTION = """# The library of effects
 
@@ -40,10 +42,16 @@ command, a torque, a speed, a turn, which the plant's equations state (`Places`)
 rig. Within them the diagnosis takes every size for likely, so they are wide; the sources below are of the equations, and of the
 sizes where one is named.
 
+The prior is what one believes of an effect before any log, in log odds: 0 of one that rigs of this kind are known for, -2 of one that
+is possible; what differs is said below, with the values of a number that make it less probable.
+
 An effect of one's own is one file in `sim/effects/`, made known to `FAMILIES` in its `__init__.py`, in the order in which it acts.
 It then is in the library of every plant that has its place, in the simulation, the diagnosis and this page (`python -c "from
-sim.composition.page import *; print(effects_page(), end='')"`). Before any log it counts as rare; `diagnosis/decide/prior.py` names
-those that are common.
+sim.composition.page import *; print(effects_page(), end='')"`). All that is its own stands in that file, also what a diagnosis
+must know of it (`sim/effect.py` says of each field what it does): its `prior` with the reason, of each number its `role`, by which
+starts of a fit are looked for, and `unlikely` values, and a `filter_state` where a filter carries it otherwise than a simulation. A
+plain one states none of these and counts as possible. A stage of a new kind on the way of an output has a row more in `READ_BACK` of
+`diagnosis/library/sensor_effects.py` and in `READ` of `diagnosis/validate/prediction.py`, without which a diagnosis ends and says so.
 """
 
 
@@ -59,9 +67,10 @@ def effects_page() -> str:
 
 
 def _rows(effects: Iterable[Effect]) -> list[str]:
-    head = ["| effect | depends on | equation | parameters |", "|---|---|---|---|"]
+    head = ["| effect | depends on | equation | parameters | prior |", "|---|---|---|---|---|"]
     return head + [
-        f"| `{effect.name}` | {_cell(effect.depends)} | {_cell(effect.equation)} | {_parameters(effect)} |"
+        f"| `{effect.name}` | {_cell(effect.depends)} | {_cell(effect.equation)} | {_parameters(effect)} "
+        f"| {effect.prior.log_odds:g} |"
         for effect in effects
     ]
 
@@ -89,13 +98,35 @@ def _words() -> list[str]:
         twins = {name: reason for effect in effects.values() for name, reason in effect.twins.items()}
         stories = " ".join(dict.fromkeys(effect.story for effect in effects.values()))
         sources = "; ".join(dict.fromkeys(effect.source for effect in effects.values()))
-        lines.append(f"- **{kind}**: {stories} Source: {sources}.{_twins(twins)}")
+        beliefs = "".join(dict.fromkeys(belief for effect in effects.values() for belief in _beliefs(effect)))
+        lines.append(f"- **{kind}**: {stories} Source: {sources}.{beliefs}{_twins(twins)}")
     return lines
 
 
 def _kind(effect: Effect) -> str:
     where = next((end for end in ("sensor", "rotor", "loop") if effect.place.endswith(end)), "")
     return f"{effect.kind} ({where})" if where else effect.kind
+
+
+def _beliefs(effect: Effect) -> Iterator[str]:
+    """What is believed of an effect beyond that it is known or possible."""
+    prior = effect.prior
+    if prior not in (COMMON, RARE):
+        yield f" Prior {prior.log_odds:g}: {prior.reason}."
+    if prior.frictionless:
+        yield f" On an axis without stated friction {prior.frictionless:g} more."
+    for parameter in effect.parameters:
+        unlikely = parameter.unlikely
+        if unlikely is not None:
+            yield f" {parameter.symbol} {_values(parameter, unlikely)}: {unlikely.log_odds:g} more, as {unlikely.reason}."
+
+
+def _values(parameter: EffectParameter, unlikely: Unlikely) -> str:
+    if unlikely.steps:
+        return f"of less than {unlikely.steps:g} steps of the sensor"
+    side, edge = ("above", unlikely.above) if math.isfinite(unlikely.above) else ("below", unlikely.below)
+    beyond = f"{side} {edge:g} {parameter.unit}" if edge and parameter.unit != "-" else f"{side} {edge:g}"
+    return f"{beyond} beside lost commands" if unlikely.beside_losses else beyond
 
 
 def _twins(twins: Mapping[str, str]) -> str:

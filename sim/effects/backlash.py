@@ -11,6 +11,7 @@ from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.paths.input_stages import InputPlay
 from sim.paths.output_stages import Play
+from sim.prior import COMMON, RARE
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -25,6 +26,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation="y follows the angle through a play of the given width",
             story="The encoder's coupling has play: after a reversal it stands still for a moment.",
             source="play operator",
+            prior=COMMON,
             on_output=lambda values, output=output: Play(output, values["width"]),
             smooth=False,
             twins={f"{place}.quantization": "both hold the reading still near a reversal"},
@@ -39,6 +41,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{entry.variable} follows its command through a play of the given width",
             story="The driver lets small changes pass by: its output moves only when the command has gone far enough.",
             source="hysteresis of a driver, a worn potentiometer",
+            prior=RARE if place.endswith("_input") else COMMON,  # set rare among several inputs
             on_input=lambda values, column=column: InputPlay(column, values["width"]),
             smooth=False,
         )

@@ -12,6 +12,7 @@ import sympy
 from sim.edits import axis_of, short, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, one_way
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -31,13 +32,23 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{axis}.cable_spring",
             depends=f"torque({angle})",
             parameters=(
-                EffectParameter("k", f"{entry.torque_unit} {unit}^-1", -0.5 * size, 2.0 * size, 0.05 * size, 0.0),
+                EffectParameter(
+                    "k",
+                    f"{entry.torque_unit} {unit}^-1",
+                    -0.5 * size,
+                    2.0 * size,
+                    0.05 * size,
+                    0.0,
+                    unlikely=one_way("a spring pulls back"),
+                ),
                 EffectParameter("angle_0", unit, -4.0, 4.0, 0.0, starts=(0.0, -0.5, 0.5)),
                 EffectParameter("h", f"{unit}^-2", 0.0, 1.0, 0.0, None, (0.1,), refining=True),
             ),
             equation=f"- k x (1 + h x^2), x = {angle} - angle_0",
             story="The cables to the moving part bend and pull it back to one angle.",
             source="Hooke's law; the cubic term is that of Duffing's spring",
+            prior=COMMON,
+            term="angle",
             edit=lambda model, k, angle_0, h, axis=axis: with_torque(
                 model, axis, -k * _bent(axis_of(model, axis).position - angle_0, h)
             ),

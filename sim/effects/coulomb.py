@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from sim.edits import axis_of, short, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -24,6 +25,10 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"- b sgn({angle}')",
             story="The bearing rubs with a constant force: the axis stops early and sticks until pushed hard enough.",
             source="Coulomb friction",
+            prior=COMMON,
+            holds_at_rest=True,
+            term="sgn(speed)",
+            said="Coulomb friction",
             edit=lambda model, b, axis=axis: with_friction(model, axis, b),
             twins={f"{axis}.stribeck": "with little motion at the Stribeck speed only the level shows"},
             same_as="" if level == 0 else str(level),

@@ -10,6 +10,7 @@ import sympy
 from sim.edits import SHARP, knee
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -26,6 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> sgn({u}) max(|{u}| - d, 0), its corner rounded over d (1 -+ w)",
             story="The driver ignores small commands, so the rotor always gets a little less than it was told.",
             source="static driver nonlinearity (H bridge, dry motor)",
+            prior=COMMON,
             applied=lambda d, w, u=u: {u: sympy.sign(u) * _passed(sympy.Abs(u), d, w * d + SHARP)},
             twins={
                 f"{place}.offset": "while the input keeps its sign, both take away a constant",

@@ -4,15 +4,17 @@
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from sim.edits import short
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.paths.input_stages import Delay
 from sim.paths.output_stages import OutputDelay
+from sim.prior import COMMON, UNSEEN_LOSSES
 
-SECOND = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05))
-JITTER = EffectParameter("jitter", "s", 0.0, 0.1, 0.0, None, (0.0, 1e-3), refining=True)
+LATE = EffectParameter("tau", "s", 0.0, 0.5, 0.01, 0.0, (0.005, 0.02, 0.05), role=Role.LATENESS)
+JITTER = EffectParameter("jitter", "s", 0.0, 0.1, 0.0, None, (0.0, 1e-3), refining=True, role=Role.JITTER)
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -34,10 +36,11 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.delay",
             depends=f"delay of {short(sensor.output)}",
-            parameters=(SECOND, JITTER),
+            parameters=(LATE, JITTER),
             equation="y(t) = angle(t - tau - d), d even about 0, of standard deviation jitter, anew for each reading",
             story="The reading is old when it arrives.",
             source="transport delay",
+            prior=COMMON,
             on_output=lambda values, output=output: OutputDelay(
                 output, values["tau"], values["jitter"], seed=output + 1
             ),
@@ -52,10 +55,11 @@ def _input_delay(place: str, depends: str, columns: tuple[int, ...], twins: dict
     return Effect(
         name=f"{place}.delay",
         depends=depends,
-        parameters=(SECOND,),
+        parameters=(replace(LATE, unlikely=UNSEEN_LOSSES),),
         equation="u(t - tau)",
         story="The command takes a while to arrive.",
         source="transport delay",
+        prior=COMMON,
         on_input=lambda values: Delay(columns, values["tau"]),
         twins=twins,
     )

@@ -6,8 +6,11 @@
 from collections.abc import Iterator
 
 from sim.edits import EDGE_S, step, with_torque
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
+from sim.prior import COMMON, Unlikely
+
+LONG = Unlikely(-2.0, "a push by hand is short: what lasts longer is rather something that changed", above=5.0)
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -19,12 +22,15 @@ def effects(model: Model) -> Iterator[Effect]:
             depends="torque(t)",
             parameters=(
                 EffectParameter("torque", entry.torque_unit, -size, size, 0.075 * size, 0.0),
-                EffectParameter("t_0", "s", 0.0, 1.0e5, 10.0),
-                EffectParameter("duration", "s", 0.05, 1.0e3, 1.0, starts=(0.3, 1.0, 3.0)),
+                EffectParameter("t_0", "s", 0.0, 1.0e5, 10.0, role=Role.INSTANT),
+                EffectParameter(
+                    "duration", "s", 0.05, 1.0e3, 1.0, starts=(0.3, 1.0, 3.0), role=Role.DURATION, unlikely=LONG
+                ),
             ),
             equation=f"+ torque for t_0 <= t < t_0 + duration, edges {EDGE_S:g} s",
             story="Someone or something pushed the arm during the run.",
             source="a push by hand",
+            prior=COMMON,
             edit=lambda model, torque, t_0, duration, axis=axis: with_torque(
                 model, axis, torque * (step(t_0) - step(t_0 + duration))
             ),

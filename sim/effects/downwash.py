@@ -10,6 +10,7 @@ import sympy
 from sim.edits import with_thrust
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, one_way
 
 FULL_SPEED = 600.0  # [rad/s]
 
@@ -21,10 +22,11 @@ def effects(model: Model) -> Iterator[Effect]:
     yield Effect(
         name="tail_rotor.downwash",
         depends="thrust(omega_M)",
-        parameters=(EffectParameter("a", "-", -1.0, 1.0, 0.05, 0.0),),
+        parameters=(EffectParameter("a", "-", -1.0, 1.0, 0.05, 0.0, unlikely=one_way("a wake takes thrust away")),),
         equation="F_T -> F_T (1 - a omega_M / (600 rad/s))",
         story="The main rotor's wake hits the tail rotor, which pushes less the faster the main rotor turns.",
         source="wake of the main rotor, to first order in its speed",
+        prior=COMMON,
         edit=_edit,
         twins={
             f"{model.places.level}.quadratic_reaction": "at a constant tail speed both are a torque that grows with "

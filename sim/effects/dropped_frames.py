@@ -5,9 +5,10 @@
 
 from collections.abc import Iterator
 
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.paths.input_stages import DroppedFrames
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -17,10 +18,11 @@ def effects(model: Model) -> Iterator[Effect]:
     yield Effect(
         name="loop.dropped_frames",
         depends="lost updates of " + " and ".join(str(entry.variable) for entry in model.places.inputs.values()),
-        parameters=(EffectParameter("p", "-", 0.0, 0.9, 0.1, 0.0, (0.05, 0.1, 0.2)),),
+        parameters=(EffectParameter("p", "-", 0.0, 0.9, 0.1, 0.0, (0.05, 0.1, 0.2), role=Role.LOSS),),
         equation="u(k) = u(k - 1) with probability p",
         story="Now and then a command gets lost and the rotor keeps the last one.",
         source="a lossy line with zero-order hold",
+        prior=COMMON,
         on_input=lambda values: DroppedFrames(values["p"]),
         smooth=False,
         twins={"loop.delay": "on average, a lost frame makes the input late by a share of a sample"},

@@ -12,6 +12,7 @@ import sympy
 from sim.edits import axis_of, with_output, with_state
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -28,6 +29,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation="y = angle + gain d, d'' + 2 zeta omega_n d' + omega_n^2 d = - angle''",
             story="Between the axis and its encoder something is springy and rings after every jolt.",
             source="two masses and a spring",
+            prior=COMMON,
             edit=lambda model, gain, omega_n, zeta, axis=axis: _edit(model, gain, omega_n, zeta, axis),
             twins={f"{axis}.rotor_acceleration": "both answer to fast changes of the drive"} if entry.spun_by else {},
         )

@@ -11,6 +11,11 @@ import sympy
 from sim.edits import positive, short, sign_of, with_axis
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, Prior
+
+PRIOR = Prior(
+    COMMON.log_odds, f"{COMMON.reason}; where no friction is stated, friction both ways comes first", frictionless=-1.6
+)
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -34,6 +39,8 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"- (b_c + difference/2 sgn({angle}')) sgn({angle}')",
             story="The bearing rubs harder one way than the other.",
             source="Coulomb friction by direction",
+            prior=PRIOR,
+            holds_at_rest=True,
             edit=lambda model, difference, axis=axis: _edit(model, difference, axis),
             twins={
                 f"{axis}.offset_force": "while the axis moves, both are one constant torque",

@@ -8,6 +8,9 @@ from collections.abc import Iterator
 
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, RARE, Prior
+
+OWN = Prior(-3.0, "rigs of this kind are known for it, but it is a parameter of the plant under another name")
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -21,6 +24,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> gain {u}",
             story="The driver gives a constant share more or less than it is told, as with another battery voltage.",
             source="a driver's calibration",
+            prior=OWN,
             applied=lambda gain, u=u: {u: gain * u},
             twins={
                 f"{model.places.driven_by(u)}.warmup": "once warm, the drive is down by a constant share",
@@ -37,6 +41,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"{u} -> {u} + offset",
             story="The driver's zero is off: the rotor is pushed a little even when it is told nothing.",
             source="a driver's calibration",
+            prior=RARE if place.endswith("_input") else COMMON,  # set rare among several inputs
             applied=lambda offset, u=u: {u: u + offset},
             twins={f"{place}.deadzone": "while the input keeps its sign, both add or take away a constant"},
         )
@@ -54,6 +59,7 @@ def _battery(model: Model) -> Effect:
         equation="u -> gain u, every input",
         story="All drivers give the same constant share more or less than they are told, as on another battery.",
         source="one supply feeds all drivers",
+        prior=OWN,
         applied=lambda gain: {u: gain * u for u in inputs.values()},
         twins={
             **{f"{place}.gain": "together they are the battery's gain" for place in inputs},

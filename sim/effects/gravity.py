@@ -14,9 +14,10 @@ from dataclasses import replace
 import sympy
 
 from sim.edits import EDGE_S, axis_of, lever, short, step, with_axis, with_torque
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.places import AxisPlace
+from sim.prior import COMMON, Prior
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -32,6 +33,8 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"gravity torque at {angle} + delta",
             story="The centre of gravity lies above or below the arm's line, so gravity pulls hardest at another angle.",
             source="seed 000 eq (11) against its (8)",
+            prior=COMMON,
+            term="cos(angle)",
             edit=lambda model, delta, axis=axis: _turned(model, delta, axis),
             twins={
                 f"{axis}.cable_spring": "near the horizontal, both are straight in the angle",
@@ -50,11 +53,13 @@ def _weights(model: Model, axis: str, entry: AxisPlace) -> Iterator[Effect]:
         depends="torque(t)",
         parameters=(
             EffectParameter("Delta", entry.torque_unit, -0.5 * size, 0.5 * size, 0.02 * size, 0.0),
-            EffectParameter("t_1", "s", 0.0, 1.0e5, 10.0),
+            EffectParameter("t_1", "s", 0.0, 1.0e5, 10.0, role=Role.INSTANT),
         ),
         equation=f"gravity moment + Delta for t > t_1, over {EDGE_S:g} s",
         story="The balancing weight slipped during the run.",
         source="seed 000, balancing weight",
+        prior=COMMON,
+        needs_gravity=True,
         edit=lambda model, Delta, t_1: _with_moment(model, Delta * step(t_1), axis),
         smooth=False,
         twins={f"{axis}.disturbance": "a push that does not end"},
@@ -69,6 +74,7 @@ def _weights(model: Model, axis: str, entry: AxisPlace) -> Iterator[Effect]:
         equation=f"gravity moment times (1 + b), inertia J times (1 + j b){beside}",
         story="The balancing weight sits elsewhere than when the plant was measured.",
         source="seed 000 eq (10), counterweights",
+        prior=Prior(-5.0, "possible, and a parameter of the plant under another name"),
         edit=lambda model, b, j: _reweighted(model, b, j * b * inertia, axis),
         twins={f"parameters of {axis}": "identical: it is another value of the gravity moment and of the inertia"},
     )

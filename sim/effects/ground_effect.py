@@ -10,6 +10,7 @@ import sympy
 from sim.edits import axis_of, with_thrust
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, one_way
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -23,12 +24,13 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{place}.ground_effect",
             depends=f"thrust({angle})",
             parameters=(
-                EffectParameter("a", "-", -0.8, 2.0, 0.05, 0.0),
+                EffectParameter("a", "-", -0.8, 2.0, 0.05, 0.0, unlikely=one_way("an air cushion lifts")),
                 EffectParameter("psi_0", "rad", 0.05, 2.0, 0.3, starts=(0.15, 0.4, 1.0)),
             ),
             equation="F -> F (1 + a exp(-(Psi + Psi_lim)/psi_0))",
             story="Low over the bench the rotor stands on its own air cushion and lifts more.",
             source="Cheeseman and Bennett, R&M 3021, 1955, as an exponential",
+            prior=COMMON,
             edit=lambda model, a, psi_0, place=place, axis=axis: _edit(model, a, psi_0, place, axis),
             twins={f"{axis}.cable_spring": "near one angle both are a torque that changes with the angle"},
         )

@@ -3,16 +3,19 @@
 (1)  torque + sigma g,  g = sqrt(2 / N) sum cos(omega_i t + phi_i),  omega_i = tan(pi/2 (i - 1/2) / N) / T,  i = 1 .. N
 
 N sines of one size at equal shares of the spectrum 1 / (1 + omega^2 T^2): an Ornstein-Uhlenbeck process of standard deviation sigma and
-correlation time T, in one draw of its phases. Another run has other phases, so no log tells them.
+correlation time T, in one draw of its phases. Another run has other phases, so no log tells them: a filter estimates g itself,
+
+(2)  torque + g,  g' = - g / T + white noise of intensity 2 sigma^2 / T
 """
 
 from collections.abc import Iterator
+from functools import partial
 
 import sympy
 
-from sim.edits import with_torque
-from sim.effect import Effect, EffectParameter
-from sim.model import TIME, Model
+from sim.edits import with_state, with_torque
+from sim.effect import Effect, EffectParameter, FilterState, Role, Values
+from sim.model import TIME, Model, symbol
 
 SINES = 16
 TURN = (
@@ -28,14 +31,15 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{axis}.gust",
             depends="torque(t)",
             parameters=(
-                EffectParameter("sigma", entry.torque_unit, 0.0, size, 0.05 * size, 0.0),
-                EffectParameter("T", "s", 0.1, 30.0, 0.5),
+                EffectParameter("sigma", entry.torque_unit, 0.0, size, 0.05 * size, 0.0, role=Role.STRENGTH),
+                EffectParameter("T", "s", 0.1, 30.0, 0.5, role=Role.MEMORY),
             ),
             equation=f"+ sigma g, g of {SINES} sines with the spectrum 1 / (1 + omega^2 T^2)",
             story="The air in the room is restless: it pushes the axis to and fro, never twice alike.",
             source="turbulence as an Ornstein-Uhlenbeck process, Uhlenbeck and Ornstein 1930",
             edit=lambda model, sigma, T, axis=axis: with_torque(model, axis, sigma * _draw(T)),
             repeats=False,
+            filter_state=FilterState(f"{axis}_gust", partial(_unknown, axis), noise=_noise),
         )
 
 
@@ -46,3 +50,15 @@ def _draw(T: sympy.Symbol) -> sympy.Expr:
         for k, share in enumerate(shares)
     ]
     return sympy.sqrt(sympy.Rational(2, SINES)).evalf() * sympy.Add(*sines)
+
+
+def _unknown(axis: str, model: Model, on: sympy.Symbol, sigma: sympy.Symbol, T: sympy.Symbol) -> Model:
+    """Eq (2) without its noise, which is the filter's and alone knows of sigma."""
+    g = symbol(f"{axis}_gust")
+    return with_torque(with_state(model, g, -g / T), axis, on * g)
+
+
+def _noise(values: Values) -> tuple[float, float]:
+    """Intensity of the noise on g', and the variance of g."""
+    variance = values["sigma"] ** 2
+    return 2.0 * variance / values["T"], variance

@@ -13,6 +13,7 @@ import sympy
 from sim.edits import axis_of, short, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -33,6 +34,7 @@ def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
         equation=f"- K {psi}' omega_M sin({psi})",
         story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
         source="reciprocal of a term in seed 000 eq (8)",
+        prior=COMMON,
         edit=lambda model, K: with_torque(
             model, level, -K * _rate(model, tilting) * _speed(model, "main_rotor") * sympy.sin(_angle(model, tilting))
         ),
@@ -45,6 +47,7 @@ def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
         equation=f"+ c sin(2 {psi}) {psi}' {phi}'",
         story="Pulling the arm in while it turns makes it turn faster, as a skater does.",
         source="Lagrange: reciprocal of the centrifugal term in seed 000 eq (8)",
+        said="Coriolis torque",
         edit=lambda model, c: with_torque(
             model, level, c * sympy.sin(2 * _angle(model, tilting)) * _rate(model, tilting) * _rate(model, level)
         ),

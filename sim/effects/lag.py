@@ -4,12 +4,16 @@
 """
 
 from collections.abc import Iterator
+from functools import partial
 
-from sim.edits import short
-from sim.effect import Effect, EffectParameter
-from sim.model import Model
+import sympy
+
+from sim.edits import short, with_output, with_state
+from sim.effect import Effect, EffectParameter, FilterState, Role
+from sim.model import Model, symbol
 from sim.paths.input_stages import Lag
 from sim.paths.output_stages import OutputLag
+from sim.prior import COMMON, UNSEEN_LOSSES, Unlikely
 
 LATE = "slow motion shows only the mean time by which both are late"
 
@@ -27,6 +31,7 @@ def effects(model: Model) -> Iterator[Effect]:
             "The driver or the motor's winding follows its command with a lag.",
             "inductance of the winding, L/R",
             {f"{place}.delay": LATE} | ({f"{rotor_place}.lag": SAME} if immediate else {}),
+            UNSEEN_LOSSES,
         )
         if immediate:
             yield _lag(
@@ -39,13 +44,16 @@ def effects(model: Model) -> Iterator[Effect]:
                 {f"{place}.lag": SAME, f"{place}.delay": LATE},
             )
     for output, (place, sensor) in enumerate(model.places.sensors.items()):
+        state = f"{sensor.output}_read"
         yield Effect(
             name=f"{place}.lag",
             depends=f"lag of {short(sensor.output)}",
-            parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15)),),
+            parameters=(EffectParameter("tau", "s", 0.0, 1.0, 0.015, 0.0, (0.01, 0.05, 0.15), role=Role.LATENESS),),
             equation="tau y' = angle - y",
             story="The reading is smoothed and so comes late.",
             source="a sensor's filter",
+            prior=COMMON,
+            filter_state=FilterState(state, partial(_read_late, state, sensor.output), follows=sensor.output),
             on_output=lambda values, output=output: OutputLag(output, values["tau"]),
             twins={f"{place}.delay": LATE, "loop.delay": LATE},
         )
@@ -55,15 +63,31 @@ SAME = "identical: the rotor has no other lag between command and thrust"
 
 
 def _lag(
-    name: str, depends: str, column: int, reference: float, story: str, source: str, twins: dict[str, str]
+    name: str,
+    depends: str,
+    column: int,
+    reference: float,
+    story: str,
+    source: str,
+    twins: dict[str, str],
+    unlikely: Unlikely | None = None,
 ) -> Effect:
+    tau = EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3), role=Role.LATENESS, unlikely=unlikely)
     return Effect(
         name=name,
         depends=depends,
-        parameters=(EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3)),),
+        parameters=(tau,),
         equation="tau v' = u - v, v instead of u",
         story=story,
         source=source,
+        prior=COMMON,
         on_input=lambda values: Lag(column, values["tau"]),
         twins=twins,
     )
+
+
+def _read_late(state: str, output: str, model: Model, on: sympy.Symbol, tau: sympy.Symbol) -> Model:
+    """Eq (1) as a state of the equations, which is read in place of the output: so a filter's gains know of it."""
+    late, y = symbol(state), sympy.sympify(model.outputs[output])
+    model = with_state(model, late, (y - late) / tau)
+    return with_output(model, output, lambda _: y + on * (late - y))

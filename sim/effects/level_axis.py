@@ -17,8 +17,13 @@ from sim.edits import axis_of, lever, short, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.places import AxisPlace
+from sim.prior import COMMON, Prior
 
 TURN = 6.3  # a whole turn either way: no fit that starts within half a turn is stopped
+# Joints that gravity or a driver may push at all times; a turntable is pushed by nothing, so there it is friction that differs.
+JOINTS = ("pitch", "yaw", "arm", "carriage")
+PUSHED = Prior(0.1, "gravity or a driver pushes such a joint at all times; plainer than what else fits as well")
+PULLED = Prior(-1.9, "nothing is known to pull such an axis at all times; plainer than what else fits as well")
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -40,6 +45,8 @@ def _offset(axis: str, entry: AxisPlace) -> Effect:
         equation="- offset",
         story="Something pulls the axis one way all the time.",
         source="a constant torque",
+        prior=PUSHED if axis in JOINTS else PULLED,
+        term="constant",
         edit=lambda model, offset: with_torque(model, axis, -offset),
         twins={
             f"{axis}.friction_asymmetry": "while the axis moves, both are one constant torque",
@@ -64,6 +71,8 @@ def _tilt(model: Model, axis: str, entry: AxisPlace) -> Effect:
         equation=f"- m sin({angle} - Phi_0) (1 - e + e {h}), on the {model.places.tilting} + e m cos({angle} - Phi_0) ({slope})",
         story="The base is not level: the arm wants to swing to the low side.",
         source="pendulum on a tilted base",
+        prior=COMMON,
+        term="sin(angle)",
         edit=lambda model, m, Phi_0, e: _tilted(model, axis, m, Phi_0, e),
         twins={
             f"{axis}.wind": "both pull to one side, and a fast wind hardly damps",

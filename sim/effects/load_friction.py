@@ -27,6 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"- c |{letter}| sgn({short(entry.angle)}')",
             story="The bearing rubs more the harder the rotor pulls at it.",
             source="Coulomb friction in proportion to the bearing's load",
+            holds_at_rest=True,
             edit=lambda model, c, axis=axis, rotor_name=rotor_name: with_friction(
                 model, axis, c * sympy.Abs(model.places.rotors[rotor_name].speed)
             ),

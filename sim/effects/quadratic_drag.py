@@ -10,6 +10,7 @@ import sympy
 from sim.edits import axis_of, short, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, one_way
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -21,12 +22,20 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"torque({angle}_dot)",
             parameters=(
                 EffectParameter(
-                    "c", f"{entry.torque_unit} s^2 {entry.length_unit}^-2", -0.2 * size, 2.0 * size, 0.04 * size, 0.0
+                    "c",
+                    f"{entry.torque_unit} s^2 {entry.length_unit}^-2",
+                    -0.2 * size,
+                    2.0 * size,
+                    0.04 * size,
+                    0.0,
+                    unlikely=one_way("air brakes"),
                 ),
             ),
             equation=f"- c |{angle}'| {angle}'",
             story="The air resists the moving arm, four times as much at twice the speed.",
             source="drag of a bluff body",
+            prior=COMMON,
+            term="abs(speed) speed",
             edit=lambda model, c, axis=axis: _edit(model, c, axis),
             twins={f"{model.places.rotor_of(axis)}.axial_inflow": "both damp fast motion more"},
         )

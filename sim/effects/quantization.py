@@ -6,10 +6,11 @@
 from collections.abc import Iterator
 
 from sim.edits import short
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.paths.input_stages import Quantised
 from sim.paths.output_stages import OutputSteps
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -21,12 +22,21 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"steps of {entry.variable}",
             parameters=(
                 EffectParameter(
-                    "q", entry.unit, 0.0, 0.3 * size, 0.02 * size, 0.0, tuple(s * size for s in INPUT_STEPS)
+                    "q",
+                    entry.unit,
+                    0.0,
+                    0.3 * size,
+                    0.02 * size,
+                    0.0,
+                    tuple(s * size for s in INPUT_STEPS),
+                    role=Role.STEP,
+                    rough=place.endswith("_input"),  # set among several inputs
                 ),
             ),
             equation="q round(u/q)",
             story="The driver knows only coarse steps of voltage.",
             source="a converter's or PWM's resolution",
+            prior=COMMON,
             on_input=lambda values, column=column: Quantised(column, values["q"]),
             smooth=False,
         )
@@ -37,12 +47,20 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"steps of {short(sensor.output)}",
             parameters=(
                 EffectParameter(
-                    "q", sensor.unit, 0.0, 0.2 * size, 0.006 * size, 0.0, tuple(s * size for s in OUTPUT_STEPS)
+                    "q",
+                    sensor.unit,
+                    0.0,
+                    0.2 * size,
+                    0.006 * size,
+                    0.0,
+                    tuple(s * size for s in OUTPUT_STEPS),
+                    role=Role.STEP,
                 ),
             ),
             equation="y = q round(angle/q)",
             story="The encoder's steps are coarser than stated.",
             source="an encoder's resolution",
+            prior=COMMON,
             on_output=lambda values, output=output: OutputSteps(output, values["q"]),
             smooth=False,
         )

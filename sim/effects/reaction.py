@@ -12,6 +12,7 @@ import sympy
 from sim.edits import axis_of, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, RARE
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -32,6 +33,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"- J d(omega_{rotor.letter})/dt" + (" cos(Psi)" if axis == level else ""),
             story="Revving a rotor up turns the arm the other way for a moment.",
             source="conservation of angular momentum",
+            prior=COMMON,
             edit=lambda model, J, axis=axis: _accelerating(model, J, axis),
             twins={f"{axis}.flexible_mode": "both answer to fast changes of a rotor's speed"},
         )
@@ -54,6 +56,7 @@ def _coupling(model: Model, level: str, tilting: str) -> Iterator[Effect]:
             source="a share of the tail rotor's thrust"
             if sign > 0
             else "blade element theory: drag torque goes with the square",
+            prior=COMMON if sign > 0 else RARE,
             edit=lambda model, k, axis=axis, place=place, sign=sign: _pushed(model, sign * k, axis, place),
             twins={f"{axis}.{twin}": "both carry the tail rotor's speed to the elevation"}
             if twin

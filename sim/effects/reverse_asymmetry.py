@@ -10,6 +10,7 @@ import sympy
 from sim.edits import with_thrust
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -24,6 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation="F -> r F for omega < 0",
             story="Turning backwards, the propeller pushes with another strength than forwards.",
             source="cambered blades",
+            prior=COMMON,
             edit=lambda model, r, place=place: _edit(model, r, place),
             twins={
                 f"{place.replace('rotor', 'input')}.driver_asymmetry": "both scale what a reversed rotor does",

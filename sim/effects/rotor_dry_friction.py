@@ -10,6 +10,7 @@ import sympy
 
 from sim.effect import Effect, EffectParameter
 from sim.model import Axis, Model
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -24,6 +25,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation="omega' = ... - c sgn(omega), at rest within +-c",
             story="The rotor's bearing rubs: it starts late and runs a little slower than it should.",
             source="Coulomb friction",
+            prior=COMMON,
             edit=lambda model, c, place=place: _edit(model, c, place),
             twins={
                 f"{place.replace('rotor', 'input')}.deadzone": "a constant loss of torque is a constant loss of voltage, "

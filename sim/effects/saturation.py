@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import sympy
 
 from sim.edits import SHARP, knee
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
+from sim.prior import COMMON
 
 NEVER = 30.0  # beyond every declared limit of the plants: the effect is absent
 
@@ -25,10 +26,14 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.saturation",
             depends=f"limit of {u}",
-            parameters=(EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid), ROUNDING),
+            parameters=(
+                EffectParameter("limit", entry.unit, 0.05 * size, NEVER, 0.6 * size, NEVER, grid, role=Role.LEVEL),
+                ROUNDING,
+            ),
             equation=f"{u} -> max(-limit, min(limit, {u})), its corner rounded over limit (1 -+ w)",
             story="The driver or its supply gives out before the controller's own limit is reached.",
             source="static driver nonlinearity",
+            prior=COMMON,
             applied=lambda limit, w, u=u: {u: u - sympy.sign(u) * knee(sympy.Abs(u) - limit, w * limit + SHARP)},
             smooth=False,
         )

@@ -9,9 +9,10 @@
 from collections.abc import Iterator
 
 from sim.edits import short, step, with_output
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.places import SensorPlace
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -33,6 +34,7 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         equation="y = angle + offset",
         story="The sensor's zero is not where the model thinks it is.",
         source="an encoder's index",
+        prior=COMMON,
         edit=lambda model, offset: with_output(model, y, lambda output: output + offset),
     )
     yield Effect(
@@ -42,6 +44,7 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         equation="y = scale angle",
         story="The sensor reads a constant share too much or too little.",
         source="a wrong count per turn",
+        prior=COMMON,
         edit=lambda model, scale: with_output(model, y, lambda output: scale * output),
         twins={
             f"{place}.missed_counts": "at a nearly constant input, a constant share of the counts is missed",
@@ -52,8 +55,8 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
         name=f"{place}.count_slip",
         depends=f"output(t) of {angle}",
         parameters=(
-            EffectParameter("jump", unit, -size, size, 0.04 * size, 0.0),
-            EffectParameter("t_s", "s", 0.0, 1.0e5, 10.0),
+            EffectParameter("jump", unit, -size, size, 0.04 * size, 0.0, role=Role.JUMP),
+            EffectParameter("t_s", "s", 0.0, 1.0e5, 10.0, role=Role.INSTANT),
         ),
         equation="y = angle + jump for t > t_s",
         story="The encoder lost or gained counts at one moment and reads wrong by them ever after.",

@@ -5,9 +5,10 @@
 
 from collections.abc import Iterator
 
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import Model
 from sim.paths.input_stages import SlewLimit
+from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -20,10 +21,11 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.slew_limit",
             depends=f"rate limit of {entry.variable}",
-            parameters=(EffectParameter("r", unit, 0.02 * size, never, size, never, grid),),
+            parameters=(EffectParameter("r", unit, 0.02 * size, never, size, never, grid, role=Role.SLOPE),),
             equation="|du/dt| <= r",
             story="The driver changes its voltage only so fast and trails behind quick commands.",
             source="a driver's ramp",
+            prior=COMMON,
             on_input=lambda values, column=column: SlewLimit(column, values["r"]),
             smooth=False,
             twins={f"{place}.lag": "both trail behind quick commands; only a limit spares small ones"},

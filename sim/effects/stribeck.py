@@ -12,6 +12,9 @@ import sympy
 from sim.edits import axis_of, short, with_friction
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import Prior
+
+PRIOR = Prior(-0.8, "its shapes are many, and dry friction that does not fall is among them")
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -36,6 +39,8 @@ def effects(model: Model) -> Iterator[Effect]:
             equation=f"- b_s exp(-x^2/(1 + e x)) sgn({angle}'), x = |{angle}'|/v_s",
             story="The grease holds a resting bearing more firmly than a turning one: it breaks loose with a jerk.",
             source="Armstrong, Dupont and Canudas de Wit, Automatica 30(7), 1994",
+            prior=PRIOR,
+            said="Stribeck friction",
             edit=lambda model, b_s, v_s, e, axis=axis: with_friction(model, axis, _level(model, axis, b_s, v_s, e)),
             twins={
                 f"{axis}.coulomb": "with little motion at the Stribeck speed only the level shows",

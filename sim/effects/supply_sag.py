@@ -9,6 +9,7 @@ import sympy
 
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, one_way
 
 NOMINAL = 10.0  # [V]; scales s to a share
 
@@ -22,10 +23,13 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{place}.supply_sag",
             depends=f"gain({', '.join(str(i.variable) for i in model.places.inputs.values())}) of {u}",
-            parameters=(EffectParameter("s", "-", -0.5 * upper, upper, 0.1 * upper, 0.0),),
+            parameters=(
+                EffectParameter("s", "-", -0.5 * upper, upper, 0.1 * upper, 0.0, unlikely=one_way("a supply sags")),
+            ),
             equation=f"{u} -> {u} (1 - s (sum of |u|) / 10)",
             story="The power supply weakens under load: pushing one rotor harder leaves less for this one.",
             source="a source's inner resistance",
+            prior=COMMON,
             applied=lambda s, u=u: {u: u * (1 - s * load / NOMINAL)},
             twins={f"{place}.gain": "at a nearly constant load, the loss is a constant share"},
         )

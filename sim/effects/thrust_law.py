@@ -13,6 +13,7 @@ import sympy
 from sim.edits import with_thrust
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
+from sim.prior import COMMON, RARE
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -28,6 +29,7 @@ def effects(model: Model) -> Iterator[Effect]:
             equation="F -> F (1 + a (|u|/U - 1))" if rotor.linear else "F -> F (1 - a + a U/|u|)",
             story=f"The thrust follows the command by a {law} law rather than by the {other} one of the model.",
             source="blade element theory: thrust goes with the square of the speed",
+            prior=COMMON if rotor.linear else RARE,
             edit=lambda model, a, place=place: _edit(model, a, place),
         )
 

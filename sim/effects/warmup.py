@@ -10,6 +10,7 @@ import sympy
 from sim.edits import with_drive
 from sim.effect import Effect, EffectParameter
 from sim.model import TIME, Model
+from sim.prior import COMMON, one_way
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -19,12 +20,13 @@ def effects(model: Model) -> Iterator[Effect]:
             name=f"{place}.warmup",
             depends=f"gain(t) of {rotor.variable}",
             parameters=(
-                EffectParameter("a", "-", -0.5, 0.5, 0.03, 0.0),
+                EffectParameter("a", "-", -0.5, 0.5, 0.03, 0.0, unlikely=one_way("a motor that warms up weakens")),
                 EffectParameter("T", "s", 0.5, 500.0, 20.0, starts=(5.0, 20.0, 60.0)),
             ),
             equation="K -> K (1 - a (1 - exp(-t/T)))",
             story="The motor's winding warms up and its resistance grows, so the same command gives less and less.",
             source="copper's resistance grows by 0.39 % per kelvin",
+            prior=COMMON,
             edit=lambda model, a, T, place=place: with_drive(model, place, 1 - a * (1 - sympy.exp(-TIME / T))),
             twins={f"{place.replace('rotor', 'input')}.gain": "once warm, the drive is down by a constant share"},
         )

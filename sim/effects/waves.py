@@ -12,12 +12,16 @@ from collections.abc import Iterator
 import sympy
 
 from sim.edits import axis_of, short, with_output, with_torque
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 from sim.model import TIME, Model
 from sim.places import AxisPlace, SensorPlace
+from sim.prior import NOTHING_NEW, Unlikely
 
 FEWEST, MOST = 3.5, 64.0  # waves a turn, or in the place of 2 pi of an axis' usual way
-PHASE = EffectParameter("phase", "rad", -50.0, 50.0, 0.0, starts=(0.0, 1.57))
+PHASE = EffectParameter("phase", "rad", -50.0, 50.0, 0.0, starts=(0.0, 1.57), role=Role.PHASE)
+ROUNDING = Unlikely(
+    NOTHING_NEW, "at a steady speed rounding beats with the samples, which swings with the angle too", steps=0.5
+)
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -35,7 +39,7 @@ def _cyclic(place: str, sensor: SensorPlace) -> Effect:
         name=f"{place}.cyclic",
         depends=f"output({angle}) of {angle}",
         parameters=(
-            EffectParameter("amplitude", sensor.unit, -0.2 * size, 0.2 * size, 0.005 * size, 0.0),
+            EffectParameter("amplitude", sensor.unit, -0.2 * size, 0.2 * size, 0.005 * size, 0.0, unlikely=ROUNDING),
             _waves(sensor.unit, size),
             PHASE,
         ),
@@ -75,7 +79,7 @@ def _periodic(axis: str, entry: AxisPlace) -> Effect:
         depends="torque(t)",
         parameters=(
             EffectParameter("amplitude", entry.torque_unit, -size, size, 0.05 * size, 0.0),
-            EffectParameter("rate", "rad s^-1", 0.3, 100.0, 5.0, starts=(2.0, 5.0, 10.0)),
+            EffectParameter("rate", "rad s^-1", 0.3, 100.0, 5.0, starts=(2.0, 5.0, 10.0), role=Role.RATE),
             PHASE,
         ),
         equation="+ amplitude sin(rate t + phase)",
@@ -89,5 +93,11 @@ def _periodic(axis: str, entry: AxisPlace) -> Effect:
 def _waves(unit: str, length: float) -> EffectParameter:
     """How many radians of the sine go on one unit of the way."""
     return EffectParameter(
-        "waves", f"rad {unit}^-1", FEWEST / length, MOST / length, 10.0 / length, starts=(6.0 / length, 12.0 / length)
+        "waves",
+        f"rad {unit}^-1",
+        FEWEST / length,
+        MOST / length,
+        10.0 / length,
+        starts=(6.0 / length, 12.0 / length),
+        role=Role.WAVES,
     )
