@@ -1,6 +1,6 @@
 """Plants with effects added, changed or taken away: what the diagnosis tries out."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from records.errors import BadInput
@@ -20,6 +20,11 @@ Sizes = Mapping[str, Values]  # by effect and symbol
 def library(bound: BoundPlant) -> Mapping[str, Effect]:
     """Every effect that the plant can have, by name."""
     return effects_for(MODELS[bound.plant.model]())
+
+
+def every_effect() -> Iterator[Effect]:
+    """The effects of every plant of the table, plant after plant."""
+    return (effect for model in MODELS.values() for effect in effects_for(model()).values())
 
 
 def redundant(bound: BoundPlant, effect: Effect) -> bool:
@@ -146,6 +151,7 @@ __all__ = [
     "combined",
     "effect_values",
     "effects_for",
+    "every_effect",
     "library",
     "linear_part",
     "redundant",

@@ -5,12 +5,14 @@ Angles are smoothed and differentiated twice; sequentially thresholded least squ
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from diagnosis.baselines.windows import Array, derivatives, measured_axes, states_of
 from records.diagnosis import Diagnosis, Hypothesis, PlaceShare, Unknown
 from records.log import RunLog
+from sim.added_effects import every_effect
 from sim.bind import BoundPlant
 from sim.kernel.reference import reference
 from sim.model import Axis
@@ -19,16 +21,7 @@ KEPT = 0.15  # of the largest term: smaller ones are dropped
 ROUNDS = 10
 ALARM = 0.2  # share of the discrepancy that the terms must explain
 
-# What a term of the regression is called in the library.
-CAUSES = {
-    "constant": "offset_force",
-    "angle": "cable_spring",
-    "sin(angle)": "tilt",
-    "cos(angle)": "centre_of_gravity",
-    "speed": "viscous",
-    "abs(speed) speed": "quadratic_drag",
-    "sgn(speed)": "coulomb",
-}
+VISCOUS = {"speed": "viscous"}  # a parameter of the plants, and so none of the library's effects
 
 
 @dataclass(frozen=True)
@@ -46,7 +39,7 @@ def by_sparse_regression(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis
     found = [_explained(bound, axes[position], output, logs) for position, _, output in measured_axes(bound.model)]
     best = max(found, key=lambda explained: explained.share)
     gap = best.share > ALARM
-    effect = f"{best.axis}.{CAUSES[best.term]}" if best.term in CAUSES else f"{best.axis}.{best.term}"
+    effect = f"{best.axis}.{_causes().get(best.term, best.term)}"
     return Diagnosis(
         verdict="gap" if gap else "no gap",
         false_alarm_probability=None,
@@ -55,6 +48,12 @@ def by_sparse_regression(bound: BoundPlant, logs: Sequence[RunLog]) -> Diagnosis
         unknown=Unknown(1.0 - best.share, best.axis) if gap else Unknown(0.0),
         found=(effect,) if gap else (),
     )
+
+
+@cache
+def _causes() -> Mapping[str, str]:
+    """What a term of the regression is called in the library."""
+    return {effect.term: effect.kind for effect in every_effect() if effect.term} | VISCOUS
 
 
 def _explained(bound: BoundPlant, axis: Axis, output: int, logs: Sequence[RunLog]) -> Explained:

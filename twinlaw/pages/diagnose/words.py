@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
 from records.functional_class import Dependence, parse_class
 from records.reasons import Note
+from sim.added_effects import every_effect
 
 # By the unit at the end of a name: how a person reads it.
 _SHOWN = {
@@ -17,7 +19,6 @@ _SHOWN = {
     "_m_s": ("mm/s", 1e3),
     "_V": ("V", 1.0),
 }
-_KINDS = {"coulomb": "Coulomb friction", "stribeck": "Stribeck friction", "coriolis": "Coriolis torque"}
 _UNITS = {"-": "", "1": "", "rad rad^-1": "per rad", "m m^-1": "per m"}
 # By the word before the brackets of a class: what of the rig changes.
 _CLASSES = {
@@ -47,8 +48,14 @@ def plain_text(value: object) -> str:
 def words(name: str) -> str:
     """ "azimuth.cable_spring" as "cable spring of the azimuth", several with "and"."""
     parts = [part.replace("_", " ").partition(".") for part in name.split(" + ")]
-    parts = [(place, dot, _KINDS.get(effect, effect)) for place, dot, effect in parts]
+    parts = [(place, dot, _said().get(effect, effect)) for place, dot, effect in parts]
     return " and ".join(f"{effect} of the {place}" if effect else f"the {place}" for place, _, effect in parts)
+
+
+@cache
+def _said() -> Mapping[str, str]:
+    """Kinds of effects whose words are more than the name without underscores."""
+    return {effect.kind: effect.said for effect in every_effect() if effect.said}
 
 
 def listed(names: Sequence[str]) -> str:
