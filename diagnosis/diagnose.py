@@ -23,8 +23,7 @@ from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
-from diagnosis.library.effect_library import effect_library, is_gust
-from diagnosis.library.input_effects import LOST_FRAMES
+from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
 from diagnosis.search.gusts import gusts
@@ -96,7 +95,7 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     case, lossy = with_losses(case, linearisation)
     linearisation = replace(linearisation, case=case)
     score_tests = score_effects(case, linearisation, case.library.candidates)
-    retuned = FittedHypothesis((), nominal, evidence(nominal))
+    retuned = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
     detection = detect(case, linearisation, score_tests, lossy)
     rules = (*detection.decisions, _false_alarm("logs", detection.p))
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
@@ -212,12 +211,13 @@ def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decisio
 
 
 def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
-    """What forms still gain beside the best that was found, and the probabilities; all that swings beside a gust is a form of its own."""
+    """What forms still gain beside the best that was found, and the probabilities; all that swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
-    own = [name for name in best.effects if not is_gust(name)]
+    library = seen.case.library
+    own = [library.effects[name] for name in best.effects if not library.effects[name].is_noise]
     left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
-    return left, weigh(found.fitted, seen.retuned, left, score, seen.case.library.frictionless, seen.case.library.steps)
+    return left, weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
 
 
 def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tuple[Seen, Holdout | None]:
@@ -225,7 +225,7 @@ def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tup
     checked = seen.checked
     if checked is None:
         return seen, None
-    if LOST_FRAMES in effects:
+    if any(checked.library.effects[name].loses_commands for name in effects):
         checked = with_losses(checked, linearised(checked, nominal_fit(checked)))[0]
     holdout = holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
     return seen.because(*holdout.decisions), holdout

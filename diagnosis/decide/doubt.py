@@ -9,7 +9,6 @@ from diagnosis import decisions
 from diagnosis.decide.contradiction import Contradiction, contradiction, parted_gain
 from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided
-from diagnosis.detect.instants import is_event
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
@@ -113,7 +112,7 @@ def _refuted(case: Case, weighed: Weighed, worse: float) -> Iterator[_Objection]
     """A name with which the hold-out is predicted far worse; events, which are others in each log, are not asked."""
     if worse > 0.0:
         names = weighed.fitted[0].effects
-        forbids = worse > decisions.REFUTED and not any(is_event(case.library.effects[name]) for name in names)
+        forbids = worse > decisions.REFUTED and not any(case.library.effects[name].is_event for name in names)
         of = " + ".join(names)
         outcome = FORBIDS if forbids else UNCHANGED
         yield _Objection(

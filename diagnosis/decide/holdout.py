@@ -11,17 +11,16 @@ from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.gauss_newton import seen_in_readings, unfitted
+from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.library.effect_library import is_gust
-from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.search.retune import Retune
 from diagnosis.validate.prediction import WINDOW_S
 from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
 from records.table import ControllerTable
+from sim.effect import Role
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +73,9 @@ def holdout_of(
     if found is None:
         return replace(trial, decisions=(told,))
     notes = (Note("stated_predicts_better", "plant", {"worse": float(np.sqrt(before / stated)) - 1.0}),)
-    return Holdout(case, names, tables, FittedHypothesis((), found, evidence(found)), notes, (told,))
+    return Holdout(
+        case, names, tables, FittedHypothesis((), found, evidence(found, training.library.effects)), notes, (told,)
+    )
 
 
 def overruled(
@@ -124,7 +125,8 @@ def _idle(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage) -> tuple[
 
     Events, each of which is another one in each log, and the steps of a sensor, which make no prediction better, are not asked.
     """
-    if any(seen_in_readings(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
+    effects = holdout.case.library.effects
+    if any(effects[name].shown_in_readings or _is_event(holdout.case, fitted, name) for name in fitted.effects):
         return (), False
     if told.fraction_ci95 is None:
         return (), False
@@ -146,7 +148,8 @@ def _leaves_most(
     Where forms see next to nothing beside it, process noise as it takes it to be may be all that is left. Events are not asked, nor
     what happens at random: lost frames, gusts.
     """
-    if any(name == LOST_FRAMES or is_gust(name) or _is_event(holdout.case, fitted, name) for name in fitted.effects):
+    effects = holdout.case.library.effects
+    if any(effects[name].is_random or _is_event(holdout.case, fitted, name) for name in fitted.effects):
         return (), False
     floor = _floor(holdout.case, fitted, told)
     floor = floor if left > decisions.LEFT_NATS else _with_process_noise(holdout.case, fitted, floor)
@@ -167,9 +170,11 @@ def _leaves_most(
 
 def _floor(case: Case, fitted: FittedHypothesis, told: Shrinkage) -> dict[str, float]:
     """What the sensors leave of each output's error (RMS, in its unit), with the steps of those that a hypothesis takes to be coarse."""
+    effects, sensors = case.library.effects, case.library.bound.model.places.sensors
     coarse = {
-        sensor.output: fitted.fit.hypothesis.effects.get(f"{place}.quantization", {}).get("q", 0.0)
-        for place, sensor in case.library.bound.model.places.sensors.items()
+        sensors[effects[name].place].output: values[effects[name].symbol(Role.STEP)]
+        for name, values in fitted.fit.hypothesis.effects.items()
+        if effects[name].shown_in_readings
     }
     return {name: float(np.hypot(rms, coarse.get(name, 0.0) / np.sqrt(12.0))) for name, rms in told.rms_floor.items()}
 
@@ -195,7 +200,7 @@ def worse(holdout: Holdout, weighed: Weighed) -> float:
     sensor alone: the hold-out's own readings show those, and no prediction gets better by them."""
     if not weighed.fitted or weighed.probabilities[0] < weighed.unknown:
         return 0.0
-    if all(map(seen_in_readings, weighed.fitted[0].effects)):
+    if all(holdout.case.library.effects[name].shown_in_readings for name in weighed.fitted[0].effects):
         return 0.0
     predicted = holdout.predicted(weighed.fitted[0])
     return error(holdout.case, predicted, "after") / _without(holdout, predicted)

@@ -10,9 +10,9 @@ from diagnosis import decisions
 from diagnosis.detect.detection import MEAN_GAIN, FormScores, gains
 from diagnosis.detect.forms import Form
 from records.functional_class import parse_class
+from sim.effect import Effect
 
 Array = NDArray[np.float64]
-LIMITS = (".saturation", ".slew_limit")
 LEAST_OWN_SHARE = 1e-3  # share of a form that must not be a mixture of those taken already
 
 
@@ -34,10 +34,10 @@ def suspects(by_form: FormScores) -> list[Suspect]:
     return sorted(found, key=lambda suspect: -suspect.gain)
 
 
-def left_beside(by_form: FormScores, effects: Sequence[str]) -> float:
+def left_beside(by_form: FormScores, effects: Sequence[Effect]) -> float:
     """Nats that the best class of forms still gains beside effects; what acts where they do is rather their own form, a little other."""
-    own = {_side(name.split(".")[0]) for name in effects}
-    limited = {_side(name.split(".")[0]) for name in effects if name.endswith(LIMITS)}
+    own = {_side(effect.place) for effect in effects}
+    limited = {_side(effect.place) for effect in effects if effect.is_limit}
 
     def weight(place: str, text: str) -> float:
         if parse_class(text).kind == "limit" and _side(place) in limited:

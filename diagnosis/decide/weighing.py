@@ -10,8 +10,8 @@ from diagnosis import decisions
 from diagnosis.decide.prior import prior_odds
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis
-from diagnosis.fit.gauss_newton import seen_in_readings
 from records.reasons import Decision
+from sim.effect import Effect
 
 Array = NDArray[np.float64]
 RANKED = 12
@@ -51,6 +51,7 @@ class Weighed:
 def weigh(
     fitted: Sequence[FittedHypothesis],
     nominal: FittedHypothesis,
+    effects: Mapping[str, Effect],
     left: float,
     retune: float | None = None,
     frictionless: Collection[str] = (),
@@ -64,7 +65,7 @@ def weigh(
     first = max(named, key=lambda entry: entry.evidence)
     best = first.evidence
     whole = max(best - nominal.evidence, 0.0)
-    formed = max(best - _read_off(named, first, nominal).evidence, 0.0)
+    formed = max(best - _read_off(named, first, nominal, effects).evidence, 0.0)
     scale = (
         decisions.ALIKE
         + decisions.OFF_FORM * formed**decisions.OFF_POWER
@@ -73,7 +74,7 @@ def weigh(
     scores = np.array(
         [(entry.evidence - best) / scale - decisions.FURTHER * (len(entry.effects) - 1) for entry in named]
     )
-    scores += [prior_odds(entry, frictionless, steps) for entry in named]
+    scores += [prior_odds(entry, effects, frictionless, steps) for entry in named]
     prior_chi_squared = np.array([_beyond_spread(entry) for entry in named])
     scores -= prior_chi_squared - prior_chi_squared.min()
     expected = decisions.LEFT_NATS + decisions.LEFT_SHARE * whole
@@ -106,10 +107,13 @@ def _told_apart(gain: float, scale: float) -> str:
 
 
 def _read_off(
-    named: Sequence[FittedHypothesis], first: FittedHypothesis, nominal: FittedHypothesis
+    named: Sequence[FittedHypothesis],
+    first: FittedHypothesis,
+    nominal: FittedHypothesis,
+    effects: Mapping[str, Effect],
 ) -> FittedHypothesis:
     """That of `first` which is read off the logs, a sensor's steps, where it was tried alone: no form of it can be a little off."""
-    exact = {name for name in first.effects if seen_in_readings(name)}
+    exact = {name for name in first.effects if effects[name].shown_in_readings}
     return next((entry for entry in named if set(entry.effects) == exact), nominal)
 
 

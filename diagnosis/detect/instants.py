@@ -6,39 +6,31 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.case import Case
-from sim.effect import Effect, Values
+from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
-TIMES = ("t_0", "t_1", "t_s")
 
 
 def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect whose shapes are instants: the best of a grid; empty for effects without instants."""
-    names = [parameter.symbol for parameter in effect.parameters if not parameter.is_size]
     target = disturbed_by(linearisation.case, effect)
-    if target is None or not is_event(effect):
+    if target is None or not effect.is_event:
         return []
     times_s, scores = linearisation.steps(target)
     gram, score = scores.gram, scores.score
-    if "duration" in names:
-        return _pulses(times_s, gram, score)
+    symbol, lasts = effect.symbol(Role.INSTANT), effect.having(Role.DURATION)
+    if lasts is not None:
+        return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, gram, score)]
     power = score**2 / np.maximum(np.diag(gram), 1e-12)
     power[0] = 0.0
-    symbol = next(name for name in names if name in TIMES)
     found = [*_jumps(linearisation, target), *(float(times_s[index]) for index in _peaks(power))]
     return [{symbol: instant} for instant in found]
 
 
-def is_event(effect: Effect) -> bool:
-    """Whether an effect happens at an instant."""
-    return any(parameter.symbol in TIMES for parameter in effect.parameters)
-
-
 def happens(effect: Effect, values: Values) -> bool:
     """Whether it is an event in these logs: not where its instant was pushed to the beginning of time, from where on it stays as it is."""
-    instants = [parameter for parameter in effect.parameters if parameter.symbol in TIMES]
-    ends = "duration" in effect.parameter
-    return any(ends or values[instant.symbol] > instant.lower for instant in instants)
+    instant, ends = effect.having(Role.INSTANT), effect.having(Role.DURATION) is not None
+    return instant is not None and (ends or values[instant.symbol] > instant.lower)
 
 
 def _jumps(linearisation: Linearisation, target: int) -> list[float]:
@@ -54,19 +46,19 @@ def _jumps(linearisation: Linearisation, target: int) -> list[float]:
     return [max(found)[1]]
 
 
-def _pulses(times_s: Array, gram: Array, score: Array) -> list[dict[str, float]]:
-    """Pulses from one step to a later one that take away most."""
+def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, float]]:
+    """Pulses from one step to a later one that take away most: when each starts and how long it lasts."""
     size = len(times_s)
     first, last = np.triu_indices(size, 1)
     norm = gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
     power = (score[first] - score[last]) ** 2 / np.maximum(norm, 1e-12)
     power[times_s[last] - times_s[first] > 0.5 * times_s[-1]] = 0.0
     order = np.argsort(-power)
-    found: list[dict[str, float]] = []
+    found: list[tuple[float, float]] = []
     for index in order[:200]:
         start, duration = float(times_s[first[index]]), float(times_s[last[index]] - times_s[first[index]])
-        if all(abs(start - other["t_0"]) > decisions.EVENTS_APART_S for other in found):
-            found.append({"t_0": start, "duration": duration})
+        if all(abs(start - other) > decisions.EVENTS_APART_S for other, _ in found):
+            found.append((start, duration))
         if len(found) == decisions.MOST_INSTANTS:
             break
     return found

@@ -1,6 +1,6 @@
 """Score tests of all effects: how much of what is left a signature explains once the plant's own coefficients have had their share."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import chain, product
 
@@ -9,21 +9,20 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.input_steps import likely_steps
-from diagnosis.detect.instants import instants, is_event
+from diagnosis.detect.instants import instants
 from diagnosis.detect.linearisation import Linearisation, Scores
-from diagnosis.detect.waves import swings, wave_starts
+from diagnosis.detect.waves import wave_starts
 from diagnosis.filter.kalman import Pass
 from diagnosis.fit.gauss_newton import flat_slopes, likelihood, size_scale, stacked
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
-from diagnosis.library.effect_library import EffectLibrary, is_lag
+from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.library.lattice import coarse_step
 from jobs.thread_map import thread_map
-from sim.effect import Effect, Values
+from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
 SMALL_SIZE = 0.05
-FRICTIONS = ("coulomb", "load_friction", "friction_asymmetry")
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +50,10 @@ def score_effects(
     hypothesis = linearisation.fit.hypothesis
     wanted = [name for name in names if name not in hypothesis.effects]
     library = case.library
-    costly = [name for name in wanted if worth is None or name in worth or library.effects[name].kind == "saturation"]
-    stateless = [n for n in wanted if n in library.names and (n in costly or not _sought(library.effects[n]))]
+    costly = [name for name in wanted if worth is None or name in worth or library.effects[name].having(Role.LEVEL)]
+    stateless = [n for n in wanted if n in library.names and (n in costly or not _is_sought(library.effects[n]))]
     others = [name for name in wanted if name in library.wide_names]
-    finite = [name for name in costly if not library.effects[name].on_equations or _limited(library.effects[name])]
+    finite = [name for name in costly if not library.effects[name].on_equations or library.effects[name].is_limit]
     kinds, chosen = (
         (_finite, _smooth, _smooth, _first_order),
         (finite + holding(library, wanted), others, stateless, costly),
@@ -78,7 +77,7 @@ def shape_starts(effect: Effect) -> list[dict[str, float]]:
 
 def _starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Values of an effect's shapes to start from; those of a sine are sought, and where none is likely there are none."""
-    if swings(effect):
+    if effect.swings:
         return wave_starts(linearisation, effect)
     return instants(linearisation, effect) or shape_starts(effect)
 
@@ -89,7 +88,7 @@ def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
     starts: dict[str, list[dict[str, float]]] = {}
     for name in names:
         effect = library.effects[name]
-        if not _limited(effect):
+        if not effect.is_limit:
             starts[name] = _starts(linearisation, effect)
     found = []
     for turn in range(max((len(values) for values in starts.values()), default=0)):
@@ -103,18 +102,13 @@ def _smooth(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
     return found
 
 
-def _sought(effect: Effect) -> bool:
+def _is_sought(effect: Effect) -> bool:
     """Effects whose starts are sought in the logs."""
-    return is_event(effect) or swings(effect)
+    return effect.is_event or effect.swings
 
 
 def _touched(effect: Effect) -> dict[str, float]:
     return {parameter.symbol: parameter.touched for parameter in effect.parameters}
-
-
-def _limited(effect: Effect) -> bool:
-    """Effects that do nothing at all until a limit is reached: no first order."""
-    return effect.kind in ("saturation", "slew_limit")
 
 
 def holding(library: EffectLibrary, names: Sequence[str]) -> list[str]:
@@ -122,7 +116,7 @@ def holding(library: EffectLibrary, names: Sequence[str]) -> list[str]:
     return [
         name
         for name in names
-        if library.effects[name].kind in FRICTIONS and library.effects[name].place in library.frictionless
+        if library.effects[name].holds_at_rest and library.effects[name].place in library.frictionless
     ]
 
 
@@ -160,11 +154,10 @@ def _first_order(case: Case, linearisation: Linearisation, names: Sequence[str])
     for name in names:
         effect = case.library.effects[name]
         plain = sum(not parameter.refining for parameter in effect.parameters) == 1
-        if effect.on_equations or not effect.smooth or not plain or is_lag(name):
+        if effect.on_equations or not effect.smooth or not plain or effect.reads_late:
             continue
         unit = size_scale(effect.size)
-        absent = {parameter.symbol: parameter.first for parameter in effect.parameters}
-        small = {**absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL_SIZE * unit}
+        small = {**effect.absent, effect.size.symbol: (effect.size.zero or 0.0) + SMALL_SIZE * unit}
         runs = passes(case, hypothesis.with_effects({**hypothesis.effects, name: small}))
         if runs is not None:
             scores = linearisation.scores_of(((stacked(runs) - linearisation.w) / SMALL_SIZE)[:, None])
@@ -188,14 +181,22 @@ def _finite(case: Case, linearisation: Linearisation, names: Sequence[str]) -> l
 
 
 def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:
-    """Sizes to try of an effect without first order; those of a limit and of a sensor's steps are seen in the log."""
+    """Sizes to try of an effect without first order; those of a level and of steps are seen in the log."""
+    seen = SEEN_SIZES.get(effect.size.role)
+    return list(effect.size.starts) or [effect.size.reference] if seen is None else seen(case, linearisation, effect)
+
+
+def _levels(case: Case, _: Linearisation, effect: Effect) -> list[float]:
+    """Shares of an input's largest command."""
+    model = case.library.bound.model
+    column = model.inputs.index(model.places.inputs[effect.place].variable)
+    peak = max(float(np.max(np.abs(flight.filter_input.u[:, column]))) for flight in case.flights)
+    return [share * peak for share in decisions.PEAK_SHARES if peak > 0.0]
+
+
+def _steps(case: Case, linearisation: Linearisation, effect: Effect) -> list[float]:
+    """The steps of a sensor, read off its readings, or those of an input, seen in the motion."""
     library = case.library
-    if effect.kind == "saturation":
-        column = library.bound.model.inputs.index(library.bound.model.places.inputs[effect.place].variable)
-        peak = max(float(np.max(np.abs(flight.filter_input.u[:, column]))) for flight in case.flights)
-        return [share * peak for share in decisions.PEAK_SHARES if peak > 0.0]
-    if effect.kind != "quantization":
-        return list(effect.size.starts) or [effect.size.reference]
     sensor = library.bound.model.places.sensors.get(effect.place)
     if sensor is None:
         return likely_steps(linearisation, effect.place)
@@ -203,6 +204,12 @@ def _sizes(case: Case, linearisation: Linearisation, effect: Effect) -> list[flo
     read = np.concatenate([flight.filter_input.read[:, place] for flight in case.flights])
     step = coarse_step(read, library.bound.plant.sensors[sensor.output])
     return [] if step is None else [step]
+
+
+SEEN_SIZES: Mapping[Role, Callable[[Case, Linearisation, Effect], list[float]]] = {
+    Role.LEVEL: _levels,
+    Role.STEP: _steps,
+}
 
 
 def _tried(case: Case, linearisation: Linearisation, effect: Effect, values: Values) -> ScoreTest | None:

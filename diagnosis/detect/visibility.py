@@ -7,6 +7,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.detect.score_tests import ScoreTest
 from diagnosis.hypothesis.case import Case
+from sim.effect import Role
 
 
 def cannot_tell(case: Case, score_tests: Sequence[ScoreTest]) -> bool:
@@ -19,7 +20,7 @@ def judged(case: Case, score_tests: Sequence[ScoreTest]) -> list[str]:
     return [
         name
         for name in case.library.candidates
-        if not name.endswith(".quantization") or name in {e.effect for e in score_tests}
+        if case.library.effects[name].having(Role.STEP) is None or name in {e.effect for e in score_tests}
     ]
 
 

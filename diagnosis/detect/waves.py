@@ -12,7 +12,7 @@ from diagnosis.detect.linearisation import Linearisation
 from diagnosis.detect.signals import by_step
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Disturbances, Pass
-from sim.effect import Effect, EffectParameter
+from sim.effect import Effect, EffectParameter, Role
 
 Array = NDArray[np.float64]
 RATES_RAD_S = np.arange(0.3, 14.0, 0.05)
@@ -21,19 +21,15 @@ APART_RAD_S = 0.3
 
 def wave_starts(linearisation: Linearisation, effect: Effect) -> list[dict[str, float]]:
     """Starts of an effect that swings as a sine: its likeliest waves, each as sine and as cosine; empty for other effects."""
-    target = disturbed_by(linearisation.case, effect) if swings(effect) else None
-    if target is None:
+    target, phase = disturbed_by(linearisation.case, effect), effect.having(Role.PHASE)
+    if target is None or phase is None:
         return []
-    if "rate" in effect.parameter:
-        symbol, found = "rate", _foreign(linearisation, target, likely_waves(linearisation, target))
+    waves = effect.having(Role.WAVES)
+    if waves is None:
+        symbol, found = effect.symbol(Role.RATE), _foreign(linearisation, target, likely_waves(linearisation, target))
     else:
-        symbol, found = "waves", _likely_counts(linearisation, target, effect.parameter["waves"])
-    return [{symbol: value, "phase": phase} for value in found for phase in effect.parameter["phase"].starts]
-
-
-def swings(effect: Effect) -> bool:
-    """Whether an effect is a sine of something."""
-    return "phase" in effect.parameter
+        symbol, found = waves.symbol, _likely_counts(linearisation, target, waves)
+    return [{symbol: value, phase.symbol: start} for value in found for start in phase.starts]
 
 
 def _foreign(linearisation: Linearisation, speed: int, rates: Sequence[float]) -> tuple[float, ...]:

@@ -26,7 +26,6 @@ from sim.start import start_state
 
 Array = NDArray[np.float64]
 GONE = 1e-9  # of gravity's moment where the rig is turned
-SHIFTED_WEIGHT = ".weight_shift"
 MOST_CLIPPED = 0.05  # share of the samples that may ask for more than an input can give
 
 
@@ -56,7 +55,7 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
     model, own = library.bound.model, len(library.states)
     start_s = max(float(flight.log.t_s[-1]) for flight in case.flights)
     x0 = np.asarray(start_state(library.bound, law.rest.x0), dtype=float)
-    plant = Flown(case, _without_weights(plan, hypothesis), x0, start_s, locked=plan.locked)
+    plant = Flown(case, _mounted(case, plan, hypothesis), x0, start_s, locked=plan.locked)
     arms = [axis for axis in model.axes if axis.position is not None]
     columns = [k for k, axis in enumerate(arms) if axis.name not in plan.locked]
     u, z = np.empty((len(plan.t_s), len(model.inputs))), np.zeros(len(law.tracked))
@@ -91,11 +90,12 @@ def simulate_experiment(case: Case, plan: Plan, law: StandIn, hypothesis: Hypoth
     return SimulatedExperiment(log, bool(kept and _off_the_stops(case, plan, x)))
 
 
-def _without_weights(plan: Plan, hypothesis: Hypothesis) -> Hypothesis:
-    """A moved weight turns no axis that gravity does not."""
+def _mounted(case: Case, plan: Plan, hypothesis: Hypothesis) -> Hypothesis:
+    """The hypothesis as the plan mounts the rig: a moved weight turns no axis that gravity does not."""
     if not plan.weightless:
         return hypothesis
-    return hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not n.endswith(SHIFTED_WEIGHT)})
+    effects = case.library.effects
+    return hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if not effects[n].needs_gravity})
 
 
 def _off_the_stops(case: Case, plan: Plan, x: Array) -> bool:
@@ -123,7 +123,7 @@ def missed(data: Case, one: Fit, plan: Plan, process_noise: Array) -> float | No
 
     Both hypotheses of a pair are given the same `process noise`: one that takes more of it would seem to miss less.
     """
-    hypothesis = replace(_without_weights(plan, one.hypothesis), process_noise=process_noise)
+    hypothesis = replace(_mounted(data, plan, one.hypothesis), process_noise=process_noise)
     compiled = data.library.compiled(hypothesis.effects)
     count = len(hypothesis.theta)
     numbers = [

@@ -7,16 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import SCATTERS, Fit, seen_in_readings
-from diagnosis.fit.jitter import jitter_sd, scatters
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.jitter import jitter_sd
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
-from diagnosis.library.effect_library import is_gust
 from diagnosis.search.gusts import gust_sd
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
 from sim.added_effects import with_effects
+from sim.effect import Effect, Role
 
 Array = NDArray[np.float64]
 CORRELATION_DIGITS = 9
@@ -71,24 +71,9 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
     """Each effect's parameters with one standard deviation."""
     spread = deviations(fit)[len(fit.hypothesis.theta) :]
     sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
-    sd |= {
-        (name, s): decisions.GRID_SD * v
-        for name, of in fit.hypothesis.effects.items()
-        if seen_in_readings(name)
-        for s, v in of.items()
-    }
-    sd |= {
-        (name, SCATTERS): case.stated_sd[name][SCATTERS]
-        if name in case.stated
-        else jitter_sd(case, fit.hypothesis, name)
-        for name in fit.hypothesis.effects
-        if scatters(case, name)
-    }
-    sd |= {
-        (name, symbol): deviation
-        for name in filter(is_gust, fit.hypothesis.effects)
-        for symbol, deviation in gust_sd(case, fit.hypothesis, name).items()
-    }
+    for name in fit.hypothesis.effects:
+        beside = _beside_slopes(case, fit, case.library.effects[name])
+        sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}
     return {
         name: {
             symbol: Estimate(float(values[symbol]), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
@@ -96,6 +81,20 @@ def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
         }
         for name, values in fit.hypothesis.effects.items()
     }
+
+
+def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
+    """One standard deviation of those of an effect's numbers that are not found by their slopes."""
+    if effect.shown_in_readings:
+        return {symbol: decisions.GRID_SD * v for symbol, v in fit.hypothesis.effects[effect.name].items()}
+    if effect.is_noise:
+        return gust_sd(case, fit.hypothesis, effect)
+    scatter = effect.having(Role.JITTER)
+    if scatter is None:
+        return {}
+    if effect.name in case.stated:
+        return {scatter.symbol: case.stated_sd[effect.name][scatter.symbol]}
+    return {scatter.symbol: jitter_sd(case, fit.hypothesis, effect.name)}
 
 
 def _unit(case: Case, effect: str, symbol: str) -> str:

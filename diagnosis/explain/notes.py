@@ -11,7 +11,6 @@ from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
-from diagnosis.library.effect_library import is_gust
 from records.reasons import Note
 
 
@@ -98,7 +97,7 @@ def _unseen(case: Case, score_tests: Sequence[ScoreTest], chosen: FittedHypothes
 
 
 def _unfollowed(case: Case) -> Iterator[Note]:
-    names = [name for name, effect in case.library.effects.items() if not (effect.repeats or is_gust(name))]
+    names = [name for name, effect in case.library.effects.items() if not (effect.repeats or effect.is_noise)]
     if names:
         yield Note("unfollowed", "library", {"effects": names})
 

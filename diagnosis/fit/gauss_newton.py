@@ -10,16 +10,14 @@ from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
-from diagnosis.library.effect_library import is_gust, is_lag
-from diagnosis.library.input_effects import LOST_FRAMES, share_slopes
-from sim.effect import EffectParameter
+from diagnosis.library.input_effects import share_slopes
+from sim.effect import EffectParameter, Role
 
 Array = NDArray[np.float64]
 LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
 DAMPINGS = 4
 NUDGE = 1e-3  # finite differences, in units of a parameter's scale
 WIDEST, LAG_JUMP = 0.05, 0.3  # of a lag, over which its slope is taken at most; how much of ln s is a jump there
-SCATTERS = "jitter"  # the symbol of a number that makes readings less sure (jitter.py)
 OUT_OF_REACH = 1e3  # references
 
 
@@ -51,11 +49,12 @@ class Fit:
 
 
 def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tuple[Free, ...]:
-    """The numbers of the supposed effects that a fit may move."""
+    """The numbers of the supposed effects that a fit may move: those of which its slopes tell."""
     found = []
     for name, values in hypothesis.effects.items():
-        for parameter in case.library.effects[name].parameters:
-            if seen_in_readings(name) or is_gust(name) or parameter.symbol == SCATTERS:
+        effect = case.library.effects[name]
+        for parameter in effect.parameters:
+            if effect.shown_in_readings or effect.is_noise or parameter.role is Role.JITTER:
                 continue
             if name in case.stated:
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
@@ -65,11 +64,6 @@ def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tup
             elif shapes:
                 found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
     return tuple(found)
-
-
-def seen_in_readings(name: str) -> bool:
-    """Whether an effect's number is read off the log: a sensor's coarse readings lie on its grid, and on no grid a little beside it."""
-    return name.endswith("_sensor.quantization")
 
 
 def from_zero(parameter: EffectParameter) -> bool:
@@ -193,7 +187,8 @@ def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: f
     if not inside.all():
         _add_differences(case, hypothesis, free, runs, own, information, pull)
     for row, entry in enumerate(free, count):
-        if is_lag(entry.effect) and hypothesis.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
+        late = case.library.effects[entry.effect].reads_late
+        if late and hypothesis.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
             pull[row], further = _smoothed(case, hypothesis, entry, float(information[row, row]))
             information[row, row] += further
     information *= np.outer(scale, scale)
@@ -243,8 +238,8 @@ def _add_differences(
     slopes = np.concatenate([flat_slopes(run) for run in runs])
     count = len(hypothesis.theta)
     outside = np.setdiff1d(np.arange(count, len(pull)), own)
-    for row in [row for row in outside.tolist() if free[row - count].effect == LOST_FRAMES and _knows_losses(case)]:
-        share = hypothesis.effects[LOST_FRAMES]["p"]
+    for row in [row for row in outside.tolist() if _is_loss(free[row - count]) and _knows_losses(case)]:
+        share = hypothesis.effects[free[row - count].effect][free[row - count].parameter.symbol]
         slopes_by_share = [share_slopes(flight.filter_input, share) for flight in case.flights]
         pull[row] = -sum(slope for slope, _ in slopes_by_share)
         information[row, row] = -sum(bend for _, bend in slopes_by_share)
@@ -273,6 +268,10 @@ def _smoothed(case: Case, hypothesis: Hypothesis, entry: Free, known: float) -> 
     change = np.concatenate([np.log(one.s / other.s).ravel() for one, other in zip(above, below, strict=True)])
     change = np.where(np.abs(change) < LAG_JUMP, change, 0.0) / (2.0 * reach)
     return (likelihood(below) - likelihood(above)) / (2.0 * reach), 0.5 * float(change @ change)
+
+
+def _is_loss(entry: Free) -> bool:
+    return entry.parameter.role is Role.LOSS
 
 
 def _knows_losses(case: Case) -> bool:

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import SCATTERS, likelihood
+from diagnosis.fit.gauss_newton import likelihood
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.library.sensor_effects import rates
 from jobs.thread_map import thread_map
+from sim.effect import Role
 
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
 FOURTH = 70.0  # the sum of the squares of 1, 4, 6, 4, 1
@@ -59,7 +60,7 @@ def most_shown_s(case: Case, output: str) -> float:
 
 def scatters(case: Case, name: str) -> bool:
     """Whether an effect has a scatter."""
-    return SCATTERS in case.library.effects[name].parameter
+    return case.library.effects[name].having(Role.JITTER) is not None
 
 
 def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
@@ -68,7 +69,8 @@ def jitter_sd(case: Case, hypothesis: Hypothesis, name: str) -> float:
     Of none, what costs half a nat: the likelihood falls with the square of a scatter that is not there. As large as what was tried where
     the likelihood falls by less than that.
     """
-    tau_s, jitter_s = (hypothesis.effects[name][symbol] for symbol in ("tau", SCATTERS))
+    effect = case.library.effects[name]
+    tau_s, jitter_s = (hypothesis.effects[name][effect.symbol(role)] for role in (Role.LATENESS, Role.JITTER))
     reach = 0.2 * jitter_s if jitter_s > 0.0 else decisions.JITTER_SHARES[0] * tau_s
     found = _tried(case, hypothesis, name, {max(jitter_s - reach, 0.0), jitter_s, jitter_s + reach})
     lost = found[jitter_s] - 0.5 * (found[max(jitter_s - reach, 0.0)] + found[jitter_s + reach])
@@ -86,10 +88,10 @@ def _roughness(t_s: Array, read: Array, step: float) -> Array:
 
 
 def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
-    tau_s = hypothesis.effects[name]["tau"]
+    tau_s = hypothesis.effects[name][case.library.effects[name].symbol(Role.LATENESS)]
     most_s = most_shown_s(case, case.library.bound.model.places.sensors[name.split(".")[0]].output)
     if most_s == 0.0:
-        return _with(hypothesis, name, 0.0)
+        return _with(case, hypothesis, name, 0.0)
     coarse = _tried(
         case,
         hypothesis,
@@ -99,19 +101,20 @@ def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
     best = max(coarse, key=lambda jitter_s: coarse[jitter_s])
     found = coarse | _tried(case, hypothesis, name, [share * best for share in JITTER_FINELY])
     best = max(found, key=lambda jitter_s: found[jitter_s])
-    return _with(hypothesis, name, best if found[best] > found[0.0] + decisions.LEAST_JITTER_GAIN else 0.0)
+    return _with(case, hypothesis, name, best if found[best] > found[0.0] + decisions.LEAST_JITTER_GAIN else 0.0)
 
 
 def _tried(case: Case, hypothesis: Hypothesis, name: str, values_s: Iterable[float]) -> dict[float, float]:
     """The log likelihood by jitter."""
 
     def value(jitter_s: float) -> float:
-        runs = passes(case, _with(hypothesis, name, jitter_s))
+        runs = passes(case, _with(case, hypothesis, name, jitter_s))
         return -np.inf if runs is None else likelihood(runs)
 
     asked = sorted(set(values_s))
     return dict(zip(asked, thread_map(value, asked), strict=True))
 
 
-def _with(hypothesis: Hypothesis, name: str, jitter_s: float) -> Hypothesis:
-    return hypothesis.with_effects({**hypothesis.effects, name: {**hypothesis.effects[name], SCATTERS: jitter_s}})
+def _with(case: Case, hypothesis: Hypothesis, name: str, jitter_s: float) -> Hypothesis:
+    values = {**hypothesis.effects[name], case.library.effects[name].symbol(Role.JITTER): jitter_s}
+    return hypothesis.with_effects({**hypothesis.effects, name: values})

@@ -11,8 +11,7 @@ from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise, Pass
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import RUB_S
-from diagnosis.library.effect_library import CompiledFilter, EffectLibrary, is_gust, is_lag
-from diagnosis.library.gust_state import gust_state
+from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
 from diagnosis.library.input_effects import commanded
 from diagnosis.library.sensor_effects import sensed
 from jobs.thread_map import thread_map
@@ -55,7 +54,8 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
     for name, values in hypothesis.effects.items():
         if name in compiled.names:
             for symbol, value in values.items():
-                p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if is_lag(name) else value
+                late = library.effects[name].reads_late
+                p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if late else value
     return p
 
 
@@ -78,21 +78,23 @@ def _sent(
 
 
 def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis) -> Noise:
-    """The filter's noise: on each axis' speed its process noise, on gusts their own, next to none elsewhere."""
+    """The filter's noise: on each axis' speed its process noise, on effects that are noise their own, next to none elsewhere."""
     x0, p0 = start_under(compiled, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
-    for name in filter(is_gust, hypothesis.effects):
-        place, values = compiled.states.index(gust_state(name)), hypothesis.effects[name]
-        q[place], p0[place] = 2.0 * values["sigma"] ** 2 / values["T"], values["sigma"] ** 2
+    for name, values in hypothesis.effects.items():
+        state = case.library.effects[name].filter_state
+        if state is not None and state.noise is not None:
+            place = compiled.states.index(state.name)
+            q[place], p0[place] = state.noise(values)
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
     return Noise(q, np.full(max(1, len(compiled.filter.axes)), RUB_S), p0, drive, flight.step_s)
 
 
 def start_under(compiled: CompiledFilter, flight: FilteredLog) -> tuple[Array, Array]:
     """Where a flight starts and its variances, with what effects brought: a lag at what was read, all else at rest."""
-    further = compiled.states[len(flight.x0) :]
-    own = {f"{name}_read": place for place, name in enumerate(flight.log.columns.outputs)}
+    further, outputs = compiled.states[len(flight.x0) :], flight.log.columns.outputs
+    own = {state: outputs.index(output) for state, output in compiled.follows.items()}
     read = [flight.first_read[own[s]] if s in own else 0.0 for s in further]
     sure = [flight.filter_input.r[0, own[s]] if s in own else START_SD**2 for s in further]
     return np.append(flight.x0, read), np.append(flight.p0, sure)

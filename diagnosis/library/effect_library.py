@@ -6,7 +6,7 @@ compiled library: a second diagnosis of the same kind of plant starts at once.
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 import sim
 from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
-from diagnosis.library.gust_state import gusty
-from diagnosis.library.sensor_lag_state import lagged
+from diagnosis.library.filter_state import with_filter_state
 from diagnosis.library.subprocess import NotDone, in_subprocess
 from jobs.thread_map import begin
 from records.errors import BadInput
@@ -32,7 +31,7 @@ from sim.added_effects import library as all_effects
 from sim.bind import BoundPlant, bind, named_values
 from sim.composition.build import switched_model
 from sim.composition.switch import switch_name
-from sim.effect import Effect, coefficient
+from sim.effect import Effect, FilterState, coefficient
 from sim.model import Model
 from toolchain.cache import CACHE_DIR, is_whole
 
@@ -45,13 +44,15 @@ BUILDING: dict[str, Lock] = {}  # by plant and effects: one builds a variant, ot
 class CompiledFilter:
     """One compiled filter: the effects `names` are in its equations, at next to no size in `p`; `index` finds coefficients in p.
 
-    `states` are the plant's own, then those that effects brought; `switches` the places in p of the effects' switches.
+    `states` are the plant's own, then those that effects brought; `follows` the output at whose reading one of these begins, by state;
+    `switches` the places in p of the effects' switches.
     """
 
     filter: Filter
     names: frozenset[str]
     switches: Mapping[str, int]
     states: tuple[str, ...]
+    follows: Mapping[str, str]
     p: Array
     index: Mapping[str, int]
 
@@ -112,48 +113,52 @@ class EffectLibrary:
         return _compiled(self, ())
 
     def prepare(self) -> None:
-        """Begin to open the variants without gusts, the one that takes longest first; who needs one sooner waits for it."""
+        """Begin to open the variants without noise of their own, the one that takes longest first; who needs one sooner waits for it."""
         for effects in (self.whole, (), self.narrow):
             begin(_compiled, self, effects)
 
     @property
     def narrow(self) -> tuple[str, ...]:
-        """Effects that bring no state, and lags, which many hypotheses suppose."""
-        return (*self.names, *filter(is_lag, self.effects))
+        """Effects that bring no state, and those that have one in a filter alone: lags of sensors, which many hypotheses suppose."""
+        return (*self.names, *(name for name, effect in self.effects.items() if _only_filtered(effect)))
 
     @property
     def whole(self) -> tuple[str, ...]:
-        """All effects that any variant carries, but for gusts, which are asked for seldom."""
+        """All effects that any variant carries, but for noise, which is asked for seldom."""
         return (*self.narrow, *self.wide_names, *self.bristles)
 
     @cached_property
-    def gusts(self) -> tuple[str, ...]:
-        """Gusts of all axes."""
-        return tuple(filter(is_gust, self.effects))
+    def noises(self) -> tuple[str, ...]:
+        """Effects that are states driven by noise: gusts."""
+        return tuple(name for name, effect in self.effects.items() if effect.is_noise)
+
+    @cached_property
+    def losses(self) -> Effect | None:
+        """The effect by which commands are lost; None where the plant has none."""
+        return next((effect for effect in self.effects.values() if effect.loses_commands), None)
 
     def carried(self, name: str) -> bool:
         """Whether an effect is in the equations of a variant, with slopes by its parameters."""
-        return name in self.whole or name in self.gusts
+        return name in self.whole or name in self.noises
 
     def compiled(self, effects: Iterable[str]) -> CompiledFilter:
-        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all; each with gusts or without.
+        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all; each with noise or without.
 
         States of effects that are off sleep, and take next to no time.
         """
         wanted = set(effects)
         others = wanted.intersection(self.whole)
         carried = () if not others else self.narrow if others.issubset(self.narrow) else self.whole
-        return _compiled(self, (*carried, *self.gusts) if wanted.intersection(self.gusts) else carried)
+        return _compiled(self, (*carried, *self.noises) if wanted.intersection(self.noises) else carried)
 
 
-def is_lag(name: str) -> bool:
-    """Whether an effect is the lag of a sensor, which the filter carries as a state, and the simulation on the way of the signal."""
-    return name.endswith("_sensor.lag")
+def _filter_states(library: EffectLibrary, names: Iterable[str]) -> Iterator[FilterState]:
+    return (state for name in names if (state := library.effects[name].filter_state) is not None)
 
 
-def is_gust(name: str) -> bool:
-    """Whether an effect is a gust, which the filter carries as a state with noise of its own, and the simulation as one draw of it."""
-    return name.endswith(".gust")
+def _only_filtered(effect: Effect) -> bool:
+    """Whether a filter carries an effect by a state that no noise drives."""
+    return effect.filter_state is not None and not effect.is_noise
 
 
 def effect_library(bound: BoundPlant) -> EffectLibrary:
@@ -192,6 +197,7 @@ def _compiled(library: EffectLibrary, names: tuple[str, ...]) -> CompiledFilter:
         names=frozenset(names),
         switches=known["switches"],
         states=tuple(known["states"]),
+        follows={state.name: state.follows for state in _filter_states(library, names) if state.follows},
         p=p,
         index={name: place for place, name in enumerate(known["parameters"])},
     )
@@ -218,21 +224,24 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
 
     The states come in the order of how often several are awake at once: the filter leaves whole blocks of sleepers alone.
     """
-    behind, gusts = [name for name in names if is_lag(name)], [name for name in names if is_gust(name)]
-    switched = [name for name in names if name not in (*behind, *gusts)]
     effects = all_effects(bound)
+    behind = [name for name in names if _only_filtered(effects[name])]
+    noises = [name for name in names if effects[name].is_noise]
+    switched = [name for name in names if name not in (*behind, *noises)]
     values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
     values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
-    values |= {coefficient(name, p.symbol): p.reference for name in (*behind, *gusts) for p in effects[name].parameters}
+    values |= {
+        coefficient(name, p.symbol): p.reference for name in (*behind, *noises) for p in effects[name].parameters
+    }
     with EQUATIONS:
         model = switched_model(bound.plant.model, tuple(switched))
         for name in behind:
-            model = lagged(model, name)
+            model = with_filter_state(model, effects[name])
         brought = model.states[len(bound.model.states) :]
         late = brought[len(brought) - len(behind) :]
         model = replace(model, states=(*bound.model.states, *late, *brought[: len(brought) - len(behind)]))
-        for name in gusts:
-            model = gusty(model, name)
+        for name in noises:
+            model = with_filter_state(model, effects[name])
         model = observed(model, bound.model)
         equations = equations_text(model)
     parameters = [str(symbol) for symbol in model.parameter_symbols]

@@ -14,12 +14,18 @@ from diagnosis.filter.filter_input import FilterInput, with_inputs
 from diagnosis.library.effect_library import EffectLibrary
 from sim.composition.build import paths_with
 from sim.effect import Values
+from sim.paths.input_stages import DroppedFrames, Lag, SlewLimit
+from sim.paths.path import InputStage
 from sim.plants import MODELS
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
 SHORTEST_S = 1e-6
-LOST_FRAMES = "loop.dropped_frames"
+AVERAGED = (
+    DroppedFrames,
+    SlewLimit,
+    Lag,
+)  # stages whose mean over each step is known; all others come with their own instants
 DECLARATIONS = """
 void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double *mean);
 void slew_means(int64_t steps, const double *h_s, const double *wanted, double rate, double *mean);
@@ -29,29 +35,26 @@ void lossy_means(int64_t steps, const double *lost, const double *wanted, double
 
 def commanded(library: EffectLibrary, filter_input: FilterInput, effects: Mapping[str, Values]) -> FilterInput:
     """The filter input with its inputs sent through the stages of `effects`; those that need instants of their own bring them."""
-    quick = {name: values for name, values in effects.items() if _quick(name)}
-    others = {name: values for name, values in effects.items() if name not in (*quick, LOST_FRAMES)}
-    if LOST_FRAMES in effects:
-        filter_input = _arrived(filter_input, effects[LOST_FRAMES]["p"])
-    if others:
-        stages, _ = paths_with(MODELS[library.bound.plant.model](), others)
-        filter_input = with_inputs(filter_input, stages)
-    for name, values in quick.items():
-        place, kind = name.split(".")
-        places = library.bound.model.places
-        variable = (places.inputs.get(place) or places.rotors[place]).variable
-        column = library.bound.model.inputs.index(variable)
-        u = filter_input.u.copy()
-        if kind == "slew_limit":
-            u[:, column] = _behind(filter_input, column, "slew_means", values["r"])
-        elif values["tau"] > SHORTEST_S:
-            u[:, column] = _behind(filter_input, column, "lag_means", values["tau"])
-        filter_input = replace(filter_input, u=u)
+    stages = {name: stage for name, values in effects.items() if (stage := _stage(library, name, values)) is not None}
+    for stage in stages.values():
+        if isinstance(stage, DroppedFrames):
+            filter_input = _arrived(filter_input, stage.p)
+    further = {name: effects[name] for name in effects if not isinstance(stages.get(name), AVERAGED)}
+    if further:
+        others, _ = paths_with(MODELS[library.bound.plant.model](), further)
+        filter_input = with_inputs(filter_input, others)
+    for stage in stages.values():
+        if isinstance(stage, SlewLimit):
+            filter_input = _behind(filter_input, stage.column, "slew_means", stage.rate)
+        elif isinstance(stage, Lag) and stage.tau_s > SHORTEST_S:
+            filter_input = _behind(filter_input, stage.column, "lag_means", stage.tau_s)
     return filter_input
 
 
-def _quick(name: str) -> bool:
-    return name.endswith((".lag", ".slew_limit")) and not name.endswith("_sensor.lag")
+def _stage(library: EffectLibrary, name: str, values: Values) -> InputStage | None:
+    """The stage that an effect is on the way of the inputs; None for others."""
+    on_input = library.effects[name].on_input
+    return None if on_input is None else on_input(values)
 
 
 def _arrived(filter_input: FilterInput, share: float) -> FilterInput:
@@ -83,14 +86,16 @@ def lost_with(ratios: Array, share: float) -> Array:
     return np.asarray(odds / (1.0 - share + odds))
 
 
-def _behind(filter_input: FilterInput, column: int, stage: str, value: float) -> Array:
+def _behind(filter_input: FilterInput, column: int, stage: str, value: float) -> FilterInput:
+    """The filter input with one input sent through a stage of c/inputs.c."""
     _, lib = _library()
-    h = np.append(np.diff(filter_input.t_s), filter_input.t_s[-1] - filter_input.t_s[-2])
-    return _means(
+    u, h = filter_input.u.copy(), np.append(np.diff(filter_input.t_s), filter_input.t_s[-1] - filter_input.t_s[-2])
+    u[:, column] = _means(
         h,
         filter_input.u[:, column],
         lambda steps, h_s, wanted, mean: getattr(lib, stage)(steps, h_s, wanted, value, mean),
     )
+    return replace(filter_input, u=u)
 
 
 def _lossy(lost: Array, wanted: Array) -> Array:

@@ -1,7 +1,8 @@
 """Effects of sensors as the filter takes them: the reading is turned back into what it says of the true output."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,35 +11,58 @@ from diagnosis.filter.filter_input import FilterInput, late, variance_stated
 from diagnosis.library.effect_library import EffectLibrary
 from diagnosis.library.lattice import grid_evidence
 from sim.effect import Values
+from sim.paths.output_stages import OutputDelay, OutputLag, OutputSteps, Play
+from sim.paths.path import OutputStage
 
 Array = NDArray[np.float64]
+Row = TypeVar("Row")
 # A reading behind play says that the axis lies within it, no more: as a bell of the same variance an interval costs ln sqrt(12 / 2 pi).
 BELL = 0.32
 RATE_S = 0.05  # to both sides, over which a reading's rate is taken: long enough for an encoder's steps, short for a helicopter
 
 
 def sensed(library: EffectLibrary, filter_input: FilterInput, effects: Mapping[str, Values]) -> FilterInput:
-    """The filter input under the sensor effects among `effects`.
+    """The filter input under the sensor effects among `effects`: what each reading says of the true output.
 
     A delay puts the reading back to when it was true, a lag likewise by its time constant; steps make it less certain; behind play the
-    axis is half the play further the way it last moved, and anywhere within it while the reading stands.
+    axis is half the play further the way it last moved, and anywhere within it while the reading stands. Raises NotImplementedError for
+    a stage that READ_BACK does not know.
     """
     for name, values in effects.items():
-        place, kind = name.split(".")
-        sensor = library.bound.model.places.sensors.get(place)
-        if sensor is None:
-            continue
-        output = library.outputs.index(sensor.output)
-        if kind == "delay":
-            stated = variance_stated(library.bound.plant, sensor.output)
-            filter_input = late(unsure_when(filter_input, output, values["jitter"], stated), output, values["tau"])
-        elif kind == "lag":
-            filter_input = late(filter_input, output, values["tau"])
-        elif kind == "quantization":
-            filter_input = _coarser(filter_input, output, values["q"], library.bound.plant.sensors[sensor.output])
-        elif kind == "backlash":
-            filter_input = behind_play(filter_input, output, values["width"])
+        on_output = library.effects[name].on_output
+        if on_output is not None:
+            stage = on_output(values)
+            filter_input = row_for(READ_BACK, stage, "READ_BACK of diagnosis/library/sensor_effects.py")(
+                library, filter_input, stage
+            )
     return filter_input
+
+
+def row_for(table: Mapping[type, Row], stage: OutputStage, where: str) -> Row:
+    """The row of a table by kind of stage; raises NotImplementedError, which says where one is missing."""
+    if type(stage) not in table:
+        known = ", ".join(kind.__name__ for kind in table)
+        raise NotImplementedError(
+            f"{where} has no row for the stage {type(stage).__name__}, only for {known}: add what a diagnosis makes of it"
+        )
+    return table[type(stage)]
+
+
+def _on_time(library: EffectLibrary, filter_input: FilterInput, stage: OutputDelay) -> FilterInput:
+    stated = variance_stated(library.bound.plant, library.outputs[stage.output])
+    return late(unsure_when(filter_input, stage.output, stage.jitter_s, stated), stage.output, stage.tau_s)
+
+
+def _unlagged(_: EffectLibrary, filter_input: FilterInput, stage: OutputLag) -> FilterInput:
+    return late(filter_input, stage.output, stage.tau_s)
+
+
+def _unrounded(library: EffectLibrary, filter_input: FilterInput, stage: OutputSteps) -> FilterInput:
+    return _coarser(filter_input, stage.output, stage.q, library.bound.plant.sensors[library.outputs[stage.output]])
+
+
+def _through_play(_: EffectLibrary, filter_input: FilterInput, stage: Play) -> FilterInput:
+    return behind_play(filter_input, stage.output, stage.width)
 
 
 def unsure_when(filter_input: FilterInput, output: int, jitter_s: float, stated: float) -> FilterInput:
@@ -132,3 +156,12 @@ def standing_rows(filter_input: FilterInput, output: int) -> NDArray[np.int64]:
     turns = (np.sign(moved[changes[before]]) != np.sign(moved[changes[after]])) & (standing > 0)
     unsure = turns | (standing < 0) | (standing > 2.0 * float(np.median(np.diff(changes))))
     return np.asarray(seen[unsure])
+
+
+# What a filter makes of the readings behind each kind of stage: (library, filter input, stage) -> filter input.
+READ_BACK: Mapping[type, Callable[[EffectLibrary, FilterInput, Any], FilterInput]] = {
+    OutputDelay: _on_time,
+    OutputLag: _unlagged,
+    OutputSteps: _unrounded,
+    Play: _through_play,
+}

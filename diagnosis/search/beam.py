@@ -14,7 +14,6 @@ from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.library.input_effects import LOST_FRAMES
 from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
 from jobs.thread_map import thread_map
@@ -71,7 +70,9 @@ def alone(
     fit with lost frames."""
     nominal = first.fit
     worth = _worth(score_tests)
-    found = {} if lossy is None else {frozenset((LOST_FRAMES,)): as_fitted(case, lossy)}
+    found: dict[frozenset[str], FittedHypothesis] = {}
+    if lossy is not None and case.library.losses is not None:
+        found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     low_noise = with_low_process_noise(case, nominal)
     jobs = _promising(nominal, score_tests, False)[: decisions.SINGLES]
     if low_noise is not None:

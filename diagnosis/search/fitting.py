@@ -15,6 +15,7 @@ from diagnosis.fit.low_process_noise import with_own_process_noise
 from diagnosis.fit.process_noise import process_noise_of, with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, passes
+from sim.effect import Role
 
 Array = NDArray[np.float64]
 LESS = 0.2  # of an effect's size, from which it is fitted once more where more made all worse
@@ -42,7 +43,7 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
     """A first joint fit, under the process noise that was there before, or what then shows where that had been lowered."""
     hypothesis, entry = job.start.hypothesis, job.score_test
     start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
-    if entry.effect.endswith("_input.quantization"):
+    if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
     found = fit(case, start, rounds=4)
     if found is not None and job.low_noise:
@@ -70,7 +71,7 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The fit with the process noise that then remains."""
     start = with_jitter(case, process_noise_of(case, fitted.fit), fitted.effects)
     for name in fitted.effects:
-        start = _polished(case, start, name, STEP_FINELY) if name.endswith("_input.quantization") else start
+        start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
     for name in holding(case.library, fitted.effects):
         start = _likeliest(case, start, name, LEVELS)
     found = fit(case, start, rounds=5)
@@ -92,8 +93,13 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     return max((fitted, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
 
 
+def _is_rough(case: Case, name: str) -> bool:
+    """Whether the likelihood by an effect's size is too rough for slopes."""
+    return case.library.effects[name].size.rough
+
+
 def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[float]) -> Hypothesis:
-    """The start with the likeliest step near it: the likelihood of steps is too rough for slopes."""
+    """The start with the likeliest size near it, where slopes do not lead to it."""
     for reach in reaches:
         start = _likeliest(case, start, effect, np.linspace(1.0 - reach, 1.0 + reach, 13))
     return start
@@ -155,9 +161,11 @@ def _whole_counts(case: Case, found: Fit) -> bool:
     """Whether every slip of a sensor is at least a count: what is smaller is rounding."""
     library = case.library
     for name, values in found.hypothesis.effects.items():
-        if name.endswith(".count_slip"):
-            sensor = library.bound.model.places.sensors[name.split(".")[0]].output
-            if abs(values["jump"]) < decisions.LEAST_SLIP * library.bound.plant.sensors[sensor]:
+        effect = library.effects[name]
+        jump = effect.having(Role.JUMP)
+        if jump is not None:
+            sensor = library.bound.model.places.sensors[effect.place].output
+            if abs(values[jump.symbol]) < decisions.LEAST_SLIP * library.bound.plant.sensors[sensor]:
                 return False
     return True
 

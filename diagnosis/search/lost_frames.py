@@ -29,9 +29,10 @@ from diagnosis.fit.gauss_newton import Fit, fit, unfitted
 from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
-from diagnosis.library.input_effects import LOST_FRAMES, lost_with
+from diagnosis.library.input_effects import lost_with
 from jobs.thread_map import thread_map
 from sim.bind import evaluated
+from sim.effect import Effect, Role
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
@@ -47,7 +48,8 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
     """The case whose filter inputs say of each frame how much likelier it is lost than not, and its fit with such
     losses, None where nothing
     speaks for them: then what the filter inputs say keeps losses from explaining a delay. The case as it was where nothing can be said."""
-    if LOST_FRAMES not in case.library.candidates or not drives(case):
+    losses = case.library.losses
+    if losses is None or losses.name not in case.library.candidates or not drives(case):
         return case, None
     if any(len(filter_input.t_s) != filter_input.rows for filter_input in linearisation.filter_inputs):
         return case, None
@@ -55,21 +57,23 @@ def with_losses(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | N
     alone = _with_ratios(case, linearisation, answers, 0)
     if loss_evidence(alone, likely_share(alone)) < decisions.LEAST_LOSS_GAIN:
         return alone, None
-    found, fitted = _settled(case, linearisation, answers)
+    found, fitted = _settled(case, linearisation, losses, answers)
     theta = linearisation.fit.hypothesis.theta
     if fitted is not None and theta @ theta > decisions.ASTRAY_LOSSES * len(theta):
-        found, fitted = _likelier((found, fitted), _from_stated(case, linearisation))
+        found, fitted = _likelier((found, fitted), _from_stated(case, linearisation, losses))
     return found, fitted
 
 
-def _settled(case: Case, linearisation: Linearisation, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+def _settled(
+    case: Case, linearisation: Linearisation, losses: Effect, answers: Sequence[Array]
+) -> tuple[Case, Fit | None]:
     """What the innovations say of every frame, found again with what was found supposed until nothing is gained."""
-    found, fitted = _fitted(case, linearisation, answers)
+    found, fitted = _fitted(case, linearisation, losses, answers)
     if fitted is None or fitted.log_posterior < linearisation.fit.log_posterior + decisions.LEAST_LOSS_GAIN:
         return found, None
     for _ in range(LOSS_ROUNDS):
         refined_noise = linearised(found, fitted)
-        again, better = _fitted(found, refined_noise, _all_answers(found, refined_noise))
+        again, better = _fitted(found, refined_noise, losses, _all_answers(found, refined_noise))
         if better is None or better.log_posterior < fitted.log_posterior + decisions.LEAST_LOSS_GAIN:
             break
         more = better.log_posterior - fitted.log_posterior
@@ -79,13 +83,13 @@ def _settled(case: Case, linearisation: Linearisation, answers: Sequence[Array])
     return found, fitted
 
 
-def _from_stated(case: Case, linearisation: Linearisation) -> tuple[Case, Fit | None]:
+def _from_stated(case: Case, linearisation: Linearisation, losses: Effect) -> tuple[Case, Fit | None]:
     """The same from the parameters as stated: those of a plant fitted without losses bend to take their part."""
     start = unfitted(case, linearisation.fit.hypothesis.process_noise)
     if start is None:
         return case, None
     stated = linearised(case, start)
-    return _settled(case, stated, _all_answers(case, stated))
+    return _settled(case, stated, losses, _all_answers(case, stated))
 
 
 def _likelier(one: tuple[Case, Fit | None], other: tuple[Case, Fit | None]) -> tuple[Case, Fit | None]:
@@ -96,14 +100,16 @@ def _all_answers(case: Case, linearisation: Linearisation) -> list[Array]:
     return thread_map(partial(_unit_answers, case, linearisation), range(len(case.flights)))
 
 
-def _fitted(case: Case, linearisation: Linearisation, answers: Sequence[Array]) -> tuple[Case, Fit | None]:
+def _fitted(
+    case: Case, linearisation: Linearisation, losses: Effect, answers: Sequence[Array]
+) -> tuple[Case, Fit | None]:
     """What the innovations of a ground say of every frame, and the fit with that; None where it says nothing."""
     found = _with_ratios(case, linearisation, answers, SWEEPS)
     share = likely_share(found)
     if loss_evidence(found, share) < decisions.LEAST_LOSS_GAIN:
         return found, None
     hypothesis = linearisation.fit.hypothesis
-    start = hypothesis.with_effects({**hypothesis.effects, LOST_FRAMES: {"p": share}})
+    start = hypothesis.with_effects({**hypothesis.effects, losses.name: {losses.symbol(Role.LOSS): share}})
     return found, fit(found, with_process_noise(found, start), rounds=4)
 
 
@@ -137,7 +143,7 @@ def _with_ratios(case: Case, linearisation: Linearisation, answers: Sequence[Arr
     columns = list(drives(case))
 
     def judged(flight: FilteredLog, unit: Array, w: Array) -> FilteredLog:
-        before = _hypothesis(flight.filter_input, linearisation.fit.hypothesis)
+        before = _supposed(case, flight.filter_input, linearisation.fit.hypothesis)
         ratios, power = _ratios(flight.filter_input.u, columns, unit, w, before, _judged(flight.filter_input), sweeps)
         return replace(flight, filter_input=replace(flight.filter_input, lost=ratios, loss_power=power))
 
@@ -176,11 +182,12 @@ def _unfolded(answers: Array) -> Array:
     return np.where((later < len(answers))[:, :, None, None], own, 0.0)
 
 
-def _hypothesis(filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
+def _supposed(case: Case, filter_input: FilterInput, hypothesis: Hypothesis) -> Array:
     """The probability with which each frame's loss is supposed already."""
-    if LOST_FRAMES not in hypothesis.effects:
+    losses = case.library.losses
+    if losses is None or losses.name not in hypothesis.effects:
         return np.zeros(filter_input.rows)
-    return lost_with(filter_input.lost, hypothesis.effects[LOST_FRAMES]["p"])
+    return lost_with(filter_input.lost, hypothesis.effects[losses.name][losses.symbol(Role.LOSS)])
 
 
 def _judged(filter_input: FilterInput) -> NDArray[np.uint8]:

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from diagnosis import decisions
 from diagnosis.decisions import held_against
-from diagnosis.detect.score_tests import FRICTIONS
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
@@ -35,10 +34,12 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     best, yields, rules = found[0].evidence + needed_nats, dict[str, Values](), list[Decision]()
     for _, fitted, hypothesis in promising[: decisions.YIELDING_FITTED]:
         ended = fit(case, hypothesis, rounds=4)
-        if ended is not None:
-            rules.append(_rule(fitted, evidence(ended) - found[0].evidence, needed_nats))
-        if ended is not None and evidence(ended) > best:
-            best = evidence(ended)
+        if ended is None:
+            continue
+        explained = evidence(ended, case.library.effects)
+        rules.append(_rule(fitted, explained - found[0].evidence, needed_nats))
+        if explained > best:
+            best = explained
             beside = fitted.fit.hypothesis.effects
             yields = {name: values for name, values in ended.hypothesis.effects.items() if name not in beside}
     if not yields:
@@ -56,7 +57,7 @@ def needed(case: Case, best: FittedHypothesis) -> bool:
     """Whether a hypothesis found where axes yield is worth as much more as that must be, than the same under `case`, where they do not."""
     kept = {name: v for name, v in best.fit.hypothesis.effects.items() if name in case.stated or name in best.effects}
     found = fit(case, with_process_noise(case, best.fit.hypothesis.with_effects(kept)), rounds=4)
-    return found is None or best.evidence > evidence(found) + decisions.YIELDING_GAIN
+    return found is None or best.evidence > evidence(found, case.library.effects) + decisions.YIELDING_GAIN
 
 
 def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
@@ -75,9 +76,15 @@ def _unstated(case: Case, hypothesis: Hypothesis, axis: str) -> Iterator[Effect]
     """The ways in which an axis may yield: none where it never moves, has no dry friction, or is known to yield."""
     ways = [effect for effect in case.library.effects.values() if effect.place == axis and not effect.names_a_gap]
     moves = any(axis not in flight.locked for flight in case.flights)
-    rubs = axis not in case.library.frictionless or any(f"{axis}.{kind}" in hypothesis.effects for kind in FRICTIONS)
+    rubs = axis not in case.library.frictionless or _is_held(case, hypothesis, axis)
     if moves and rubs and not any(effect.name in case.stated for effect in ways):
         yield from ways
+
+
+def _is_held(case: Case, hypothesis: Hypothesis, axis: str) -> bool:
+    """Whether dry friction of an axis is supposed."""
+    supposed = (case.library.effects[name] for name in hypothesis.effects)
+    return any(effect.place == axis and effect.holds_at_rest for effect in supposed)
 
 
 def _likeliest(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> tuple[Hypothesis, float]:

@@ -56,8 +56,9 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     places = [place for name in parameters for place in places_of(case, name)]
     places += [entry.effect.split(".")[0] for entry in numbers]
     told = (*parameters, *(f"{entry.effect}.{entry.parameter.symbol}" for entry in numbers))
-    score = evidence(found) - decisions.RETUNE_NATS * len(told)
-    return Retune(FittedHypothesis((), stated, evidence(found)), told, tuple(dict.fromkeys(places)), float(score))
+    explained = evidence(found, case.library.effects)
+    score = explained - decisions.RETUNE_NATS * len(told)
+    return Retune(FittedHypothesis((), stated, explained), told, tuple(dict.fromkeys(places)), float(score))
 
 
 def _as_stated(found: Fit, factor: Array, own: Collection[str]) -> Fit:

@@ -1,8 +1,9 @@
 """Free runs over consecutive windows of a log, each from the state that the model's own filter had from data up to its first row."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,10 @@ from diagnosis.filter.kalman import Noise
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, filter_input_under, noise_of, start_under
 from diagnosis.library.effect_library import CompiledFilter
-from sim.effect import Values
+from diagnosis.library.sensor_effects import row_for
+from sim.effect import Role, Values
+from sim.paths.output_stages import OutputDelay, OutputLag, OutputSteps, Play
+from sim.paths.path import OutputStage
 
 Array = NDArray[np.float64]
 WINDOW_S = 1.0
@@ -64,7 +68,7 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
             continue
         y, then = -free.w * np.sqrt(free.s), t_s[span.start : span.last]
         seen = np.column_stack([np.interp(then - lateness[k], part.t_s, y[:, k]) for k in range(outputs)])
-        _through_sensors(case, hypothesis.effects, flight.log.y[span.start], seen)
+        seen = _through_sensors(case, hypothesis.effects, flight.log.y[span.start], seen)
         found[span.first : span.last] = seen[span.first - span.start :]
     return found
 
@@ -91,9 +95,10 @@ def _lateness(case: Case, compiled: CompiledFilter, effects: Mapping[str, Values
     library = case.library
     found = [0.0] * len(library.bound.model.outputs)
     for name, values in effects.items():
-        place, kind = name.split(".")
-        if place in library.bound.model.places.sensors and kind in ("delay", "lag") and name not in compiled.names:
-            found[library.outputs.index(library.bound.model.places.sensors[place].output)] += values["tau"]
+        effect = library.effects[name]
+        lateness = effect.having(Role.LATENESS)
+        if effect.on_output is not None and lateness is not None and name not in compiled.names:
+            found[effect.on_output(values).output] += values[lateness.symbol]
     return found
 
 
@@ -120,24 +125,45 @@ def _unseen(filter_input: FilterInput, begin: int, end: int, outputs: int) -> Fi
     )
 
 
-def _through_sensors(case: Case, effects: Mapping[str, Values], read: Array, predicted: Array) -> None:
-    """What play and coarse encoders make of the predicted readings (rows, outputs) of one free run, in place; `read` are its first."""
-    library = case.library
+def _through_sensors(case: Case, effects: Mapping[str, Values], read: Array, predicted: Array) -> Array:
+    """What play and coarse encoders make of the predicted readings (rows, outputs) of one free run; `read` are its first.
+
+    Raises NotImplementedError for a stage that READ does not know.
+    """
+    found = predicted.copy()
     for name, values in effects.items():
-        place, kind = name.split(".")
-        if place in library.bound.model.places.sensors and kind in ("backlash", "quantization"):
-            output = library.outputs.index(library.bound.model.places.sensors[place].output)
-            if kind == "backlash":
-                _behind_play(predicted[:, output], float(read[output]), values["width"])
-            else:
-                predicted[:, output] = values["q"] * np.round(predicted[:, output] / values["q"])
+        on_output = case.library.effects[name].on_output
+        if on_output is not None:
+            stage = on_output(values)
+            reads = row_for(READ, stage, "READ of diagnosis/validate/prediction.py")
+            found[:, stage.output] = reads(stage, found[:, stage.output], float(read[stage.output]))
+    return found
 
 
-def _behind_play(predicted: Array, read: float, width: float) -> None:
-    """What a reading behind play follows of the predicted angle, in place, from the first reading on."""
+def _as_it_is(stage: OutputStage, predicted: Array, read: float) -> Array:
+    """A stage that is late alone: the readings are asked for when they were true."""
+    return predicted
+
+
+def _in_steps(stage: OutputSteps, predicted: Array, read: float) -> Array:
+    return np.asarray(stage.q * np.round(predicted / stage.q))
+
+
+def _behind_play(stage: Play, predicted: Array, read: float) -> Array:
+    """What a reading behind play follows of the predicted angle, from the first reading on."""
     if not np.isfinite(predicted).all():
-        return
-    stands = read if np.isfinite(read) else float(predicted[0])
+        return predicted
+    stands, found = read if np.isfinite(read) else float(predicted[0]), predicted.copy()
     for row, angle in enumerate(predicted.tolist()):
-        stands = min(max(stands, angle - 0.5 * width), angle + 0.5 * width)
-        predicted[row] = stands
+        stands = min(max(stands, angle - 0.5 * stage.width), angle + 0.5 * stage.width)
+        found[row] = stands
+    return found
+
+
+# What a reading behind each kind of stage shows: (stage, predicted (rows,), first reading) -> (rows,).
+READ: Mapping[type, Callable[[Any, Array, float], Array]] = {
+    OutputDelay: _as_it_is,
+    OutputLag: _as_it_is,
+    OutputSteps: _in_steps,
+    Play: _behind_play,
+}

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit.gauss_newton import SCATTERS
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients
-from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
+from diagnosis.library.effect_library import CompiledFilter
 from diagnosis.validate.prediction import UNSEEN_VARIANCE
 from sim.composition.build import paths_with
-from sim.effect import Values
+from sim.effect import Effect, Role, Values
 from sim.paths.path import Held, OutputStage, Trace, passed
 from sim.plants import MODELS
 
@@ -42,7 +41,8 @@ class Flown:
         library = case.library
         compiled = library.compiled(hypothesis.effects)
         further = {name: values for name, values in hypothesis.effects.items() if name not in compiled.names}
-        further = further if seed is not None else {name: without_scatter(values) for name, values in further.items()}
+        if seed is None:
+            further = {name: without_scatter(library.effects[name], values) for name, values in further.items()}
         on_input, on_output = paths_with(MODELS[library.bound.plant.model](), further)
         self._case, self._filter, self.t_s, self.lost = case, compiled.filter, t_s, False
         self._outputs = len(library.bound.model.outputs)
@@ -56,7 +56,7 @@ class Flown:
         self._ways = [(place, [s for s in on_output if s.output == place]) for place in range(self._outputs)]
         self._memory: dict[int, Any] = {}
         self._make_request(coefficients(case, compiled, hypothesis), locked)
-        self._arrays["x0"][:] = _begun(library, compiled, x0)
+        self._arrays["x0"][:] = _begun(compiled, x0)
         self._ask(1)
         self._y = self._behind(np.array([t_s]))
 
@@ -148,16 +148,16 @@ class Flown:
         self._request.columns, self._request.slots = 0, width
 
 
-def without_scatter(values: Values) -> Values:
+def without_scatter(effect: Effect, values: Values) -> Values:
     """The numbers of an effect that does the same each time."""
-    return {symbol: 0.0 if symbol == SCATTERS else value for symbol, value in values.items()}
+    scatter = effect.having(Role.JITTER)
+    return dict(values) if scatter is None else {**values, scatter.symbol: 0.0}
 
 
-def _begun(library: EffectLibrary, compiled: CompiledFilter, x0: Array) -> Array:
+def _begun(compiled: CompiledFilter, x0: Array) -> Array:
     """The states that a rig begins with, what effects brought with them: what is read late begins where it is, all else at rest."""
     begun = dict(zip(compiled.states, x0.tolist(), strict=False))
-    late = {f"{name}_read": begun.get(name, 0.0) for name in library.bound.model.outputs}
-    return np.array([begun.get(state, late.get(state, 0.0)) for state in compiled.states])
+    return np.array([begun.get(state, begun.get(compiled.follows.get(state, ""), 0.0)) for state in compiled.states])
 
 
 def _shaken(case: Case, hypothesis: Hypothesis, locked: tuple[str, ...]) -> Array:

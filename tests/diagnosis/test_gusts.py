@@ -24,7 +24,7 @@ GUST = {"elevation.gust": {"sigma": 1e-3, "T": 0.7}}
 def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis]:
     case = make_case(effect_library(plant), logs)
     nominal = nominal_fit(case)
-    return case, FittedHypothesis((), nominal, evidence(nominal))
+    return case, FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
 
 
 def test_a_gust_is_found_on_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
@@ -35,7 +35,7 @@ def test_a_gust_is_found_on_its_axis_with_its_numbers(plant: BoundPlant, fly: Fl
     assert gust.evidence > nominal.evidence + 100.0
     assert found["azimuth.gust"].evidence < nominal.evidence
     values = gust.fit.hypothesis.effects["elevation.gust"]
-    sd = gust_sd(case, gust.fit.hypothesis, "elevation.gust")
+    sd = gust_sd(case, gust.fit.hypothesis, case.library.effects["elevation.gust"])
     for symbol, truth in GUST["elevation.gust"].items():
         assert abs(values[symbol] - truth) < 3.0 * sd[symbol]
     assert 0.02 < sd["sigma"] / values["sigma"] < 0.2
@@ -80,6 +80,9 @@ def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant:
     )
     case = make_case(effect_library(plant), [fly(seed, GUST, rig_seed=90) for seed in (91, 92)], stated=stated)
     nominal = nominal_fit(case)
-    found = {entry.effects[0]: entry for entry in gusts(case, FittedHypothesis((), nominal, evidence(nominal)))}
+    found = {
+        entry.effects[0]: entry
+        for entry in gusts(case, FittedHypothesis((), nominal, evidence(nominal, case.library.effects)))
+    }
     sigma = bind(improved_plant(case, found["elevation.gust"].fit)).effects["elevation.gust"]["sigma"]
     assert abs(sigma.values[0] - GUST["elevation.gust"]["sigma"]) < 3.0 * sigma.sds[0] < 6e-4

@@ -35,7 +35,7 @@ def as_found(case: Case, effects: Mapping[str, Mapping[str, float]]) -> FittedHy
     start = with_process_noise(case, nominal_hypothesis(case, -1.5).with_effects(effects))
     found = fit(case, start, rounds=5)
     assert found is not None
-    return FittedHypothesis(tuple(effects), found, evidence(found))
+    return FittedHypothesis(tuple(effects), found, evidence(found, case.library.effects))
 
 
 def weighed(*fitted: FittedHypothesis) -> Weighed:

@@ -8,9 +8,8 @@ import pytest
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
-from diagnosis.library.gust_state import gust_state, gusty
+from diagnosis.library.filter_state import with_filter_state
 from diagnosis.library.input_effects import commanded, lost_with, share_slopes
-from diagnosis.library.sensor_lag_state import lagged
 from tests.diagnosis.arm import arm, arm_case, arm_log, plain_linearisation
 
 
@@ -39,11 +38,11 @@ def test_what_readings_say_of_a_lost_frame_changes_its_odds() -> None:
 
 def test_states_of_a_gust_and_of_a_sensors_lag_join_the_equations() -> None:
     # Truth: g' = -g / T pushes the arm; tau l' = y - l, and l is read.
-    model = arm().model
-    gust = gusty(model, "arm.gust")
-    assert [str(state) for state in gust.states][len(model.states) :] == [gust_state("arm.gust")]
+    model, effects = arm().model, effect_library(arm()).effects
+    gust = with_filter_state(model, effects["arm.gust"])
+    assert [str(state) for state in gust.states][len(model.states) :] == ["arm_gust"]
     assert gust.states[-1] in gust.axes[0].torque.free_symbols
-    late = lagged(model, "theta_sensor.lag")
+    late = with_filter_state(model, effects["theta_sensor.lag"])
     assert [str(state) for state in late.states][len(model.states) :] == ["theta_rad_read"]
     assert late.states[-1] in late.outputs["theta_rad"].free_symbols
 

@@ -41,7 +41,7 @@ def plain_fit(plant: BoundPlant, log: RunLog, **stated: BoundPlant) -> tuple[Cas
     """The log as a case, and the plant as stated fitted to it."""
     case = make_case(effect_library(plant), [log], **stated)
     nominal = nominal_fit(case)
-    return case, FittedHypothesis((), nominal, evidence(nominal))
+    return case, FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,13 @@
 """What is believed before any log: common before rare, no spring that pushes away; and small gaps that nothing explains are none."""
 
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from diagnosis.decide import prior
 from diagnosis.decide.holdout import overruled
-from diagnosis.decide.prior import prior_odds
 from diagnosis.decide.weighing import Weighed, weigh
 from diagnosis.detect.detection import Detection, FormScores
 from diagnosis.detect.linearisation import Scores
@@ -17,7 +18,16 @@ from diagnosis.fit.gauss_newton import Fit, Free
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.result import Judged
 from diagnosis.search.beam import Search
+from sim.added_effects import every_effect
 from sim.effect import EffectParameter
+
+EFFECTS = {effect.name: effect for effect in every_effect()}
+
+
+def prior_odds(
+    hypothesis: FittedHypothesis, frictionless: Collection[str] = (), steps: Mapping[str, float] = {}
+) -> float:
+    return prior.prior_odds(hypothesis, EFFECTS, frictionless, steps)
 
 
 def fitted(evidence: float = 0.0, **effects: dict[str, float]) -> FittedHypothesis:
@@ -120,7 +130,7 @@ def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float,
 def test_what_a_sensor_s_steps_gain_makes_what_is_beside_them_no_less_sure(first: str, second_counts: bool) -> None:
     # Truth: steps that are read off the log to a thousandth are exact, and 150 nats beside them are as many as alone. A lag that gains
     # 40000 nats is a form, and what it lacks of the truth may gain as much.
-    one = fitted(40000.0, **{first.replace(".", "__"): {}})
-    both = fitted(40150.0, **{first.replace(".", "__"): {}, "elevation__cable_spring": {"k": 0.003}})
-    found = weigh([both, one], fitted(), left=10.0)
+    one = fitted(40000.0, **{first.replace(".", "__"): EFFECTS[first].absent})
+    both = fitted(40150.0, **{first.replace(".", "__"): EFFECTS[first].absent, "elevation__cable_spring": {"k": 0.003}})
+    found = weigh([both, one], fitted(), EFFECTS, left=10.0)
     assert (found.fitted[0] is both) is second_counts

@@ -33,7 +33,7 @@ def fitted(case: Case, nominal: Fit, effects: Mapping[str, Values]) -> FittedHyp
     """The fit of these effects from these values."""
     found = fit(case, nominal.hypothesis.with_effects(effects))
     assert found is not None
-    return FittedHypothesis(tuple(effects), found, evidence(found))
+    return FittedHypothesis(tuple(effects), found, evidence(found, case.library.effects))
 
 
 def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, fly: Fly) -> None:
@@ -110,7 +110,7 @@ def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: Bo
     case = make_case(effect_library(plant), [fly(42, {**spring, **late}, air=False)])
     nominal = nominal_fit(case)
     both, single = (fitted(case, nominal, effects) for effects in ({**spring, **late}, late))
-    none = FittedHypothesis((), nominal, evidence(nominal))
+    none = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
     search = Search((both, single, none), none, True, linearised(case, nominal), ())
     weighed = Weighed((both,), (1.0,), 0.0, 0.0, 1.0)
     shares = {row.place: row.share for row in place_shares(search, weighed, None)}

@@ -69,7 +69,7 @@ def test_notes_are_records_and_each_kind_has_its_sentence() -> None:
 
 
 def plain_fit() -> FittedHypothesis:
-    return FittedHypothesis((), plain_linearisation().fit, evidence(plain_linearisation().fit))
+    return FittedHypothesis((), plain_linearisation().fit, evidence(plain_linearisation().fit, {}))
 
 
 def test_a_parameter_far_beyond_its_spread_is_found_with_its_place() -> None:
