@@ -49,6 +49,7 @@ class Example:
 
 EXAMPLES = {
     "effect that a nominal model lacks": Example("imbalance", {"NAME": "imbalance"}),
+    "kind of stage on the way of a reading": Example("OutputSteps", {}, ("sim", "diagnosis"), "sim/effects/"),
     "plant": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, beside="recordings/"),
     "controller": Example("lqg", {"NAME": "lqg"}, beside="controllers/lqg_gains.py"),
     "verb": Example("doctor", {"NAME": "doctor"}, beside="Makefile"),
