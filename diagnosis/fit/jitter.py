@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.fit.gauss_newton import likelihood
+from diagnosis.fit.profile_likelihood import likelihoods
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.sensor_effects import rates
-from jobs.thread_map import thread_map
 from sim.effect import Role
 
 JITTER_FINELY = (0.85, 0.92, 1.08, 1.15)  # of the likeliest of these
@@ -106,13 +105,8 @@ def _likeliest(case: Case, hypothesis: Hypothesis, name: str) -> Hypothesis:
 
 def _tried(case: Case, hypothesis: Hypothesis, name: str, values_s: Iterable[float]) -> dict[float, float]:
     """The log likelihood by jitter."""
-
-    def value(jitter_s: float) -> float:
-        runs = passes(case, _with(case, hypothesis, name, jitter_s))
-        return -np.inf if runs is None else likelihood(runs)
-
     asked = sorted(set(values_s))
-    return dict(zip(asked, thread_map(value, asked), strict=True))
+    return dict(zip(asked, likelihoods(case, [_with(case, hypothesis, name, value) for value in asked]), strict=True))
 
 
 def _with(case: Case, hypothesis: Hypothesis, name: str, jitter_s: float) -> Hypothesis:

@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.profile_likelihood import Point, by_parabola
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5
 FIRST_STEP = 0.3
 MOST_STEPS = 12
-LITTLE_PROMISED = (
-    0.1  # nats that the top of the parabola, (below - above)^2 / (8 |bend|) higher, must promise to be looked at
-)
+LITTLE_PROMISED = 0.1  # nats
 
 
 def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
@@ -34,25 +33,14 @@ def _likeliest(case: Case, hypothesis: Hypothesis, value: float, first: float) -
 
 
 def _along(case: Case, hypothesis: Hypothesis, value: float, axis: int, step: float) -> tuple[Hypothesis, float]:
-    """Uphill in steps, then the top of the parabola through the last three points."""
+    """The likeliest noise of one axis, all others held."""
 
-    def at(process_noise: float) -> tuple[Hypothesis, float]:
+    def at(process_noise: float) -> Point:
         changed = hypothesis.process_noise.copy()
-        changed[axis] = float(np.clip(process_noise, LEAST_NOISE, MOST_NOISE))
-        fitted = replace(hypothesis, process_noise=changed)
-        return fitted, likelihood_of(case, fitted)
+        changed[axis] = x = float(np.clip(process_noise, LEAST_NOISE, MOST_NOISE))
+        there = replace(hypothesis, process_noise=changed)
+        return Point(x, there, likelihood_of(case, there))
 
-    middle = (hypothesis, value)
-    below, above = at(hypothesis.process_noise[axis] - step), at(hypothesis.process_noise[axis] + step)
-    for _ in range(MOST_STEPS):
-        if below[1] <= middle[1] >= above[1]:
-            break
-        if below[1] > above[1]:
-            below, middle, above = at(below[0].process_noise[axis] - step), below, middle
-        else:
-            below, middle, above = middle, above, at(above[0].process_noise[axis] + step)
-    bend = below[1] - 2.0 * middle[1] + above[1]
-    if not (np.isfinite(bend) and bend < 0.0) or (below[1] - above[1]) ** 2 < -8.0 * bend * LITTLE_PROMISED:
-        return middle
-    top = at(middle[0].process_noise[axis] + 0.5 * step * (below[1] - above[1]) / bend)
-    return top if top[1] > middle[1] else middle
+    start = Point(float(hypothesis.process_noise[axis]), hypothesis, value)
+    found = by_parabola(at, start, step, MOST_STEPS, LITTLE_PROMISED)
+    return found.hypothesis, found.value

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.score_tests import ScoreTest, holding
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import Fit, fit, from_zero, likelihood
+from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.low_process_noise import with_own_process_noise
 from diagnosis.fit.process_noise import process_noise_of, with_process_noise
+from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis, passes
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.effect import Role
 
 Array = NDArray[np.float64]
@@ -126,12 +127,12 @@ def _at_its_level(case: Case, found: Fit, effect: str) -> Fit:
 def _likeliest(case: Case, start: Hypothesis, effect: str, factors: Array) -> Hypothesis:
     """The start with that of the factors on an effect's size that the logs find likeliest."""
     symbol = case.library.effects[effect].size.symbol
-    fitted = [
+    sized = [
         start.with_effects({**start.effects, effect: {**start.effects[effect], symbol: float(value)}})
         for value in start.effects[effect][symbol] * factors
     ]
-    values = [-np.inf if runs is None else likelihood(runs) for runs in (passes(case, entry) for entry in fitted)]
-    return fitted[int(np.argmax(values))] if np.max(values) > -np.inf else start
+    best, value = likeliest(case, sized)
+    return best if value > -np.inf else start
 
 
 def _lessened(case: Case, start: Hypothesis, effect: str) -> Hypothesis:

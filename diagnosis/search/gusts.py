@@ -4,18 +4,18 @@ A gust follows any readings, so it explains a part of whatever is missing. It is
 effect of the library that is there explains them better, and what depends on the rig's motion is left to forms beside it (weigh.py).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
-from diagnosis.fit.gauss_newton import fit, likelihood_of
+from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from jobs.thread_map import thread_map
 from sim.effect import Effect, Role
 
 FACTORS = (2.0, 1.4, 1.15)  # by which size and time are then tried apart
@@ -33,7 +33,7 @@ def gusts(case: Case, nominal: FittedHypothesis) -> list[FittedHypothesis]:
 def gust_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
     """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over a factor of REACH to all
     sides, with each known to a factor of e before."""
-    v = np.reshape(thread_map(lambda entry: likelihood_of(case, entry), list(_about(hypothesis, gust, REACH))), (3, 3))
+    v = np.reshape(likelihoods(case, list(_about(hypothesis, gust, REACH))), (3, 3))
     bends = v[1, 0] + v[2, 0] - 2.0 * v[0, 0], v[0, 1] + v[0, 2] - 2.0 * v[0, 0]
     both = 0.25 * (v[1, 1] + v[2, 2] - v[1, 2] - v[2, 1])
     curvature = -np.nan_to_num([[bends[0], both], [both, bends[1]]]) / np.log(REACH) ** 2
@@ -55,9 +55,9 @@ def _fitted(case: Case, nominal: FittedHypothesis, gust: Effect) -> FittedHypoth
     starts = [
         _with(low_noise, gust, share * size, T) for T in decisions.GUST_TIMES_S for share in decisions.GUST_SHARES
     ]
-    start = _likeliest(case, starts)
+    start, _ = likeliest(case, starts)
     for factor in FACTORS:
-        start = _likeliest(case, list(_about(with_process_noise(case, start), gust, factor)))
+        start, _ = likeliest(case, list(_about(with_process_noise(case, start), gust, factor)))
     found = fit(case, start, rounds=GUST_ROUNDS)
     return None if found is None else as_fitted(case, found)
 
@@ -74,8 +74,3 @@ def _about(hypothesis: Hypothesis, gust: Effect, factor: float) -> Iterator[Hypo
     for by_size in (1.0, factor, 1.0 / factor):
         for by_time in (1.0, factor, 1.0 / factor):
             yield _with(hypothesis, gust, by_size * size, by_time * time_s)
-
-
-def _likeliest(case: Case, fitted: Sequence[Hypothesis]) -> Hypothesis:
-    values = thread_map(lambda hypothesis: likelihood_of(case, hypothesis), fitted)
-    return fitted[int(np.argmax(values))]

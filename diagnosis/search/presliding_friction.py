@@ -8,6 +8,7 @@ from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.fit.profile_likelihood import Point, by_folds, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
@@ -95,28 +96,19 @@ def _likeliest(case: Case, hypothesis: Hypothesis, effect: Effect, value: float)
     cost hundreds of nats, and no other process noise makes up for them.
     """
     reference = effect.size.reference
-    first = [(likelihood_of(case, _with(hypothesis, effect, size)), size) for size in (reference, reference / FOLD**2)]
-    if max(first)[0] <= value:
+    sizes = (reference, reference / FOLD**2)
+    first = likelihoods(case, [_with(hypothesis, effect, size) for size in sizes])
+    if max(first) <= value:
         return hypothesis, value
-    size = max(first)[1]
-    best = _settled(case, _with(hypothesis, effect, size))
-    for fold in (FOLD, 1.0 / FOLD):
-        step = size * fold
-        while reference / FOLD**3 < step < effect.size.upper:
-            further = _settled(case, _with(hypothesis, effect, step))
-            if further[1] <= best[1]:
-                break
-            best, step = further, step * fold
-        if step != size * fold:
-            break
-    return best
+
+    def at(size: float) -> Point:
+        settled = with_process_noise(case, _with(hypothesis, effect, size))
+        return Point(size, settled, likelihood_of(case, settled))
+
+    start = at(sizes[first.index(max(first))])
+    found = by_folds(at, start, FOLD, reference / FOLD**3, effect.size.upper)
+    return found.hypothesis, found.value
 
 
 def _with(hypothesis: Hypothesis, effect: Effect, size: float) -> Hypothesis:
     return hypothesis.with_effects({**hypothesis.effects, effect.name: {effect.size.symbol: size}})
-
-
-def _settled(case: Case, hypothesis: Hypothesis) -> tuple[Hypothesis, float]:
-    """The same with the process noise that its innovations then show, with its log likelihood."""
-    fitted = with_process_noise(case, hypothesis)
-    return fitted, likelihood_of(case, fitted)
