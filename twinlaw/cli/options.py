@@ -91,6 +91,16 @@ def _arithmetics() -> tuple[str, ...]:
     return tuple(ARITHMETIC_CODES)
 
 
+def seed(parser: argparse.ArgumentParser, of: str, default: int = 1) -> None:
+    """--seed N, of all that is random in what the verb does."""
+    parser.add_argument("--seed", type=count, default=default, help=f"of {of}; default: %(default)s")
+
+
+def band(parser: argparse.ArgumentParser, text: str) -> None:
+    """--band-rad-s LOW HIGH."""
+    parser.add_argument("--band-rad-s", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
+
+
 def count(text: str) -> int:
     """A whole number from 1 on, as the type of an option."""
     try:

@@ -22,7 +22,8 @@ from twinlaw.cli import options
 from twinlaw.pages import plots
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnose.baselines import plain_answers
-from twinlaw.workflows.diagnose.each import Answered, answers, questions
+from twinlaw.workflows.diagnose.each import Answered, answers
+from twinlaw.workflows.diagnose.questions import questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"which of them: {', '.join(CONTROLLERS)}; default: all",
     )  # fmt: skip
     parser.add_argument("--runs", type=options.count, default=RUNS, help="spread plants; default: %(default)s")
-    parser.add_argument("--seed", type=options.count, default=SEED, help="of the spread; default: %(default)s")
+    options.seed(parser, "the spread", SEED)
     parser.add_argument(
         "--effects", nargs="*", choices=EFFECTS, default=EFFECTS, metavar="EFFECT",
         help=f"added one at a time, each at its reference size: {', '.join(EFFECTS)}; default: all",

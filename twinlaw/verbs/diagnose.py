@@ -20,8 +20,9 @@ from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.why import why_text
 from twinlaw.workflows import sweeping
-from twinlaw.workflows.diagnose.each import HEADING, answers, facts, questions, rows
+from twinlaw.workflows.diagnose.each import HEADING, answers, facts, rows
 from twinlaw.workflows.diagnose.files import widths, writable
+from twinlaw.workflows.diagnose.questions import questions
 from twinlaw.workflows.diagnose.together import diagnose_logs
 
 SCHEMA = "diagnoses/1"

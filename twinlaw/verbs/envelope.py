@@ -32,12 +32,7 @@ from twinlaw.workflows import sweeping
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--seed, --keep-flights, --forgetting, --starts, --workers, --cluster, --out, --json, FLIGHTS."""
-    parser.add_argument(
-        "--seed",
-        type=options.count,
-        default=1,
-        help="of the simulated helicopter and its flights; default: %(default)s",
-    )
+    options.seed(parser, "the simulated helicopter and its flights")
     parser.add_argument(
         "--keep-flights", action="store_true", help="write the simulated flights to DIR/flights, some 30 MB"
     )

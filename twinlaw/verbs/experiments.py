@@ -29,9 +29,7 @@ from twinlaw.workflows.reading import load_bound
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """--plant, --seed, --as-stated, --repetitions, --workers, --cluster, --out, --json."""
     options.plant(parser)
-    parser.add_argument(
-        "--seed", type=options.count, default=1, help="of the rig and its readings; default: %(default)s"
-    )
+    options.seed(parser, "the rig and its readings")
     parser.add_argument(
         "--as-stated", action="store_true", help="the rig has the plant file's own parameters, not others drawn from sd"
     )

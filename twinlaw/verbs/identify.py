@@ -47,13 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="time",
         help="match readings over time, or frequency responses of sweeps; default: %(default)s",
     )
-    parser.add_argument(
-        "--band-rad-s",
-        nargs=2,
-        type=float,
-        metavar=("LOW", "HIGH"),
-        help="match responses over this band; default: all that the records carry",
-    )
+    options.band(parser, "match responses over this band; default: all that the records carry")
     parser.add_argument(
         "--free",
         metavar="NAMES",
@@ -65,7 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--search", choices=tuple(METHODS), help="search the whole range first, for a start that may be far off"
     )
-    parser.add_argument("--seed", type=options.count, default=1, help="of the search; default: %(default)s")
+    options.seed(parser, "the search")
     _add_log_arguments(parser)
     options.as_json(parser)
     options.logs(parser, "files", "FILES", "experiments, folders of them, run logs")

@@ -41,13 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     --cluster, --out, --json.
     """
     options.plant(parser)
-    parser.add_argument(
-        "--band-rad-s",
-        nargs=2,
-        type=float,
-        metavar=("LOW", "HIGH"),
-        help="default: 0.3 to 10; of the helicopter 0.25 to 12",
-    )
+    options.band(parser, "default: 0.3 to 10; of the helicopter 0.25 to 12")
     parser.add_argument("--duration-s", type=float, metavar="T", help="of the sweep; default: 5.5 periods of LOW")
     parser.add_argument(
         "--amplitudes", nargs=2, type=float, metavar=("FIRST", "SECOND"),
@@ -72,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=3,
         help="sweeps of each of the helicopter's sticks; default: %(default)s",
     )
-    parser.add_argument("--seed", type=options.count, default=1, help="of pilot and sensors; default: %(default)s")
+    options.seed(parser, "pilot and sensors")
     parser.add_argument(
         "--repetitions", type=options.count, metavar="N", help="identify N flights, seeds from --seed on"
     )

@@ -16,7 +16,9 @@ from sim.manoeuvres import flight
 from tests.plants import bound, stated_table
 from tests.test_project import ROOT
 from twinlaw.command import main
-from twinlaw.workflows.diagnose.each import answer, parcel, questions
+from twinlaw.workflows.diagnose.each import answer
+from twinlaw.workflows.diagnose.parcel import parcel
+from twinlaw.workflows.diagnose.questions import questions
 
 PLANT = ROOT / "plants" / "ce150.toml"
 FILES = {"diagnosis.json", "plant.toml", "report.html"}

@@ -13,8 +13,9 @@ from records.log import load_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
-from twinlaw.workflows.diagnose.each import Parcel, Question, opened, parcel
 from twinlaw.workflows.diagnose.files import ANSWER
+from twinlaw.workflows.diagnose.parcel import Parcel, opened, parcel
+from twinlaw.workflows.diagnose.questions import Question
 from twinlaw.workflows.sweeping import swept
 
 
