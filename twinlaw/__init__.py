@@ -1,4 +1,4 @@
-"""The command line and the reports: nothing computes here."""
+"""The command line and the reports: a person's words go in, files, tables and pages come out; nothing computes here."""
 
 import os
 

@@ -1,1 +1,1 @@
-"""The live page: what is watched, the thread that moves it, the server that shows it to browsers of this computer."""
+"""A board or a log goes in, a live page for browsers of this computer comes out: what is watched, the thread that moves it, the server."""
