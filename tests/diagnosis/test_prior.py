@@ -16,7 +16,7 @@ from diagnosis.diagnose import borne_out, confirmed_by
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, Free
 from diagnosis.hypothesis.hypothesis import Hypothesis
-from diagnosis.result import Judged
+from diagnosis.result import Seen
 from diagnosis.search.beam import Search
 from sim.added_effects import every_effect
 from sim.effect import EffectParameter
@@ -66,7 +66,7 @@ def test_a_hold_out_does_not_speak_for_a_size_at_the_end_of_its_range() -> None:
     named = fitted(2000.0, psi_sensor__lag={"tau": 1.0})
     lag = Free("psi_sensor.lag", EffectParameter("tau", "s", 0.0, 1.0, 0.02, 0.0), 0.02)
     weighed = Weighed((replace(named, fit=replace(named.fit, free=(lag,))),), (0.1,), 0.9, 0.0, 10.0)
-    assert overruled(object(), weighed, fitted(), left=1.0) is weighed  # type: ignore[arg-type]
+    assert overruled(object(), weighed, fitted(), left=1.0)[0] is weighed  # type: ignore[arg-type]
 
 
 def test_a_delay_shorter_than_unseen_losses_leave_is_no_second_effect() -> None:
@@ -97,10 +97,11 @@ def test_friction_one_way_only_is_rarer_where_none_is_stated() -> None:
     assert prior_odds(one_way, ["elevation"]) == prior_odds(both, ["elevation"])
 
 
-def seen(largest: float) -> Detection:
+def seen(largest: float) -> Seen:
     """A gap of that many nats that chance makes once in a million."""
     empty = Scores(np.zeros((0, 0)), np.zeros(0), np.zeros(0))
-    return Detection(1e-6, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
+    detection = Detection(1e-6, Tail(5.0, 1.0), largest, FormScores((), empty, np.zeros(0)))
+    return Seen(object(), None, fitted(), object(), (), None, detection)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -115,15 +116,16 @@ def test_a_small_gap_needs_an_explanation(largest: float, evidence: float, sure:
     found = Search(
         (fitted(evidence, azimuth__tilt={"m": 0.1, "Phi_0": 0.0}), nothing), nothing, sure, linearisation, ()
     )  # type: ignore[arg-type]
-    assert (confirmed_by(seen(largest), found, None).p <= 0.01) is gap
+    assert (confirmed_by(seen(largest), found, None).detection.p <= 0.01) is gap
 
 
 @pytest.mark.parametrize(("largest", "unknown", "gap"), [(20.0, 0.95, False), (20.0, 0.3, True), (200.0, 0.95, True)])
 def test_what_explains_a_small_gap_must_be_likelier_than_nothing(largest: float, unknown: float, gap: bool) -> None:
     # Where the hold-out refutes the one explanation that there was, as with unknown = 0.95, nothing explains the gap.
     weighed = Weighed((fitted(12.0),), (1.0 - unknown,), unknown, 0.0, 10.0)
-    judged = Judged(object(), None, weighed, fitted(), None, ())  # type: ignore[arg-type]
-    assert (borne_out(seen(largest), judged).p <= 0.01) is gap
+    after, stands = borne_out(seen(largest), weighed)
+    assert stands is gap
+    assert after.detection.p == seen(largest).detection.p  # whatever the verdict, the chance stays what it is
 
 
 @pytest.mark.parametrize(("first", "second_counts"), [("psi_sensor.quantization", True), ("main_input.lag", False)])

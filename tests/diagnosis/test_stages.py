@@ -10,9 +10,9 @@ import pytest
 import sim.effects
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.diagnose import nominal_fit
 from diagnosis.filter.filter_input import filter_input_of
 from diagnosis.fit.gauss_newton import free_numbers
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from diagnosis.library.sensor_effects import READ_BACK, sensed
