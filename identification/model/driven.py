@@ -44,7 +44,7 @@ def driven_model(model: Model) -> Model | None:
     limits = {variable: model.input_limits[variable] for variable in inputs}
     used |= {symbol for pair in limits.values() for limit in pair for symbol in sympy.sympify(limit).free_symbols}
     return Model(
-        name=f"{model.name}_driven",
+        name="driven",  # not by its model: models that are driven alike share the compiled equations
         states=states,
         inputs=inputs,
         outputs={str(state): state for state in states},

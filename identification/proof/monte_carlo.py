@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from identification.experiments.table import kinds_of, perform
 from identification.runs.run import coefficient_names
 from identification.stages.estimate import interval_factors
-from identification.stages.staged import identify_staged
+from identification.stages.staged import Stage, identify_staged
 from records.plant import Plant
 from sim.bind import BoundPlant, bind
 
@@ -50,6 +50,11 @@ def repetition(bound: BoundPlant, seed: int) -> Repetition:
     """Perform the plant's experiments on `other_rig` and identify it from the plant file's values."""
     truth = other_rig(bound, seed)
     stages = identify_staged(bound, [perform(kind, truth, seed) for kind in kinds_of(bound.model.name)])
+    return judged(seed, truth, stages)
+
+
+def judged(seed: int, truth: BoundPlant, stages: Sequence[Stage]) -> Repetition:
+    """What the stages of one rig say, beside its true parameters."""
     belief, factors = stages[-1].belief, interval_factors(stage.result for stage in stages)
     known = dict(zip(coefficient_names(truth.model), truth.p.tolist(), strict=True))
     value = dict(zip(belief.names, belief.mean.tolist(), strict=True))

@@ -1,5 +1,7 @@
 """The genetic algorithm of seed 001: its code by a worked example, its operators one by one, its search on a known valley."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from identification.experiments.velagic.experiments import KINDS
 from identification.fit.belief import NOTHING
 from identification.fit.problem import Prior, Problem
 from identification.runs.prediction import predicted
+from identification.search import methods
 from identification.search.genetic import Code, Settings, evolve
 from identification.search.methods import Search, search
 from identification.search.population import absolute_error, predictions
@@ -132,8 +135,9 @@ def test_what_is_left_at_the_truth_is_the_encoder_s_rounding(problem):
 
 
 @pytest.mark.parametrize("method", ["genetic", "evolution", "gradient"])
-def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start(method):
+def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start(monkeypatch, method):
     """Experiment 3 of seed 000: Psi_m has no bounds, and is 0 on this rig; every reading is a balance, not a motion."""
+    monkeypatch.setattr(methods, "evolve", partial(evolve, settings=Settings(generations=40)))
     plant = plant_of("ce150")
     stage = identify_stage(plant, perform("gravity", plant, 1), NOTHING, None, Search(method, 1))
     (found,) = stage.result.searched

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from design.settings import read_settings
-from design.table import design
 from diagnosis.diagnose import Material, diagnose
+from diagnosis.fit.nominal import nominal_fit
+from diagnosis.hypothesis.case import make_case
+from diagnosis.library.effect_library import effect_library
 from identification.results.result import identification
 from identification.runs.run import coefficient_names
 from sim.bind import bind
@@ -16,7 +17,7 @@ from sim.loop import closed_loop_log
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
 
-T_S = 0.01 * np.arange(1000)
+T_S = 0.01 * np.arange(500)
 
 
 @pytest.fixture(scope="module")
@@ -33,12 +34,11 @@ def thrust(identified):
     return names, vectors
 
 
-def flown(plant, moved):
-    """Ten seconds of a rig that is the plant with coefficients moved by so many of their own standard deviations."""
+def flight_of(plant, table, moved):
+    """Five seconds of a rig that is the plant with coefficients moved by so many of their own standard deviations."""
     p, names = plant.p.copy(), coefficient_names(plant.model)
     for name, by in moved.items():
         p[names.index(name)] += by * plant.sd[names.index(name)]
-    table, _ = design(plant, read_settings(plant))
     reference = (
         np.column_stack([0.3 * np.sin(1.3 * T_S), 0.5 * np.sin(0.9 * T_S)]) * np.minimum(1.0, T_S / 2.0)[:, None]
     )
@@ -47,18 +47,40 @@ def flown(plant, moved):
     return closed_loop_log(plant, flight, run.u, run.y, None)
 
 
-def verdict(plant, log):
-    return diagnose(plant, Material([log], [], [], [None], names=["flight"])).diagnosis.verdict
-
-
-@pytest.mark.parametrize(("direction", "expected"), [(-1, "no gap"), (0, "gap")])
-def test_a_rig_within_every_sd_is_judged_by_the_correlation(identified, thrust, direction, expected):
-    """Truth: no coefficient is more than one sd off. Along the correlation the thrust is as known; against it, it is off far beyond.
-
-    Without the correlation the second would be as good as the first, as each coefficient may move by itself.
-    """
+def turned(identified, thrust, table, direction):
+    """The flight of a rig none of whose thrust coefficients is more than one sd off: 0 against their correlation, -1 along it."""
     names, vectors = thrust
     along = vectors[:, direction] / np.abs(vectors[:, direction]).max()
-    log = flown(identified, dict(zip(names, along, strict=True)))
-    assert verdict(identified, log) == expected
-    assert verdict(bind(replace(identified.plant, correlation=None)), log) == "no gap"
+    return flight_of(identified, table, dict(zip(names, along, strict=True)))
+
+
+def without_correlation(identified):
+    return bind(replace(identified.plant, correlation=None))
+
+
+def log_posterior(plant, log):
+    """Of the plant's own parameters alone, at their best."""
+    return nominal_fit(make_case(effect_library(plant), [log])).log_posterior
+
+
+def test_a_rig_within_every_sd_is_judged_by_the_correlation(identified, thrust, table):
+    """Truth: along the correlation the thrust is as known; against it, it is off far beyond, and no likely parameters explain the flight.
+
+    Without the correlation the second is as good as the first, as each coefficient may move by itself.
+    """
+    for direction, least, most in ((-1, -5.0, 5.0), (0, 50.0, np.inf)):
+        log = turned(identified, thrust, table, direction)
+        lost = log_posterior(without_correlation(identified), log) - log_posterior(identified, log)
+        assert least < lost < most
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(("direction", "expected"), [(-1, "no gap"), (0, "gap")])
+def test_the_whole_diagnosis_says_so(identified, thrust, table, direction, expected):
+    log = turned(identified, thrust, table, direction)
+
+    def verdict(plant):
+        return diagnose(plant, Material([log], [], [], [None], names=["flight"])).diagnosis.verdict
+
+    assert verdict(identified) == expected
+    assert verdict(without_correlation(identified)) == "no gap"

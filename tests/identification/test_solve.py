@@ -15,6 +15,7 @@ from identification.runs.prediction import blocks
 from identification.runs.run import coefficient_names
 from identification.stages.estimate import estimate, problem_of
 from records.errors import BadInput
+from tests.soak import sampled
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +23,7 @@ def work(bound):
     return bench.task(bound)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", sampled([0, 1, 2], keep=[0]))
 @pytest.mark.parametrize("way", [bench.fit, bench.identified])
 def test_ten_parameters_from_a_minute_come_back_within_a_thousandth_from_thirty_per_cent_off(work, way, seed):
     tolerance = 1e-3

@@ -14,6 +14,7 @@ from identification.stages.staged import identify_stage
 from records.errors import BadInput
 from sim.bind import bind
 from tests.plants import bound as plant_of
+from tests.soak import SOAK
 
 ALL = ("a_1", "b_1", "B_psi", "tau_G", "I_inv", "a_2", "b_2", "B_phi", "Ic_inv", "a_3", "b_3", "k_G")
 HELD = ("tau_G", "B_phi")
@@ -40,10 +41,11 @@ def records(truth):
 
 
 def staged(start, records, free=None):
-    """The paper's order: genetic search, gradient method beside it, then the fit."""
+    """The paper's order: genetic search (of u1 alone outside soaks), gradient method beside it, then the fit."""
     stages, belief = [], NOTHING
-    for record in records:
-        stages.append(identify_stage(start, record, belief, None, Search("genetic", 1, beside=("gradient",)), free))
+    for number, record in enumerate(records):
+        wanted = Search("genetic", 1, beside=("gradient",)) if SOAK or number == 0 else None
+        stages.append(identify_stage(start, record, belief, None, wanted, free))
         belief = stages[-1].belief
     return stages
 
@@ -70,7 +72,7 @@ def test_the_stages_are_the_paper_s(found):
 
 def test_the_genetic_algorithm_alone_comes_near_and_the_gradient_method_nearer(truth, found):
     """Genetic: 0.3 deg in the mean of 3000 readings, within 15 % (inertias 30 %). Gradient: 0.025 deg and 0.1 % (inertias 0.6 %)."""
-    for stage in found:
+    for stage in found if SOAK else found[:1]:
         genetic, gradient = stage.result.searched
         assert (genetic.method, gradient.method) == ("genetic", "gradient")
         assert genetic.error < 0.3 * 3000
@@ -105,16 +107,20 @@ def test_all_five_of_u1_are_known_by_ratios_alone_and_that_direction_is_named(tr
 
 
 def test_figs_12_to_14_of_the_found_plant_are_the_rig_s(truth, elsewhere, found):
-    """0.05 deg rms in each; the plant that it began with misses the azimuth of Figs. 13 and 14 by degrees."""
+    """0.05 deg rms in each."""
     stages = [(stage.kind, stage.result) for stage in found]
-    plant = bind(identification(elsewhere.plant, stages, found[-1].belief).plant)
-    shown, before = responses(truth, plant), responses(truth, elsewhere)
+    shown = responses(truth, bind(identification(elsewhere.plant, stages, found[-1].belief).plant))
     assert list(shown) == ["12a", "12b", "13a", "13b", "14"]
     for number, response in shown.items():
         assert np.degrees(response.rms_rad) < 0.05, number
-        assert number.startswith("12") or np.degrees(before[number].rms_rad) > 1.0, number
     lifted = shown["12a"].u_MU[np.argmax(shown["12a"].measured_rad > np.radians(-44.5)), 0]
     assert 0.44 < lifted < 0.47  # "almost no change in the range of [0, 0.47]"
+
+
+@pytest.mark.soak
+def test_the_plant_that_it_began_with_misses_the_azimuth_of_figs_13_and_14_by_degrees(truth, elsewhere):
+    missed = responses(truth, elsewhere)
+    assert all(np.degrees(missed[number].rms_rad) > 1.0 for number in ("13a", "13b", "14"))
 
 
 def test_a_record_of_an_unfixed_azimuth_is_refused_for_u1(elsewhere, records):

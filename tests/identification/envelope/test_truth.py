@@ -136,10 +136,10 @@ def test_a_flight_is_the_same_alone_and_in_company():
         FlightTest(Condition("HA", 3000, 50), "level", "lateral", 0, "identification"),
         FlightTest(Condition("HF", 6000, 90), "descending", "none", 2, "validation"),
     ]
-    together, alone = fly(MACHINE, tests, 3, 4.0), fly(MACHINE, tests[1:], 3, 4.0)
+    together, alone = fly(MACHINE, tests, 3, 1.0), fly(MACHINE, tests[1:], 3, 1.0)
     assert np.array_equal(together[1].x, alone[0].x)
     assert np.array_equal(together[1].y, alone[0].y)
-    other = fly(MACHINE, tests[1:], 4, 4.0)
+    other = fly(MACHINE, tests[1:], 4, 1.0)
     assert not np.array_equal(other[0].x, alone[0].x)
 
 
