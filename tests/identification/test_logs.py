@@ -68,13 +68,10 @@ def test_an_axis_that_was_locked_stands_still_at_its_readings(bound):
 
 
 def test_a_search_finds_the_way_from_the_edge_of_the_range(bound, flown):
-    """Inertia and damping four times off, the same seed twice: the truth, and the same numbers."""
+    """Inertia and damping four times off."""
     start, log = off(bound, {"J_A": 4.0, "b_vA": 0.25}), {"flight": cut(flown, 60.0, 12.0)}
-    one, other = (
-        identify_logs(start, log, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution")) for _ in range(2)
-    )
-    np.testing.assert_array_equal(one.belief.mean, other.belief.mean)
-    assert one.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
+    found = identify_logs(start, log, ("J_A", "b_vA"), window_s=1.0, wanted=Search("evolution"))
+    assert found.belief.value("J_A") == pytest.approx(bound.parameter("J_A"), rel=0.02)
 
 
 def test_what_the_plant_file_states_is_a_belief_with_its_correlation(bound):

@@ -1,4 +1,7 @@
-"""Seed 001, section 3: from data of the paper's own parameter set, in the order u1, u2, u3, kG, the set comes back."""
+"""Seed 001, section 3: from data of the paper's own parameter set, in the order u1, u2, u3, kG, the set comes back.
+
+Outside soaks u1 alone: all four stages are done by the test of `twinlaw identify` on this plant.
+"""
 
 from dataclasses import replace
 
@@ -18,6 +21,7 @@ from tests.soak import SOAK
 
 ALL = ("a_1", "b_1", "B_psi", "tau_G", "I_inv", "a_2", "b_2", "B_phi", "Ic_inv", "a_3", "b_3", "k_G")
 HELD = ("tau_G", "B_phi")
+OWN = (("a_1", "b_1", "B_psi", "I_inv"), ("a_2", "b_2", "Ic_inv"), ("a_3", "b_3"), ("k_G",))[: 4 if SOAK else 1]
 
 
 @pytest.fixture(scope="module")
@@ -37,15 +41,14 @@ def elsewhere(truth):
 
 @pytest.fixture(scope="module")
 def records(truth):
-    return [perform(kind, truth, 1) for kind in kinds_of("ce150_velagic")]
+    return [perform(kind, truth, 1) for kind, _ in zip(kinds_of("ce150_velagic"), OWN, strict=False)]
 
 
 def staged(start, records, free=None):
-    """The paper's order: genetic search (of u1 alone outside soaks), gradient method beside it, then the fit."""
+    """The paper's order: genetic search, gradient method beside it, then the fit."""
     stages, belief = [], NOTHING
-    for number, record in enumerate(records):
-        wanted = Search("genetic", 1, beside=("gradient",)) if SOAK or number == 0 else None
-        stages.append(identify_stage(start, record, belief, None, wanted, free))
+    for record in records:
+        stages.append(identify_stage(start, record, belief, None, Search("genetic", 1, beside=("gradient",)), free))
         belief = stages[-1].belief
     return stages
 
@@ -58,21 +61,19 @@ def found(elsewhere, records):
 def test_the_paper_s_set_comes_back(truth, found):
     """Torques, friction and k_G to 0.1 %, the inverse inertias, of which little shows, to 0.6 %; each within 4 of its sd."""
     belief = found[-1].belief
-    assert set(belief.names) == set(ALL) - set(HELD)
+    assert set(belief.names) == {name for names in OWN for name in names}
     for name, value, sd in zip(belief.names, belief.mean, belief.sd, strict=True):
         assert value == pytest.approx(truth.parameter(name), rel=6e-3 if name.endswith("_inv") else 1e-3), name
         assert abs(value - truth.parameter(name)) < 4.0 * sd, name
 
 
 def test_the_stages_are_the_paper_s(found):
-    assert [stage.result.own for stage in found] == [
-        ("a_1", "b_1", "B_psi", "I_inv"), ("a_2", "b_2", "Ic_inv"), ("a_3", "b_3"), ("k_G",)
-    ]  # fmt: skip
+    assert tuple(stage.result.own for stage in found) == OWN
 
 
 def test_the_genetic_algorithm_alone_comes_near_and_the_gradient_method_nearer(truth, found):
     """Genetic: 0.3 deg in the mean of 3000 readings, within 15 % (inertias 30 %). Gradient: 0.025 deg and 0.1 % (inertias 0.6 %)."""
-    for stage in found if SOAK else found[:1]:
+    for stage in found:
         genetic, gradient = stage.result.searched
         assert (genetic.method, gradient.method) == ("genetic", "gradient")
         assert genetic.error < 0.3 * 3000
@@ -106,21 +107,18 @@ def test_all_five_of_u1_are_known_by_ratios_alone_and_that_direction_is_named(tr
     assert belief.sd[belief.names.index("tau_G")] > 0.1 * belief.value("tau_G")
 
 
+@pytest.mark.soak
 def test_figs_12_to_14_of_the_found_plant_are_the_rig_s(truth, elsewhere, found):
-    """0.05 deg rms in each."""
+    """0.05 deg rms in each; the plant that it began with misses the azimuth of Figs. 13 and 14 by degrees."""
     stages = [(stage.kind, stage.result) for stage in found]
-    shown = responses(truth, bind(identification(elsewhere.plant, stages, found[-1].belief).plant))
+    plant = bind(identification(elsewhere.plant, stages, found[-1].belief).plant)
+    shown, before = responses(truth, plant), responses(truth, elsewhere)
     assert list(shown) == ["12a", "12b", "13a", "13b", "14"]
     for number, response in shown.items():
         assert np.degrees(response.rms_rad) < 0.05, number
+        assert number.startswith("12") or np.degrees(before[number].rms_rad) > 1.0, number
     lifted = shown["12a"].u_MU[np.argmax(shown["12a"].measured_rad > np.radians(-44.5)), 0]
     assert 0.44 < lifted < 0.47  # "almost no change in the range of [0, 0.47]"
-
-
-@pytest.mark.soak
-def test_the_plant_that_it_began_with_misses_the_azimuth_of_figs_13_and_14_by_degrees(truth, elsewhere):
-    missed = responses(truth, elsewhere)
-    assert all(np.degrees(missed[number].rms_rad) > 1.0 for number in ("13a", "13b", "14"))
 
 
 def test_a_record_of_an_unfixed_azimuth_is_refused_for_u1(elsewhere, records):

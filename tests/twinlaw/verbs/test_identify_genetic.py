@@ -57,6 +57,9 @@ def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folde
         assert (tmp_path / f"fig-{number}.svg").read_text().startswith("<svg")
     found = {entry["name"]: entry["value"] for entry in told["estimates"]}
     assert found["a_1"] == pytest.approx(0.1165, rel=2e-3)
+    truth = bind(load_plant(folder / "truth.toml"))
+    for name in ("b_1", "B_psi", "I_inv", "a_2", "b_2", "Ic_inv", "a_3", "b_3", "k_G"):
+        assert found[name] == pytest.approx(truth.parameter(name), rel=6e-3 if name.endswith("_inv") else 2e-3), name
 
 
 def test_an_interrupted_search_leaves_the_best_so_far(monkeypatch, folder, tmp_path):
