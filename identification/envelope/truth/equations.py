@@ -46,7 +46,7 @@ def rates(machine: Machine, air: Air, s: Array, c: Array, gust_m_s: Array) -> Ar
         p + (q * np.sin(phi) + r * np.cos(phi)) * np.tan(theta),
         q * np.cos(phi) - r * np.sin(phi),
     ]
-    return np.stack([*body, *rotor_rates])
+    return np.array([*body, *rotor_rates])
 
 
 def turning(machine: Machine, s: Array, moment: Array) -> Array:
@@ -57,7 +57,7 @@ def turning(machine: Machine, s: Array, moment: Array) -> Array:
     M = moment[1] - (Ix - Iz) * r * p - Ixz * (p**2 - r**2)
     N = moment[2] - (Iy - Ix) * p * q - Ixz * q * r
     scale = Ix * Iz - Ixz**2
-    return np.stack([(Iz * L + Ixz * N) / scale, M / Iy, (Ixz * L + Ix * N) / scale])
+    return np.array([(Iz * L + Ixz * N) / scale, M / Iy, (Ixz * L + Ix * N) / scale])
 
 
 def specific_force(machine: Machine, air: Air, s: Array, c: Array, gust_m_s: Array) -> Array:
@@ -76,12 +76,12 @@ def specific_force(machine: Machine, air: Air, s: Array, c: Array, gust_m_s: Arr
 
 
 def _cross(a: Array, b: Array) -> Array:
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def _loads(machine: Machine, air: Air, s: Array, c: Array, gust_m_s: Array) -> tuple[Loads, tuple[Array, Array, Array]]:
     """Sum over the parts, and the rates of the rotor's own three states."""
-    through_air = np.stack([*(s[:3] - gust_m_s), *s[3:6]])
+    through_air = np.array([*(s[:3] - gust_m_s), *s[3:6]])
     rotor, torque_Nm, rotor_rates = _main_rotor(machine, air, s, through_air, c)
     parts = (rotor, _tail_rotor(machine, air, through_air, c), _airframe(machine, air, through_air, s[10]))
     force = np.asarray(sum(part.force for part in parts))
@@ -114,7 +114,7 @@ def _main_rotor(
     H = dynamic * solidity * m.drag_blade / 4 * mu
     X, Y, Z = T * (m.shaft_tilt_rad + beta_1c) - H, -T * beta_1s, -T
     hub = m.blades / 2 * m.K_beta_Nm_rad
-    loads = Loads(np.stack([X, Y, Z]), np.stack([h_m * Y - hub * beta_1s, -h_m * X - hub * beta_1c - x_m * Z, x_m * Y]))
+    loads = Loads(np.array([X, Y, Z]), np.array([h_m * Y - hub * beta_1s, -h_m * X - hub * beta_1c - x_m * Z, x_m * Y]))
     through_m_s = np.sqrt(u_h**2 + v_h**2 + (v_i - w_n) ** 2)
     v_i_rate = (T / (air.density_kg_m3 * area) - 2 * through_m_s * v_i) * 3 * np.pi / (8 * m.R_m)
     tilt = _tilt(m, (mu, mu_z, inflow), (theta_0, theta_1s, theta_1c), p / m.Omega_rad_s, q / m.Omega_rad_s)
@@ -158,7 +158,7 @@ def _tail_rotor(m: Machine, air: Air, motion: Array, c: Array) -> Loads:
     area = np.pi * m.R_tail_m**2
     T = air.density_kg_m3 * area * tip_m_s**2 * (driving - lift * inflow / 2)
     zero = np.zeros_like(T)
-    return Loads(np.stack([zero, T, zero]), np.stack([m.tail_height_m * T, zero, -arm_m * T]))
+    return Loads(np.array([zero, T, zero]), np.array([m.tail_height_m * T, zero, -arm_m * T]))
 
 
 def _airframe(m: Machine, air: Air, motion: Array, v_i: Array) -> Loads:
@@ -174,4 +174,4 @@ def _airframe(m: Machine, air: Air, motion: Array, v_i: Array) -> Loads:
     Z = -pressure * m.plan_area_m2 * (w - v_i) + lift
     M = 2 * pressure * m.pitch_volume_m3 * (w - v_i) + m.stabiliser_arm_m * lift
     N = -2 * pressure * m.yaw_volume_m3 * v - m.fin_arm_m * side
-    return Loads(np.stack([X, Y, Z]), np.stack([0.9 * side, M, N]))
+    return Loads(np.array([X, Y, Z]), np.array([0.9 * side, M, N]))
