@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from rig.link.cobs import cobs_decode, cobs_encode
 from tests.firmware.box import compiled
+from tests.soak import SOAK
 
+EXAMPLES = 300 if SOAK else 60
 BLOCK_BORDERS = [0, 1, 2, 253, 254, 255, 256, 507, 508, 509, 510, 762, 1016]
 PAYLOADS = [bytes([fill]) * length for fill in (0, 1, 255) for length in BLOCK_BORDERS]
 PAYLOADS += [b"\x01" * length + b"\x00" for length in BLOCK_BORDERS] + [
@@ -44,7 +46,7 @@ def test_both_encoders_give_the_reference_bytes_at_the_borders_of_blocks(data):
 
 
 @given(data_with_zeros)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_encoding_is_the_reference_encoding_and_decodes_to_the_data(data):
     encoded = cobs.encode(data)
     assert c_encode(data) == encoded
@@ -54,7 +56,7 @@ def test_encoding_is_the_reference_encoding_and_decodes_to_the_data(data):
 
 
 @given(data_with_zeros)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_both_decoders_refuse_what_the_reference_refuses(garbage):
     try:
         expected = cobs.decode(garbage) if garbage else None
@@ -70,7 +72,7 @@ def test_a_zero_inside_an_encoded_block_is_refused():
 
 
 @given(st.binary(max_size=300))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_crc_is_that_of_zlib(data):
     assert compiled()[1].crc32_of(data, len(data)) == zlib.crc32(data) == Crc32.calc(data)
 

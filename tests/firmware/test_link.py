@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 from records.protocol import PROTOCOL
 from rig.link.frames import encode_frame
 from tests.firmware.box import Box, sample_words, word
+from tests.soak import SOAK
+
+EXAMPLES = 300 if SOAK else 60
 
 REFUSALS = (
     "cobs_errors",
@@ -91,7 +94,7 @@ def test_the_board_does_not_take_its_own_messages():
 
 @given(st.binary(max_size=400))
 @example(b"\x01" * 400)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_after_any_bytes_the_receiver_is_back_within_one_frame(garbage):
     box = Box()
     box.feed(garbage)
@@ -102,7 +105,7 @@ def test_after_any_bytes_the_receiver_is_back_within_one_frame(garbage):
 
 
 @given(st.binary(max_size=400))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_every_delimited_piece_is_accepted_or_counted_exactly_once(garbage):
     box = Box()
     box.feed(garbage + b"\0")
@@ -112,7 +115,7 @@ def test_every_delimited_piece_is_accepted_or_counted_exactly_once(garbage):
 
 
 @given(st.data())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=EXAMPLES, deadline=None)
 def test_no_damaged_sample_moves_the_law(data):
     box = Box()
     box.arm("LOOP")

@@ -20,8 +20,8 @@ from tests.rig.emulator.thumb import (
 from tests.soak import SOAK, sampled
 
 FLASH, RAM = STM32G071.flash, STM32G071.ram
-# 220 800 instructions in a soak, 13 800 else; some 7 % are unaligned accesses.
-SHARDS, SLOTS, VISITS = range(4), 6900, 8 if SOAK else 2
+# 220 800 instructions in a soak, 6 900 else; some 7 % are unaligned accesses.
+SHARDS, SLOTS, VISITS = range(4), 6900, 8 if SOAK else 1
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
 STRIDE = 8
 SOFT = """

@@ -71,8 +71,8 @@ TOTAL: dict[str, Faults] = {
     "too slow": total(BaudMismatch, ratio=lambda source: source.uniform(0.3, 0.92)),
     "too fast": total(BaudMismatch, ratio=lambda source: source.uniform(1.08, 3.0)),
 }
-# One of each way in which they reach the host of a loop: nothing arrives, spoiled frames, noise, a dead level, another speed.
-LOOPED = ("all frames dropped", "three bytes of each frame spoiled", "noise", "stuck low", "too fast")
+# Three ways in which they reach the host of a loop: nothing arrives, spoiled bytes, a dead level.
+LOOPED = ("all frames dropped", "noise", "stuck low")
 
 
 class Host:

@@ -19,7 +19,7 @@ from tests.firmware.box import HERE as BOX
 from tests.soak import SOAK
 from toolchain.host import CText, build_shared, load_shared
 
-EXAMPLES = 20_000 if SOAK else 300
+EXAMPLES = 20_000 if SOAK else 100
 CONTROL = FIRMWARE_DIR / "control"
 TO_BOARD = {message.code: message for message in PROTOCOL.messages if message.to_board}
 FAULTS = ("cobs_errors", "too_long", "too_short", "crc_errors", "wrong_version", "unknown_type", "wrong_length")

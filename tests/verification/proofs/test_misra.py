@@ -54,14 +54,12 @@ BACKWARDS = (
 
 
 @needs_cppcheck
-@pytest.mark.parametrize("path", ["as it is", "/nowhere"])
-def test_a_jump_backwards_is_found_whatever_is_on_the_path(
-    path: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_a_jump_backwards_is_found_even_with_nothing_on_the_path(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Rule 15.2: goto shall jump to a label declared later. The addon is a Python program of its own."""
     monkeypatch.setattr(sources, "CONTROL_DIR", tmp_path)  # this file alone
-    if path == "/nowhere":
-        monkeypatch.setenv("PATH", path)
+    monkeypatch.setenv("PATH", "/nowhere")
     found = findings_in(Subject(ce150_table(), {"again.c": BACKWARDS}, b""))
     assert any(finding.file == "again.c" and finding.rule == "15.2" for finding in found)
 

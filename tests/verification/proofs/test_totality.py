@@ -6,7 +6,7 @@ import pytest
 
 from codegen.law import generate_law
 from tests.law_tables import ce150_table, changed_axis
-from tests.soak import sampled
+from tests.soak import SOAK, sampled
 from verification.proofs.totality.proof import holds
 from verification.proofs.totality.questions import Question
 from verification.proofs.totality.smt_fixed import fixed_questions, polynomial_ranges
@@ -60,9 +60,16 @@ def test_every_array_of_the_c_has_its_question() -> None:
     assert all(question.text.startswith(PREAMBLE) for question in questions(TABLE, LAW_C))
 
 
+# Half a second and more each; that they can fail is tried below, or of claims like them.
+LONG = ("clamp is held", "half products fit", "towards ends", "product is exact")
+
+
 def test_in_fixed_point_decisions_products_moves_and_limits_hold_for_all_words() -> None:
     asked = [q for q in fixed_questions(TABLE, FIXED_C) if ".." not in q.claim]
     assert len(asked) == 26
+    if not SOAK:
+        asked = [q for q in asked if not q.claim.startswith(LONG)]
+        assert len(asked) == 26 - len(LONG)
     assert all(holds(question) for question in asked), [q.claim for q in asked if not holds(q)]
 
 
