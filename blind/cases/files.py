@@ -13,7 +13,7 @@ from blind.simulation.ce150 import restated
 from blind.simulation.record import Record
 
 Array = NDArray[np.float64]
-COUNTS = {2: "two", 3: "three", 4: "four"}
+NUMBER_WORDS = {2: "two", 3: "three", 4: "four"}
 
 SIDECAR = """schema = "run-log/1"
 plant = "ce150"
@@ -58,7 +58,7 @@ def case_files(name: str, case: Case, plant_text: str, defects: Defects, rng: Ge
     training = " ".join(f"{run}.csv" for run in runs[:-1])
     length_s = case.logging.length_s
     files = {
-        "README.md": README.format(name=name, count=COUNTS[len(runs)], length_s=length_s, training=training),
+        "README.md": README.format(name=name, count=NUMBER_WORDS[len(runs)], length_s=length_s, training=training),
         "plant.toml": restated(plant_text, case.restated),
     }
     for run, record in zip(runs, case.records, strict=True):

@@ -6,8 +6,8 @@ from itertools import cycle, islice
 import numpy as np
 from numpy.random import Generator
 
-from blind.effects.effect import Effect
-from blind.rigs.bench import Catalogue, Plan
+from blind.effects.effect import Catalogue, Effect
+from blind.rigs.bench import Plan
 from records.errors import BadInput
 
 # Share of each kind and the range of severities that is wanted for each of its effects.
@@ -21,7 +21,7 @@ SHARES = {
     "timing": (0.05, (2.0, 30.0)),
 }
 KINDS = tuple(SHARES)
-COUNTS = {"nominal": 0, "double": 2, "triple": 3}
+EFFECTS_IN = {"nominal": 0, "double": 2, "triple": 3}
 
 
 def plans(cases: int, kinds: Sequence[str], catalogue: Catalogue, rng: Generator) -> list[Plan]:
@@ -50,7 +50,7 @@ def _count(kind: str, kinds: Sequence[str], cases: int) -> int:
 
 def _of_kind(kind: str, count: int, catalogue: Catalogue, rng: Generator) -> list[Plan]:
     pool = {"outside": catalogue.outside, "timing": catalogue.timing}.get(kind, catalogue.known)
-    groups = _groups(pool, COUNTS.get(kind, 1), count, rng)
+    groups = _groups(pool, EFFECTS_IN.get(kind, 1), count, rng)
     return [_plan(kind, group, index, rng) for index, group in enumerate(groups)]
 
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from blind.effects.effect import Equivalent
+from blind.effects.equivalent import Equivalent
 from records.errors import BadInput
 
 CASES_SCHEMA = "blind-cases/1"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blind.rigs.bench import Lab
-from blind.simulation.ce150 import Rig, uncertain
+from blind.simulation.ce150 import DRY_FRICTION, Rig, uncertain
 from blind.simulation.record import Record
 
 Array = NDArray[np.float64]
@@ -71,6 +71,6 @@ def moved_rig(rig: Rig, steps: Array) -> Rig:
     values = {name: value.copy() for name, value in rig.values.items()}
     for (name, index, sd), step in zip(uncertain(rig), steps, strict=True):
         values[name][index] += sd * step
-    for name in ("b_cE", "b_cA"):
+    for name in DRY_FRICTION:
         values[name] = np.maximum(values[name], 0.0)
     return rig.with_values(values)

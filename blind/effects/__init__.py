@@ -1,1 +1,1 @@
-"""What an effect is: a size and a shape in, settings of a simulation and the size in the library's words out."""
+"""A rig's rows of data in (name, place, size, ranges), effects with settings of a simulation and a size in the library's words out."""

@@ -1,163 +1,139 @@
-"""What an effect of the benchmark is: where it sits, how it is drawn, what it sets in the simulation, what it is in the library's words."""
+"""What an effect of the benchmark is: one row of data, from which all is drawn, set and judged."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from math import inf, sqrt
 
-import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
-Array = NDArray[np.float64]
+from blind.effects.draws import Source, sign
+from blind.effects.equivalent import Equivalents
+from blind.effects.visited import Visited
+
 Shape = Mapping[str, float]
 Settings = Mapping[tuple[str, int], float]
+SCALAR = -1  # the index of a field that is one number, no pair
 
 
-@dataclass(frozen=True, eq=False)
-class Visited:
-    """The samples that a case's training runs went through: angles, rates, rotor speeds, commands, times; SI units, shape (n,).
+def times(at_one: float, m: float) -> float:
+    """A number that grows with the effect."""
+    return at_one * m
 
-    Times count from the first row, to which the logs give the time `start_s`.
-    """
 
-    t_s: Array
-    psi: Array
-    psi_dot: Array
-    phi: Array
-    phi_dot: Array
-    omega_M: Array
-    omega_T: Array
-    u_M: Array
-    u_T: Array
-    gravity_Nm: float
-    tail_thrust: Callable[[Array], Array]
-    start_s: float = 0.0
+def over(at_one: float, m: float) -> float:
+    """A limit, which is lower the larger the effect."""
+    return at_one / m
 
-    def angle(self, axis: int) -> Array:
-        """Angle of axis 0 (elevation) or 1 (azimuth)."""
-        return (self.psi, self.phi)[axis]
 
-    def rate(self, axis: int) -> Array:
-        """Rate of an axis."""
-        return (self.psi_dot, self.phi_dot)[axis]
-
-    def omega(self, rotor: int) -> Array:
-        """Speed of rotor 0 (main) or 1 (tail)."""
-        return (self.omega_M, self.omega_T)[rotor]
-
-    def u(self, rotor: int) -> Array:
-        """Command of a rotor."""
-        return (self.u_M, self.u_T)[rotor]
+def over_root(at_one: float, m: float) -> float:
+    """The frequency of a spring, which is softer the larger the effect."""
+    return at_one / sqrt(m)
 
 
 @dataclass(frozen=True)
-class Equivalent:
-    """A parameter in the library's formula; an estimate's error is |estimate - value| / scale.
+class Size:
+    """The number that says how large an effect is: a field of the simulation's effects_t, its value at m = 1, how it goes with m.
 
-    `either_sign` where the contract leaves the sign's meaning open; `main` where the parameter counts in the error's median.
+    No field where the effect acts elsewhere: on the plant's own friction, on frames.
     """
 
-    value: float
-    scale: float
-    either_sign: bool = False
-    main: bool = True
+    field: str
+    at_one: float
+    law: Callable[[float, float], float] = times
+    most: float = inf
 
-
-Equivalents = Mapping[str, Equivalent]
+    def at(self, m: float) -> float:
+        """The number for an effect of size m, in the field's unit."""
+        return min(self.law(self.at_one, m), self.most)
 
 
 def _nothing(m: float, shape: Shape, visited: Visited) -> Equivalents:
     return {}
 
 
-def _no_shape(rng: Generator) -> Shape:
-    return {}
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Effect:
-    """An effect whose size is one number m (1 = reference).
+    """An effect whose size is one number m (1 = reference), from `bounds`.
 
-    `places` are right answers, the first one where it acts; `twins` names whose formula says the same; `keywords` occur in a
-    fitting name of a larger library. `rig_settings` go to the rig itself; `absent` parameters are stated as 0 in the plant file.
+    What it is called: `places` are right answers, the first one where it acts; `twins` names whose formula says the same;
+    `keywords` occur in a fitting name of a larger library; `known` where the contract's table holds it.
+    What it sets: `size`, times a drawn sign where `signed`; fields of its shape that are `drawn`, in this order; fields that are
+    `fixed`; each at all `indices` of its field, but those of `single` fields, which are one number.
+    `equivalent`: its size in the library's words. `sensor`: what the sensors show differs from how the rig moves. `needs`: a kind of
+    flight. `hides`: the plant parameter that it is, which the plant file states as 0. `loses_frames`: its size is their share.
     """
 
     name: str
     places: tuple[str, ...]
     depends: str
-    settings: Callable[[float, Shape], Settings]
-    draw: Callable[[Generator], Shape] = _no_shape
+    size: Size
+    drawn: Mapping[str, Source] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    signed: bool = False
+    indices: tuple[int, ...] = (SCALAR,)
+    single: tuple[str, ...] = ()
+    bounds: tuple[float, float] = (0.01, 10.0)
     equivalent: Callable[[float, Shape, Visited], Equivalents] = _nothing
-    bounds: tuple[float, float] = (0.003, 10.0)
-    known: bool = True
+    known: bool = False
     sensor: bool = False
     needs: str = ""
     twins: tuple[str, ...] = ()
     keywords: tuple[str, ...] = ()
-    absent: tuple[str, ...] = ()
-    coulomb: Mapping[int, float] = field(default_factory=dict)
-    loss: float = 0.0
+    hides: str = ""
+    loses_frames: bool = False
+
+    def draw(self, rng: Generator) -> Shape:
+        """What makes one such effect differ from another of its size."""
+        signs = {"sign": sign(rng)} if self.signed else {}
+        return signs | {name: source.draw(rng) for name, source in self.drawn.items()}
+
+    def amplitude(self, m: float, shape: Shape) -> float:
+        """The size with its sign, in its field's unit."""
+        return self.size.at(m) * shape.get("sign", 1.0)
+
+    def settings(self, m: float, shape: Shape) -> Settings:
+        """(field of effects_t, index) -> value."""
+        if not self.size.field:
+            return {}
+        values = {self.size.field: self.amplitude(m, shape)}
+        values |= {name: shape[name] for name in self.drawn} | dict(self.fixed)
+        return {(name, index): value for name, value in values.items() for index in self.indices_of(name)}
+
+    def indices_of(self, name: str) -> tuple[int, ...]:
+        """Where a field of this effect is set."""
+        return (SCALAR,) if name in self.single else self.indices
 
 
-def outside_effect(
-    name: str,
-    places: str,
-    depends: str,
-    settings: Callable[[float, Shape], Settings],
-    draw: Callable[[Generator], Shape] = _no_shape,
-    bounds: tuple[float, float] = (0.01, 10.0),
-    keywords: str = "",
-    twins: str = "",
-    sensor: bool = False,
-) -> Effect:
-    """An effect that the contract's table does not hold; lists of words are given as one text."""
-    return Effect(
-        name=name,
-        places=tuple(places.split()),
-        depends=depends,
-        settings=settings,
-        draw=draw,
-        bounds=bounds,
-        known=False,
-        sensor=sensor,
-        keywords=tuple(keywords.split()),
-        twins=tuple(twins.split()),
+@dataclass(frozen=True, eq=False)
+class Catalogue:
+    """Effects of a kind of rig: those of the contract's table, those of the loop's timing, those outside the table."""
+
+    known: tuple[Effect, ...]
+    timing: tuple[Effect, ...]
+    outside: tuple[Effect, ...]
+
+    @property
+    def all(self) -> tuple[Effect, ...]:
+        """Every one."""
+        return (*self.known, *self.timing, *self.outside)
+
+
+def effects_struct(effects: Iterable[Effect]) -> str:
+    """C: the structure effects_t, all that these effects set, in SI units as the fields' names say.
+
+    Raises ValueError where one effect takes for a number what another takes for a pair.
+    """
+    pairs: dict[str, bool] = {}
+    for effect in effects:
+        for name in (effect.size.field, *effect.drawn, *effect.fixed) if effect.size.field else ():
+            pair = effect.indices_of(name) != (SCALAR,)
+            if pairs.setdefault(name, pair) != pair:
+                raise ValueError(f"{name} of {effect.name} is a pair for one effect and a number for another")
+    return "\n".join(
+        [
+            "/* What may be wrong with the rig. A zero switches an effect off. */",
+            "typedef struct {",
+            *(f"    double {name}{'[2]' if pair else ''};" for name, pair in pairs.items()),
+            "} effects_t;",
+        ]
     )
-
-
-def relative(value: float, either_sign: bool = False) -> Equivalent:
-    """A parameter judged relative to its own size."""
-    return Equivalent(float(value), abs(float(value)), either_sign)
-
-
-def shape_only(value: float, scale: float) -> Equivalent:
-    """A parameter that is stored and judged on `scale`, but does not count in the median error."""
-    return Equivalent(float(value), float(scale), main=False)
-
-
-def fitted(formula: Callable[[Array], Array], target: Array, start: list[float]) -> Array:
-    """Parameters of the library's formula that come nearest, by least squares, to the benchmark's over the visited samples."""
-    size = float(np.sqrt(np.mean(target**2))) or 1.0
-    scale = np.abs(np.asarray(start)) + 1e-6
-    solved = least_squares(lambda x: (formula(x) - target) / size, np.asarray(start), x_scale=scale, method="lm")
-    return np.asarray(solved.x)
-
-
-def scale_of(formula: Array, target: Array) -> float:
-    """The factor that brings `formula` nearest to `target`."""
-    return float(formula @ target / (formula @ formula))
-
-
-def sign(rng: Generator) -> float:
-    """+1 or -1."""
-    return 1.0 if rng.random() < 0.5 else -1.0
-
-
-def nearest_rectangle(push: Callable[[Array], Array]) -> tuple[float, float]:
-    """(height, width) of the rectangle in the middle of a pulse over phases 0 to 1 that comes nearest to it."""
-    phase = np.linspace(0.0, 1.0, 4001)
-    height = push(phase)
-    widths = np.linspace(0.3, 1.0, 141)
-    area = np.array([height[np.abs(phase - 0.5) <= width / 2].sum() / 4001 for width in widths])
-    best = int(np.argmax(area**2 / widths))
-    return float(area[best] / widths[best]), float(widths[best])

@@ -2,14 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from blind.effects.effect import Effect
-from blind.simulation.ce150 import Rig
+from blind.effects.effect import Catalogue, Effect
+from blind.simulation.ce150 import DRY_FRICTION, Rig
+from blind.simulation.flight import RunInputs
 from blind.simulation.record import Loss, Model, Record
 
 Array = NDArray[np.float64]
@@ -33,10 +34,10 @@ class Lab(Protocol):
     def jitter(self) -> bool:
         """Whether the rows come at irregular times."""
 
-    def flight(self, rng: Generator, loss: Loss, run: int | None) -> Any:
+    def inputs(self, rng: Generator, loss: Loss, run: int | None) -> RunInputs:
         """What the run of that number from 0 is given; a short trial for None."""
 
-    def fly(self, model: Model, shadows: Sequence[Model], flight: Any) -> Record:
+    def fly(self, model: Model, shadows: Sequence[Model], inputs: RunInputs) -> Record:
         """One closed-loop run; each shadow runs freely for a second at a time."""
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
@@ -71,17 +72,20 @@ class Bench:
 
 
 @dataclass(frozen=True)
-class Catalogue:
-    """Effects of a kind of rig: those of the contract's table, those of the loop's timing, those outside the table."""
-
-    known: tuple[Effect, ...]
-    timing: tuple[Effect, ...]
-    outside: tuple[Effect, ...]
-
-
-@dataclass(frozen=True)
 class RigKind:
     """What cases of one kind are made of."""
 
     catalogue: Catalogue
     draw_bench: Callable[[Rig, Plan, Generator], Bench]
+
+
+def denied_parameters(plan: Plan, rng: Generator) -> list[str]:
+    """Parameters that the case's plant file states as 0, sorted: those that its effects are, and now and then dry friction that the rig has
+    not either, as an absent term alone must tell nothing."""
+    denied = [effect.hides for effect in plan.effects if effect.hides]
+    return sorted(denied + [name for name in DRY_FRICTION if rng.random() < 0.1 and name not in denied])
+
+
+def needs_reversal(plan: Plan) -> bool:
+    """Whether an effect shows only where the tail rotor turns the other way."""
+    return any(effect.needs == "reversal" for effect in plan.effects)

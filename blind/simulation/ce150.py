@@ -39,6 +39,7 @@ PLACES: Mapping[str, tuple[str, int]] = {
 }
 SCALARS: Mapping[str, str] = {"tau_gE": "gravity_Nm", "K_E": "gyro", "K_A": "reaction"}
 OTHERS = ("g", "cf_sign", "cf_length")
+DRY_FRICTION = ("b_cE", "b_cA")
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def draw_rig(nominal: Rig, rng: Generator) -> Rig:
     for name, value in nominal.values.items():
         deviation = np.clip(rng.standard_normal(value.shape), -2.5, 2.5)
         drawn[name] = value + nominal.sds[name] * deviation
-    for name in ("b_cE", "b_cA"):
+    for name in DRY_FRICTION:
         drawn[name] = np.maximum(drawn[name], 0.1 * nominal.values[name])
     return nominal.with_values(drawn)
 

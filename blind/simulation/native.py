@@ -1,6 +1,6 @@
-"""Compiled code, and arrays and settings on their way into it."""
+"""Compiled code of a rig: what all rigs have alike, the rig's own, and the structure of its effects in one library."""
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from blind.effects.effect import Settings
-from toolchain.host import build_shared, load_shared
+from blind.effects.effect import SCALAR, Effect, Settings, effects_struct
+from toolchain.host import CText, build_shared, load_shared
 
+COMMON_DIR = Path(__file__).resolve().parent / "c"
+COMMON_SOURCES = ("plant.c", "run.c")
+DECLARATIONS = "simulation.h"  # what every C file includes
 OPENING = Lock()
 
 # No -march: the same seed must give the same bytes on another machine of this kind.
@@ -28,20 +31,35 @@ FLAGS = (
 )
 
 
-def simulation(name: str, header: Path, sources: Sequence[str]) -> tuple[Any, Any]:
-    """(ffi, lib) of a rig's simulation, compiled from `sources` beside their header.
+@dataclass(frozen=True)
+class Program:
+    """The C of one kind of rig: a name, the folder of its own files (state.h and `sources`), the effects that it can be given."""
 
-    Opened once for all threads: a structure made with one ffi is none for another.
-    """
+    name: str
+    folder: Path
+    sources: tuple[str, ...]
+    effects: tuple[Effect, ...]
+
+    def declarations(self) -> str:
+        """Text of simulation.h, for the compiler and for cffi: the plant, the effects' fields, the rig's own state, what a run takes."""
+        plant, run = (COMMON_DIR.joinpath(name).read_text(encoding="utf-8") for name in ("plant.h", "run.h"))
+        own = self.folder.joinpath("state.h").read_text(encoding="utf-8")
+        return "\n".join([plant, effects_struct(self.effects), "", own, run])
+
+
+def opened(program: Program) -> tuple[Any, Any]:
+    """(ffi, lib) of a program, opened once for all threads: a structure made with one ffi is none for another."""
     with OPENING:
-        return _opened(name, header, tuple(sources))
+        return _opened(program)
 
 
 @cache
-def _opened(name: str, header: Path, sources: tuple[str, ...]) -> tuple[Any, Any]:
-    folder = header.parent
-    path = build_shared(name, [folder / source for source in sources], include_dirs=(folder,), flags=FLAGS)
-    return load_shared(header.read_text(encoding="utf-8"), path)
+def _opened(program: Program) -> tuple[Any, Any]:
+    text = program.declarations()
+    own = [program.folder / source for source in program.sources]
+    common = [COMMON_DIR / source for source in COMMON_SOURCES]
+    path = build_shared(program.name, [CText(DECLARATIONS, text), *own, *common], flags=FLAGS)
+    return load_shared(text, path)
 
 
 def pointer(ffi: Any, array: NDArray[np.float64]) -> Any:
@@ -50,9 +68,9 @@ def pointer(ffi: Any, array: NDArray[np.float64]) -> Any:
 
 
 def set_fields(struct: Any, settings: Settings) -> None:
-    """Write (field, index, -1 for a number) -> value into a C structure."""
+    """Write (field, index, SCALAR for a number) -> value into a C structure."""
     for (field, index), value in settings.items():
-        if index < 0:
+        if index == SCALAR:
             setattr(struct, field, value)
         else:
             getattr(struct, field)[index] = value

@@ -7,10 +7,11 @@ import numpy as np
 
 from blind.rigs.bench import Bench, Plan
 from blind.rigs.second.controller import draw_controller
-from blind.rigs.second.lab import SecondLab, Style
-from blind.rigs.second.simulation import ROUNDED, STEP_S, Bearing, library
+from blind.rigs.second.lab import SecondLab, SecondStyle
+from blind.rigs.second.simulation import PROGRAM, ROUNDED, STEP_S, bearing
 from blind.simulation.ce150 import Rig, load_rig
-from blind.simulation.native import set_fields
+from blind.simulation.flight import Bearing
+from blind.simulation.native import opened, set_fields
 from blind.simulation.record import Loss, Model, Record
 from tests.blind.conftest import PLANT
 
@@ -18,14 +19,14 @@ Settings = Mapping[tuple[str, int], float]
 NOMINAL = load_rig(PLANT)[0]
 SMOOTH = NOMINAL.with_values({"b_cE": np.zeros(1), "b_cA": np.zeros(1)})
 STILL = (0.0, 0.0)
-PLAIN = Bearing((ROUNDED, ROUNDED), (5e-3, 5e-3))
+PLAIN = bearing(ROUNDED, 5e-3, 5e-3)
 
 
 class Part:
     """A rig's state in the compiled simulation, with settings of effects; each method is one part of a step."""
 
     def __init__(self, settings: Settings, x: list[float] | None = None, t_s: float = 0.0, rig: Rig = NOMINAL) -> None:
-        self.ffi, self.lib = library()
+        self.ffi, self.lib = opened(PROGRAM)
         self.rig = self.ffi.new("rig_t *", rig.fields())
         self.effects = self.ffi.new("effects_t *")
         set_fields(self.effects, settings)
@@ -42,11 +43,11 @@ class Part:
 
     def command(self, *volts: float) -> None:
         """Send a command for both rotors."""
-        self.lib.line_send(self.state, self.ffi.new("double[2]", volts))
+        self.lib.commands_send(self.state, self.ffi.new("double[2]", volts))
 
     def settle(self, *volts: float) -> None:
         """As if that command had been there for ever."""
-        self.lib.line_settle(self.state, self.ffi.new("double[2]", volts))
+        self.lib.commands_settle(self.state, self.ffi.new("double[2]", volts))
 
     def drive(self, seconds: float) -> np.ndarray:
         """Voltages at the rotors after so long."""
@@ -56,9 +57,9 @@ class Part:
             self.state.t_s += STEP_S
         return np.array(list(self.state.volts))
 
-    def rub(self, bearing: Bearing) -> np.ndarray:
+    def rub(self, friction: Bearing) -> np.ndarray:
         """The state after one step of the bearings alone."""
-        held = self.ffi.new("bearing_t *", {"law": list(bearing.law), "width": list(bearing.width)})
+        held = self.ffi.new("bearing_t *", {name: list(values) for name, values in friction.items()})
         self.lib.bearing_step(self.rig, held, self.effects, self.state, STEP_S)
         return np.array(list(self.state.x))
 
@@ -75,21 +76,21 @@ class Part:
         return np.array(out)
 
 
-def calm_style(manoeuvre: str, reach_rad: tuple[float, float], dither_V: tuple[float, float]) -> Style:
-    return Style((manoeuvre,) * 4, True, reach_rad, dither_V, STILL, 0.0, 0.0)
+def calm_style(manoeuvre: str, reach_rad: tuple[float, float], dither_V: tuple[float, float]) -> SecondStyle:
+    return SecondStyle((manoeuvre,) * 4, True, reach_rad, dither_V, STILL, 0.0, 0.0)
 
 
 def lab_of(
-    rig: Rig, seconds: float, style: Style, *, bearing: Bearing = PLAIN, period_s: float = 0.01, seed: int = 0
+    rig: Rig, seconds: float, style: SecondStyle, *, friction: Bearing = PLAIN, period_s: float = 0.01, seed: int = 0
 ) -> SecondLab:
-    return SecondLab(rig, bearing, draw_controller(rig, period_s, np.random.default_rng(seed))[1], style, seconds)
+    return SecondLab(rig, friction, draw_controller(rig, period_s, np.random.default_rng(seed))[1], style, seconds)
 
 
 def flown(lab: SecondLab, settings: Settings, *, placed: bool = False, loss: Loss | None = None) -> Record:
     """Fly a rig that is as stated but for the settings; shadow 0 has them, shadow 1 has not."""
     model = Model(lab.nominal, settings)
-    flight = lab.flight(np.random.default_rng(3), loss or Loss(), 0)
-    return lab.fly(model, [model, Model(lab.nominal, {}, placed=placed)], flight)
+    inputs = lab.inputs(np.random.default_rng(3), loss or Loss(), 0)
+    return lab.fly(model, [model, Model(lab.nominal, {}, placed=placed)], inputs)
 
 
 def bench_of(draw: Any, seed: int, *, excited: bool = True) -> Bench:

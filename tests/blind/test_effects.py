@@ -5,17 +5,18 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from blind.effects.effect import Effect, Visited
-from blind.rigs.first.effects import CATALOGUE
+from blind.effects.effect import Effect
+from blind.effects.visited import Visited
+from blind.rigs.first.catalogue import CATALOGUE
 from blind.simulation.ce150 import Rig
 from blind.simulation.record import Record
 from tests.blind.conftest import calm_flight, lively_flight
 
 Flown = Callable[..., Record]
 KNOWN, OUTSIDE = CATALOGUE.known, CATALOGUE.outside
-ALL = (*KNOWN, *CATALOGUE.timing, *OUTSIDE)
+ALL = CATALOGUE.all
 # The others act through lost commands, the rig's own friction, or the counts.
-SIMULATED = [e for e in ALL if not e.loss and not e.coulomb and not e.name.endswith("sensor.quantization")]
+SIMULATED = [e for e in ALL if e.size.field and not e.name.endswith("sensor.quantization")]
 
 
 def hovering_V(
@@ -31,8 +32,8 @@ def hovering_V(
 @pytest.mark.parametrize(
     ("settings", "expected_V"),
     [
-        ({("dead_V", 0): 0.3, ("dead_width_V", 0): 0.01}, (0.3, 0.0)),
-        ({("dead_V", 1): 0.3, ("dead_width_V", 1): 0.01}, (0.0, 0.3)),
+        ({("dead_V", 0): 0.3, ("dead_width", 0): 0.03}, (0.3, 0.0)),
+        ({("dead_V", 1): 0.3, ("dead_width", 1): 0.03}, (0.0, 0.3)),
         ({("dry", 0): 36.3}, (0.1, 0.0)),
         ({("dry", 1): 37.1}, (0.0, 0.1)),
     ],
@@ -237,11 +238,11 @@ def test_every_library_effect_has_finite_parameters_in_the_librarys_formula(visi
 @pytest.mark.parametrize(
     ("name", "shape", "symbol", "expected"),
     [
-        ("main_input.deadzone", {"width": 1e-3}, "d", 0.2),
-        ("azimuth.cable_spring", {"zero_rad": 0.3, "hardening": 0.0}, "k", 2e-3),
-        ("azimuth.cable_spring", {"zero_rad": 0.3, "hardening": 0.0}, "angle_0", 0.3),
-        ("elevation.quadratic_drag", {"floor": 1e-9}, "c", 1.5e-3),
-        ("main_rotor.warmup", {"time_s": 20.0}, "a", 0.03),
+        ("main_input.deadzone", {"dead_width": 1e-3}, "d", 0.2),
+        ("azimuth.cable_spring", {"spring_zero_rad": 0.3, "hardening": 0.0}, "k", 2e-3),
+        ("azimuth.cable_spring", {"spring_zero_rad": 0.3, "hardening": 0.0}, "angle_0", 0.3),
+        ("elevation.quadratic_drag", {"drag_floor_rad_s": 1e-9}, "c", 1.5e-3),
+        ("main_rotor.warmup", {"warm_time_s": 20.0}, "a", 0.03),
         ("tail_input.saturation", {}, "limit", 4.0),
     ],
 )

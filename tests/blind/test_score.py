@@ -10,7 +10,7 @@ import pytest
 
 from blind import markdown, score, to_json
 from blind.cases.sealed import Hold, TrueEffect, Truth, seal
-from blind.effects.effect import Equivalent
+from blind.effects.equivalent import Equivalent
 from blind.scoring.statistics import calibration_error, clopper_pearson, reliability
 
 BARS = {"psi_rad": 1e-3, "phi_rad": 1e-3}

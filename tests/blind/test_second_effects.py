@@ -5,15 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from blind.effects.effect import Effect, Visited
-from blind.rigs.second.effects import CATALOGUE
+from blind.effects.effect import Effect
+from blind.effects.visited import Visited
+from blind.rigs.second.catalogue import CATALOGUE
 from blind.rigs.table import RIGS
 from blind.simulation.record import Loss, Record
 from tests.blind.second_rig import NOMINAL, SMOOTH, calm_style, flown, lab_of
 
-ALL = (*CATALOGUE.known, *CATALOGUE.timing, *CATALOGUE.outside)
+ALL = CATALOGUE.all
 # The others act through lost commands, the rig's own friction, or the counts.
-SIMULATED = [e for e in ALL if not e.loss and not e.coulomb and not e.name.endswith("sensor.quantization")]
+SIMULATED = [e for e in ALL if e.size.field and not e.name.endswith("sensor.quantization")]
 
 
 def test_lost_commands_leave_the_last_one_in_force_alone_or_in_bursts() -> None:
@@ -21,12 +22,14 @@ def test_lost_commands_leave_the_last_one_in_force_alone_or_in_bursts() -> None:
     style = calm_style("s-curves", (0.3, 1.0), (0.3, 1.0))
     lab = lab_of(SMOOTH, 60.0, style)
     for burst, expected in ((1.0, 1.0 / 0.7), (5.0, 5.0)):
-        lost = lab.flight(np.random.default_rng(1), Loss(0.3, burst), 0).lost[300:]
+        lost = lab.inputs(np.random.default_rng(1), Loss(0.3, burst), 0).lost[300:]
         assert np.mean(lost) == pytest.approx(0.3, abs=0.05)
         assert lost.sum() / np.sum(np.diff(lost.astype(int)) == 1) == pytest.approx(expected, rel=0.2)
-    assert not lab.flight(np.random.default_rng(1), Loss(), 0).lost.any()
+    assert not lab.inputs(np.random.default_rng(1), Loss(), 0).lost.any()
 
 
+# Times at which an effect begins.
+EVENTS = ("pulse_start_s", "weight_time_s", "chip_time_s")
 LIVELY_STYLE = calm_style("s-curves", (0.42, 1.3), (0.6, 8.0))
 LIVELY = lab_of(NOMINAL, 5.0, LIVELY_STYLE)
 
@@ -35,7 +38,7 @@ LIVELY = lab_of(NOMINAL, 5.0, LIVELY_STYLE)
 def test_every_effect_is_felt(effect: Effect) -> None:
     """At four times its size (within bounds) an excited run's free predictions differ by more than 1e-4 rad."""
     shape = effect.draw(np.random.default_rng(1))
-    early = {key: 1.55 if key in ("start_s", "time_s") and value > 4.0 else value for key, value in shape.items()}
+    early = {key: 1.55 if key in EVENTS else value for key, value in shape.items()}
     record = flown(LIVELY, effect.settings(float(np.clip(4.0, *effect.bounds)), early), placed=effect.sensor)
     assert not record.failed
     assert np.abs(record.shadow[:, 1] - record.shadow[:, 0]).max() > 1e-4
@@ -79,24 +82,34 @@ def test_every_library_effect_has_finite_parameters_in_the_librarys_formula(effe
 @pytest.mark.parametrize(
     ("name", "shape", "symbol", "expected"),
     [
-        ("main_input.deadzone", {"knee": 0.1, "skew": 0.0}, "d", 0.25),
-        ("main_input.saturation", {"knee": 1e-3}, "limit", 7.2),
-        ("tail_input.saturation", {"knee": 1e-3}, "limit", 4.2),
-        ("main_rotor.warmup", {"fast_s": 10.0, "slow_s": 10.0, "share": 0.5}, "a", 0.05),
-        ("tail_rotor.dry_friction", {"round_rad_s": 1e-3}, "c", 30.0),
-        ("tail_rotor.reverse_asymmetry", {"sign": 1.0, "speed_rad_s": 1e-3}, "r", 0.8),
-        ("tail_rotor.downwash", {"power": 1.0}, "a", 0.08),
-        ("elevation.quadratic_drag", {"power": 2.0}, "c", 2e-3),
-        ("azimuth.cable_spring", {"zero_rad": 0.3, "slack": 1.0, "growth": 0.0}, "k", 3e-3),
-        ("azimuth.cable_spring", {"zero_rad": 0.3, "slack": 1.0, "growth": 0.0}, "angle_0", 0.3),
-        ("elevation.disturbance", {"sign": -1.0, "start_s": 5.0, "s": 2.0, "rise": 1e-6}, "torque", -4e-3),
-        ("elevation.disturbance", {"sign": -1.0, "start_s": 5.0, "s": 2.0, "rise": 1e-6}, "t_0", 105.0),
-        ("elevation.centre_of_gravity", {"sign": 1.0, "droop": 0.0}, "delta", 0.06),
-        ("elevation.weight_shift", {"sign": 1.0, "time_s": 5.0, "slide_s": 1e-3}, "t_1", 105.0),
-        ("elevation.tail_coupling", {"sign": 1.0, "power": 2.0}, "k", 2e-8),
-        ("azimuth.gyroscopic", {"cant_rad": 0.0}, "K", 3e-5),
-        ("psi_sensor.scale", {"sign": 1.0, "bend": 0.0}, "scale", 1.04),
-        ("psi_sensor.offset", {"sign": -1.0, "swing": 0.0}, "offset", -0.03),
+        ("main_input.deadzone", {"dead_knee": 0.1, "dead_skew": 0.0}, "d", 0.25),
+        ("main_input.saturation", {"limit_knee": 1e-3}, "limit", 7.2),
+        ("tail_input.saturation", {"limit_knee": 1e-3}, "limit", 4.2),
+        ("main_rotor.warmup", {"warm_fast_s": 10.0, "warm_slow_s": 10.0, "warm_share": 0.5}, "a", 0.05),
+        ("tail_rotor.dry_friction", {"dry_round_rad_s": 1e-3}, "c", 30.0),
+        ("tail_rotor.reverse_asymmetry", {"sign": 1.0, "reverse_rad_s": 1e-3}, "r", 0.8),
+        ("tail_rotor.downwash", {"downwash_power": 1.0}, "a", 0.08),
+        ("elevation.quadratic_drag", {"drag_power": 2.0}, "c", 2e-3),
+        ("azimuth.cable_spring", {"spring_zero_rad": 0.3, "spring_slack": 1.0, "spring_growth": 0.0}, "k", 3e-3),
+        ("azimuth.cable_spring", {"spring_zero_rad": 0.3, "spring_slack": 1.0, "spring_growth": 0.0}, "angle_0", 0.3),
+        (
+            "elevation.disturbance",
+            {"sign": -1.0, "pulse_start_s": 5.0, "pulse_s": 2.0, "pulse_rise": 1e-6},
+            "torque",
+            -4e-3,
+        ),
+        (
+            "elevation.disturbance",
+            {"sign": -1.0, "pulse_start_s": 5.0, "pulse_s": 2.0, "pulse_rise": 1e-6},
+            "t_0",
+            105.0,
+        ),
+        ("elevation.centre_of_gravity", {"sign": 1.0, "centre_droop": 0.0}, "delta", 0.06),
+        ("elevation.weight_shift", {"sign": 1.0, "weight_time_s": 5.0, "weight_ramp_s": 1e-3}, "t_1", 105.0),
+        ("elevation.tail_coupling", {"sign": 1.0, "tail_lift_power": 2.0}, "k", 2e-8),
+        ("azimuth.gyroscopic", {"gyro_cant_rad": 0.0}, "K", 3e-5),
+        ("psi_sensor.scale", {"sign": 1.0, "scale_bend": 0.0}, "scale", 1.04),
+        ("psi_sensor.offset", {"sign": -1.0, "offset_swing": 0.0}, "offset", -0.03),
     ],
 )
 def test_where_both_formulas_agree_the_equivalent_is_the_number_itself(

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from blind.rigs.second.effects import CATALOGUE
-from blind.rigs.second.simulation import PRESLIDING, ROUNDED, STEP_S, STICK_SLIP, Bearing
+from blind.rigs.second.catalogue import CATALOGUE
+from blind.rigs.second.simulation import PRESLIDING, ROUNDED, STEP_S, STICK_SLIP, bearing
 from tests.blind.second_rig import NOMINAL, Part
 
 Settings = Mapping[tuple[str, int], float]
@@ -75,7 +75,7 @@ def test_steps_with_a_memory_leave_a_level_late() -> None:
 
 def test_both_inputs_are_late_alike_where_the_loop_is() -> None:
     effect = next(effect for effect in CATALOGUE.timing if effect.name == "loop.delay")
-    part = Part(effect.settings(2.0, {"spread": 0.2}))
+    part = Part(effect.settings(2.0, {"delay_spread": 0.2}))
     part.settle(4.0, 4.0)
     for _ in range(200):
         part.command(6.0, 6.0)
@@ -120,7 +120,7 @@ def test_a_bearing_drags_with_the_level_of_its_formula_whatever_the_law(
     for law, width in ((ROUNDED, 5e-3), (PRESLIDING, 1e-3), (STICK_SLIP, 1e-3)):
         part = Part(settings, X)
         part.state.bristle = [1e-3, 1e-3]
-        after = part.rub(Bearing((law, law), (width, width)))[1 + 2 * axis]
+        after = part.rub(bearing(law, width, width))[1 + 2 * axis]
         assert (rate - after) / STEP_S * inertia == pytest.approx(level_Nm, rel=1e-6)
 
 

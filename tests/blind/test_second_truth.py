@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from blind.rigs.second.controller import KINDS, draw_controller, linear, rest, stable
+from blind.rigs.second.controller import CONTROLLERS, draw_controller, linear, stable
 from blind.rigs.second.lab import PERIODS_S, draw_bench
 from blind.rigs.second.manoeuvre import LIVELY, QUIET, reference
-from blind.rigs.second.simulation import PRESLIDING, ROUNDED, STICK_SLIP, Bearing, predict
+from blind.rigs.second.simulation import FASTEST_RAD_S, PRESLIDING, ROUNDED, STICK_SLIP, bearing
 from blind.simulation.ce150 import Rig
 from blind.simulation.record import Loss, Model, Record
+from blind.simulation.rest import rest
 from tests.blind.second_rig import NOMINAL, PLAIN, SMOOTH, bench_of, calm_style, flown, lab_of
 
 MAIN_REST_V = {-40: 4.859, -30: 5.191, -20: 5.424, -10: 5.562, 0: 5.607}
@@ -66,19 +67,19 @@ def test_with_rounded_friction_it_follows_the_equations_to_a_microradian() -> No
     """The same with b_c tanh(v / v_r), v_r = 5 mrad/s: what solving friction apart from the rest leaves."""
     rig = NOMINAL.with_values({"b_cE": np.array([1e-3]), "b_cA": np.array([1e-3])})
     record = flown(lab_of(rig, 6.0, LIVELY_STYLE), {})
-    assert np.abs(integrated(rig, record, PLAIN.width[0]) - record.exact_rad).max() < 1e-6
+    assert np.abs(integrated(rig, record, PLAIN["width"][0]) - record.exact_rad).max() < 1e-6
 
 
 def test_the_coarse_prediction_of_the_retune_follows_the_fine_one() -> None:
     for law, width in ((ROUNDED, 3e-3), (PRESLIDING, 1e-3), (STICK_SLIP, 1e-3)):
-        bearing = Bearing((law, law), (width, width))
-        record = flown(lab_of(NOMINAL, 8.0, LIVELY_STYLE, bearing=bearing), {})
-        assert np.abs(predict(NOMINAL, bearing, record, 5e-4) - record.shadow[:, 1]).max() < 2e-3
+        lab = lab_of(NOMINAL, 8.0, LIVELY_STYLE, friction=bearing(law, width, width))
+        record = flown(lab, {})
+        assert np.abs(lab.predict(NOMINAL, record, 5e-4) - record.shadow[:, 1]).max() < 2e-3
 
 
 @pytest.mark.parametrize(("elevation_deg", "expected_V"), MAIN_REST_V.items())
 def test_rest_voltages_are_the_published_ones_within_a_millivolt(elevation_deg: int, expected_V: float) -> None:
-    volts, _ = rest(NOMINAL, np.deg2rad(elevation_deg))
+    volts, _ = rest(NOMINAL, np.deg2rad(elevation_deg), FASTEST_RAD_S)
     assert volts[0] == pytest.approx(expected_V, abs=1e-3)
     assert 1.80 <= volts[1] <= 1.97
 
@@ -88,10 +89,10 @@ def released(law: int, width: float, torque_Nm: float) -> tuple[np.ndarray, np.n
     rig = NOMINAL.with_values({"b_cA": np.array([2e-3]), "tau_gE": np.zeros(1), "b_vA": np.zeros(1)})
     push = {("pulse_Nm", 1): torque_Nm, ("pulse_start_s", 1): -1.0, ("pulse_s", 1): 100.0, ("pulse_rise", 1): 1e-4}
     calm = calm_style("holding", (0.0, 0.0), (0.0, 0.0))
-    lab = replace(lab_of(NOMINAL, 1.0, calm, bearing=Bearing((law, law), (width, width))), nominal=rig)
+    lab = replace(lab_of(NOMINAL, 1.0, calm, friction=bearing(law, width, width)), nominal=rig)
     lab.control.gain, lab.control.feed_V = [[0.0] * 4] * 2, [[0.0] * 3] * 2
     model = Model(rig, push)
-    record = lab.fly(model, [model], lab.flight(np.random.default_rng(0), Loss(), 0))
+    record = lab.fly(model, [model], lab.inputs(np.random.default_rng(0), Loss(), 0))
     return record.t_s, record.exact_rad[:, 1]
 
 
@@ -126,7 +127,7 @@ def test_the_shadow_of_the_rig_itself_repeats_it_exactly_in_still_air() -> None:
         ("delay_spread", 0): 0.2, ("spin_inertia", 0): 4e-5, ("spin_soft_s", 0): 0.01,
     }  # fmt: skip
     for law, width in ((ROUNDED, 3e-3), (PRESLIDING, 1e-3), (STICK_SLIP, 1e-3)):
-        record = flown(lab_of(NOMINAL, 4.0, LIVELY_STYLE, bearing=Bearing((law, law), (width, width))), hidden)
+        record = flown(lab_of(NOMINAL, 4.0, LIVELY_STYLE, friction=bearing(law, width, width)), hidden)
         np.testing.assert_array_equal(record.shadow[:, 0], record.exact_rad)
 
 
@@ -138,9 +139,9 @@ def test_every_kind_of_controller_holds_an_arm_that_is_heavier_than_stated_where
         period_s = PERIODS_S[seed % len(PERIODS_S)]
         kind, _ = draw_controller(SMOOTH, period_s, np.random.default_rng(seed))
         lab = lab_of(SMOOTH, 20.0, calm_style("holding", (0.0, 0.0), (0.0, 0.0)), period_s=period_s, seed=seed)
-        record = lab.fly(heavy, [], lab.flight(np.random.default_rng(0), Loss(), 0))
+        record = lab.fly(heavy, [], lab.inputs(np.random.default_rng(0), Loss(), 0))
         seen[kind] = max(seen.get(kind, 0.0), np.abs(record.exact_rad[-round(1.0 / period_s) :]).max())
-    assert set(seen) == set(KINDS)
+    assert set(seen) == set(CONTROLLERS)
     assert max(seen.values()) < 5e-3, seen
 
 
@@ -155,7 +156,7 @@ def test_a_loop_with_the_wrong_sign_or_far_too_much_gain_is_not_taken_for_stable
 
 def test_the_linear_model_is_the_slope_of_the_equations() -> None:
     """Central differences of the equations about rest at 0.2 rad, within 1e-6 of each entry."""
-    volts, speeds = rest(SMOOTH, 0.2)
+    volts, speeds = rest(SMOOTH, 0.2, FASTEST_RAD_S)
     x = np.array([0.2, 0.0, 0.0, 0.0, *speeds])
     for axis, states in ((0, (0, 1, 4)), (1, (2, 3, 5))):
         A, B = linear(SMOOTH, axis, 0.2)
@@ -193,7 +194,7 @@ def test_what_is_drawn_spans_what_is_promised() -> None:
         8192,
     }
     assert 0.1 < np.mean([bench.logging.start_s > 0.0 for bench in benches]) < 0.5
-    assert {bench.lab.bearing.law[0] for bench in benches} == {ROUNDED, PRESLIDING, STICK_SLIP}
+    assert {bench.lab.bearing["law"][0] for bench in benches} == {ROUNDED, PRESLIDING, STICK_SLIP}
     deviations = []
     for bench in benches:
         assert 45.0 <= bench.logging.length_s <= 75.0

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind.rigs.first.pilot import rest, rotor_slope
-from blind.rigs.first.truth import predict
+from blind.rigs.first.pilot import rotor_slope
+from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PROGRAM
 from blind.simulation.ce150 import Rig, draw_rig, restated, stated_zero
+from blind.simulation.flight import predict
 from blind.simulation.record import Record
+from blind.simulation.rest import rest
 from records.plant import load_plant
 from sim.bind import bind
 from sim.simulate import simulate
@@ -23,18 +25,18 @@ MAIN_REST_V = {-40: 4.859, -30: 5.191, -20: 5.424, -10: 5.562, 0: 5.607}
 def test_rest_voltages_are_the_published_ones_within_a_millivolt(
     rig: Rig, elevation_deg: int, expected_V: float
 ) -> None:
-    volts, _ = rest(rig, np.deg2rad(elevation_deg))
+    volts, _ = rest(rig, np.deg2rad(elevation_deg), FASTEST_RAD_S)
     assert volts[0] == pytest.approx(expected_V, abs=1e-3)
-    assert rest(rig, -np.deg2rad(elevation_deg))[0][0] == pytest.approx(expected_V, abs=1e-3)
+    assert rest(rig, -np.deg2rad(elevation_deg), FASTEST_RAD_S)[0][0] == pytest.approx(expected_V, abs=1e-3)
     assert 1.80 <= volts[1] <= 1.97
 
 
 def test_the_arm_leaves_the_lower_stop_at_the_published_voltage(rig: Rig) -> None:
-    assert rest(rig, -np.pi / 4)[0][0] == pytest.approx(4.653, abs=2e-3)
+    assert rest(rig, -np.pi / 4, FASTEST_RAD_S)[0][0] == pytest.approx(4.653, abs=2e-3)
 
 
 def test_rotor_time_constants_at_hover_are_the_published_ones(rig: Rig) -> None:
-    _, speeds = rest(rig, 0.0)
+    _, speeds = rest(rig, 0.0, FASTEST_RAD_S)
     assert 1.0 / rig.value("p_bM") == pytest.approx(0.333, abs=1e-3)
     assert 6.6 <= rotor_slope(rig, "M", speeds[0])[0] <= 10.0
 
@@ -70,7 +72,7 @@ def test_the_shadow_of_the_rig_itself_repeats_it_exactly_in_still_air(flown: Cal
 
 def test_the_coarse_prediction_used_for_the_retune_follows_the_fine_one(rig: Rig, flown: Callable[..., Record]) -> None:
     record = flown(lively_flight(10.0), {})
-    assert np.abs(predict(rig, record, 5e-4) - record.shadow[:, 1]).max() < 4e-3
+    assert np.abs(predict(PROGRAM, rig, BRISTLES, record, 5e-4) - record.shadow[:, 1]).max() < 4e-3
 
 
 def test_drawn_parameters_stay_within_two_and_a_half_sd_and_friction_stays_positive(rig: Rig) -> None:

@@ -7,7 +7,9 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from blind.rigs.first.truth import GUSTS_PER_ROW, PERIOD_S, SUBSTEPS, Flight
+from blind.rigs.first.simulation import GUSTS, PERIOD_S, ROW_STEPS, STEP_S
+from blind.rigs.shaping import smoothed
+from blind.simulation.flight import RunInputs
 
 Array = NDArray[np.float64]
 SETTLE_ROWS = 300
@@ -16,7 +18,7 @@ DITHERS = ("prbs", "multisine")
 
 
 @dataclass(frozen=True)
-class Style:
+class FirstStyle:
     """How a case is flown: kinds of reference and dither, ranges in rad, air in N m, timing; `loss` the share of lost frames."""
 
     duration_s: float
@@ -29,11 +31,11 @@ class Style:
     loss: float
 
 
-def draw_style(rng: Generator, excited: bool, duration_s: float) -> Style:
+def draw_style(rng: Generator, excited: bool, duration_s: float) -> FirstStyle:
     """Quiet: gentle, small, no dither. Excited: larger and faster references with dither on both inputs."""
     lively = 1.0 if excited else 0.5
     air = 10.0 ** rng.uniform(-3.4, -2.7, 2) * np.array([4.37e-3, 4.14e-3]) / np.sqrt(0.04)
-    return Style(
+    return FirstStyle(
         duration_s=duration_s,
         excited=excited,
         elevation_rad=float(np.deg2rad(rng.uniform(18.0, 30.0) * (0.6 + 0.4 * lively))),
@@ -45,20 +47,29 @@ def draw_style(rng: Generator, excited: bool, duration_s: float) -> Style:
     )
 
 
-def make_flight(style: Style, rng: Generator) -> Flight:
+def make_inputs(style: FirstStyle, rng: Generator) -> RunInputs:
     """One run in that style: 3 s to settle, then `duration_s` that are logged."""
     rows = SETTLE_ROWS + round(style.duration_s / PERIOD_S)
     reference = np.column_stack([_reference(style, rng, rows, axis) for axis in range(2)])
     dither = np.column_stack([_dither(style, rng, rows, axis) for axis in range(2)])
-    substeps = np.full(rows, SUBSTEPS, np.int32)
+    steps = np.full(rows, ROW_STEPS, np.int32)
     if style.jitter:
-        substeps[SETTLE_ROWS:] += rng.integers(-8, 9, rows - SETTLE_ROWS, dtype=np.int32)
+        steps[SETTLE_ROWS:] += rng.integers(-8, 9, rows - SETTLE_ROWS, dtype=np.int32)
     lost = rng.random(rows) < style.loss
     lost[:SETTLE_ROWS] = False
-    return Flight(SETTLE_ROWS, substeps, reference, dither, _air(style, rng, rows), lost.astype(np.uint8))
+    return RunInputs(
+        settle=SETTLE_ROWS,
+        step_s=STEP_S,
+        steps=steps,
+        reference=reference,
+        dither_V=dither,
+        gust=_air(style, rng, rows),
+        gust_steps=ROW_STEPS // GUSTS,
+        lost=lost.astype(np.uint8),
+    )
 
 
-def _reference(style: Style, rng: Generator, rows: int, axis: int) -> Array:
+def _reference(style: FirstStyle, rng: Generator, rows: int, axis: int) -> Array:
     reach = style.elevation_rad if axis == 0 else style.azimuth_rad
     kind = REFERENCES[rng.integers(len(REFERENCES))]
     t = np.arange(rows) * PERIOD_S
@@ -74,7 +85,7 @@ def _reference(style: Style, rng: Generator, rows: int, axis: int) -> Array:
         weights = rng.uniform(0.5, 1.0, count) / np.sqrt(1.0 + (frequencies / 0.15) ** 2)
         waves = weights[:, None] * np.sin(2.0 * np.pi * frequencies[:, None] * t + phases[:, None])
         shaped = reach * waves.sum(axis=0) / weights.sum() + rng.uniform(-0.15, 0.15) * reach
-    return _smoothed(shaped, 0.25)
+    return smoothed(shaped, PERIOD_S, 0.25)
 
 
 def _levels(rng: Generator, rows: int, reach: float, hold_s: tuple[float, float]) -> Array:
@@ -96,14 +107,7 @@ def _limited(raw: Array, step: float) -> Array:
     return shaped
 
 
-def _smoothed(raw: Array, time_s: float) -> Array:
-    """Two lags in a row, started at rest at the first value."""
-    b = 1.0 - np.exp(-PERIOD_S / time_s)
-    once = lfilter([b], [1.0, b - 1.0], raw - raw[0])
-    return np.ascontiguousarray(lfilter([b], [1.0, b - 1.0], once) + raw[0])
-
-
-def _dither(style: Style, rng: Generator, rows: int, axis: int) -> Array:
+def _dither(style: FirstStyle, rng: Generator, rows: int, axis: int) -> Array:
     size = style.dither_V[axis]
     if size == 0.0:
         return np.zeros(rows)
@@ -118,9 +122,9 @@ def _dither(style: Style, rng: Generator, rows: int, axis: int) -> Array:
     return size * waves / 2.0
 
 
-def _air(style: Style, rng: Generator, rows: int) -> Array:
+def _air(style: FirstStyle, rng: Generator, rows: int) -> Array:
     """Turbulence: torques of an Ornstein-Uhlenbeck process, 20 ms, held for 1 ms each."""
-    keep = np.exp(-1.0 / (20.0 * GUSTS_PER_ROW / 10.0))
-    white = rng.standard_normal((rows * GUSTS_PER_ROW, 2)) * np.sqrt(1.0 - keep**2)
+    keep = np.exp(-1.0 / (20.0 * GUSTS / 10.0))
+    white = rng.standard_normal((rows * GUSTS, 2)) * np.sqrt(1.0 - keep**2)
     torque = lfilter([1.0], [1.0, -keep], white, axis=0) * np.asarray(style.air_Nm)
-    return np.ascontiguousarray(torque.reshape(rows, GUSTS_PER_ROW, 2))
+    return np.ascontiguousarray(torque.reshape(rows, GUSTS, 2))

@@ -6,7 +6,7 @@ sensors and the formulas of its effects are its own.
 """
 
 from blind.rigs.bench import RigKind
-from blind.rigs.second.effects import CATALOGUE
+from blind.rigs.second.catalogue import CATALOGUE
 from blind.rigs.second.lab import draw_bench
 
 KIND = RigKind(CATALOGUE, draw_bench)

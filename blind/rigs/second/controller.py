@@ -5,22 +5,22 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.linalg import expm, solve_continuous_are
-from scipy.optimize import brentq
 
-from blind.rigs.second.simulation import library
+from blind.rigs.second.simulation import FASTEST_RAD_S, PROGRAM
 from blind.simulation.ce150 import Rig
+from blind.simulation.native import opened
+from blind.simulation.rest import rest, rotor_damping, rotor_thrust
 
 Array = NDArray[np.float64]
-KINDS = ("pid", "cascade", "feedback")
-RANGE_RAD = 0.6
+CONTROLLERS = ("pid", "cascade", "feedback")
+ELEVATION_RAD = 0.6
 DRAWS = 200
 SLOWEST_RAD_S = 0.25
 LATE_S = 0.06
-AXES = (("M", "E"), ("T", "A"))
+ROTOR_AND_BODY = (("M", "E"), ("T", "A"))
 # Angle, integral and rate gains at bandwidth 1, by axis, V/rad, V/(rad s), V s/rad.
 PID = ((3.8, 2.3, 2.0), (3.0, 0.8, 1.5))
 # Angle to rate in 1/s, then rate and its integral to volts.
@@ -29,26 +29,9 @@ CASCADE = ((1.3, 1.9, 1.7), (1.1, 2.2, 1.0))
 WEIGHTS = ((16.0, 30.0, 5.0), (0.8, 8.0, 1.0))
 
 
-def rest(rig: Rig, psi_rad: float) -> tuple[Array, Array]:
-    """(voltages, rotor speeds) that hold the rig still at an elevation."""
-    needed_N = rig.value("tau_gE") * np.cos(psi_rad) / rig.value("l_M")
-    main = _speed(rig, "M", needed_N)
-    speeds = np.array([main, _speed(rig, "T", rig.value("K_A") * main / rig.value("l_T"))])
-    volts = [
-        float(Polynomial([0.0, *rig.values[f"p_b{rotor}"]])(w)) / rig.value(f"K_{rotor}")
-        for rotor, w in zip("MT", speeds, strict=True)
-    ]
-    return np.array(volts), speeds
-
-
-def _speed(rig: Rig, rotor: str, force_N: float) -> float:
-    thrust = Polynomial(rig.values[f"p_F{rotor}"])
-    return float(brentq(lambda w: thrust(w) - force_N, 0.0, 1500.0))
-
-
 def draw_controller(rig: Rig, period_s: float, rng: Generator) -> tuple[str, Any]:
     """(kind, the C structure control_t) for the rig as stated; raises RuntimeError where no draw is stable."""
-    kind = KINDS[rng.integers(len(KINDS))]
+    kind = CONTROLLERS[rng.integers(len(CONTROLLERS))]
     for _ in range(DRAWS):
         filter_s = float(rng.uniform(0.02, 0.05))
         gains = np.array([_gains(kind, rig, axis, rng) for axis in range(2)])
@@ -75,11 +58,11 @@ def _gains(kind: str, rig: Rig, axis: int, rng: Generator) -> Array:
 
 def linear(rig: Rig, axis: int, psi_rad: float) -> tuple[Array, Array]:
     """(A, B) of angle, rate, rotor speed of one axis about rest at an elevation; input in volts."""
-    rotor, body = AXES[axis]
-    w = rest(rig, psi_rad)[1][axis]
+    rotor, body = ROTOR_AND_BODY[axis]
+    w = rest(rig, psi_rad, FASTEST_RAD_S)[1][axis]
     inertia = rig.value(f"J_{body}")
-    lag = Polynomial([0.0, *rig.values[f"p_b{rotor}"]]).deriv()(w)
-    lift = rig.value(f"l_{rotor}") * Polynomial(rig.values[f"p_F{rotor}"]).deriv()(w)
+    lag = rotor_damping(rig, rotor).deriv()(w)
+    lift = rig.value(f"l_{rotor}") * rotor_thrust(rig, rotor).deriv()(w)
     spring = rig.value("tau_gE") * np.sin(psi_rad) if axis == 0 else 0.0
     shape = 1.0 if axis == 0 else np.cos(psi_rad)
     damping = rig.value(f"b_v{body}") / shape
@@ -91,7 +74,7 @@ def stable(rig: Rig, kind: str, axis: int, gains: Sequence[float] | Array, perio
     """Whether the sampled loop decays, and still does not grow when its commands come 60 ms late, wherever the arm
     stands."""
     late = int(np.ceil(LATE_S / period_s))
-    for psi in np.linspace(-RANGE_RAD, RANGE_RAD, 7):
+    for psi in np.linspace(-ELEVATION_RAD, ELEVATION_RAD, 7):
         plant = linear(rig, axis, float(psi))
         if _spectral_radius(plant, kind, gains, period_s, filter_s, 0) > np.exp(-SLOWEST_RAD_S * period_s):
             return False
@@ -121,13 +104,14 @@ def _spectral_radius(
 
 
 def _structure(rig: Rig, kind: str, gains: Array, period_s: float, filter_s: float, rate_limit_rad_s: float) -> Any:
-    ffi, _ = library()
-    grid = np.linspace(-RANGE_RAD, RANGE_RAD, 13)
-    volts, speeds = (np.array(table) for table in zip(*(rest(rig, float(psi)) for psi in grid), strict=True))
+    ffi, _ = opened(PROGRAM)
+    grid = np.linspace(-ELEVATION_RAD, ELEVATION_RAD, 13)
+    at_rest = (rest(rig, float(psi), FASTEST_RAD_S) for psi in grid)
+    volts, speeds = (np.array(table) for table in zip(*at_rest, strict=True))
     return ffi.new(
         "control_t *",
         {
-            "kind": KINDS.index(kind),
+            "kind": CONTROLLERS.index(kind),
             "gain": gains.tolist(),
             "feed_V": [np.polynomial.polynomial.polyfit(grid, volts[:, i], 2).tolist() for i in range(2)],
             "feed_rad_s": [np.polynomial.polynomial.polyfit(grid, speeds[:, i], 2).tolist() for i in range(2)],

@@ -10,23 +10,25 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from blind.rigs.bench import Bench, Logging, Plan
-from blind.rigs.second.controller import draw_controller, rest
+from blind.rigs.bench import Bench, Logging, Plan, denied_parameters, needs_reversal
+from blind.rigs.second.controller import draw_controller
 from blind.rigs.second.manoeuvre import LIVELY, QUIET, dither, reference
 from blind.rigs.second.simulation import (
+    FASTEST_RAD_S,
+    GUST_STEPS,
     PRESLIDING,
+    PROGRAM,
     ROUNDED,
-    SLOT_STEPS,
     STEP_S,
     STICK_SLIP,
-    Bearing,
-    Flight,
-    fly,
-    predict,
+    bearing,
 )
 from blind.rigs.second.stated import draw_stated, draw_true
+from blind.simulation import flight
 from blind.simulation.ce150 import Rig, stated_zero
+from blind.simulation.flight import Bearing, RunInputs
 from blind.simulation.record import Loss, Model, Record
+from blind.simulation.rest import start_state
 
 Array = NDArray[np.float64]
 SETTLE_S = 3.0
@@ -37,7 +39,7 @@ WIDTHS = {ROUNDED: (1e-3, 1e-2), PRESLIDING: (2e-4, 4e-3), STICK_SLIP: (5e-4, 3e
 
 
 @dataclass(frozen=True)
-class Style:
+class SecondStyle:
     """How a case is flown: kinds of manoeuvre by run, reach in rad, dither in V, air, how irregular the rows."""
 
     manoeuvres: tuple[str, ...]
@@ -56,7 +58,7 @@ class SecondLab:
     nominal: Rig
     bearing: Bearing
     control: Any
-    style: Style
+    style: SecondStyle
     run_s: float
 
     @property
@@ -64,7 +66,7 @@ class SecondLab:
         """Whether the rows come at irregular times."""
         return self.style.jitter_share > 0.0
 
-    def flight(self, rng: Generator, loss: Loss, run: int | None) -> Flight:
+    def inputs(self, rng: Generator, loss: Loss, run: int | None) -> RunInputs:
         """The case's run of that number, each with another manoeuvre; a trial (`run` None) is shorter and flies any of
         them."""
         style, period_s = self.style, self.control.period_s
@@ -74,33 +76,33 @@ class SecondLab:
         kind = style.manoeuvres[rng.integers(len(style.manoeuvres)) if run is None else run]
         asked = [reference(kind, rng, t_s, axis, style.lively, style.reach_rad[axis]) for axis in range(2)]
         dithers = [dither(rng, t_s, size) if size else np.zeros(rows) for size in style.dither_V]
-        return Flight(
+        return RunInputs(
             settle=settle,
+            step_s=STEP_S,
             steps=_steps(style, rng, rows, settle, period_s),
             reference=np.column_stack(asked),
             dither_V=np.column_stack(dithers),
             gust=_air(style, rng, rows, period_s),
+            gust_steps=GUST_STEPS,
             lost=_lost(loss, rng, rows, settle),
         )
 
-    def fly(self, model: Model, shadows: Sequence[Model], flight: Flight) -> Record:
+    def fly(self, model: Model, shadows: Sequence[Model], inputs: RunInputs) -> Record:
         """From rest at the first reference."""
-        psi, phi = flight.reference[0]
-        start = np.array([psi, 0.0, phi, 0.0, *rest(self.nominal, float(psi))[1]])
-        return fly(model, self.bearing, self.nominal, self.control, flight, start, shadows)
+        psi, phi = inputs.reference[0]
+        start = start_state(self.nominal, float(psi), float(phi), FASTEST_RAD_S)
+        return flight.fly(PROGRAM, model, self.bearing, self.nominal, self.control, inputs, start, shadows)
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
         """Free runs of an effect-free rig on this rig's bearings."""
-        return predict(rig, self.bearing, record, step_s)
+        return flight.predict(PROGRAM, rig, self.bearing, record, step_s)
 
 
 def draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
     """All of a case but its effects: what its plant file states, the rig itself, controller, manoeuvres, air, how it
     is logged."""
-    stated = [name for effect in plan.effects for name in effect.absent]
-    # An absent term alone must not tell anything.
-    stated += [name for name in ("b_cE", "b_cA") if rng.random() < 0.1 and name not in stated]
-    known, changes = draw_stated(nominal, sorted(stated), rng)
+    denied = denied_parameters(plan, rng)
+    known, changes = draw_stated(nominal, denied, rng)
     true = draw_true(known, rng)
     period_s = float(rng.choice(PERIODS_S))
     _, control = draw_controller(known, period_s, rng)
@@ -114,13 +116,13 @@ def draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
         speed_noise_rad_s=float(10.0 ** rng.uniform(-1.0, 0.3)),
         speed_step_rad_s=float(rng.choice([0.001, 0.01, 0.1, 0.25, 0.5, 1.0])),
     )
-    return Bench(known, true, lab, training, logging, {**changes, **stated_zero(sorted(stated))})
+    return Bench(known, true, lab, training, logging, {**changes, **stated_zero(denied)})
 
 
-def _draw_style(plan: Plan, runs: int, rng: Generator) -> Style:
+def _draw_style(plan: Plan, runs: int, rng: Generator) -> SecondStyle:
     kinds = LIVELY if plan.excited else QUIET
     lively = 1.0 if plan.excited else 0.6
-    style = Style(
+    style = SecondStyle(
         manoeuvres=tuple(kinds[index] for index in rng.permutation(len(kinds))[:runs]),
         lively=plan.excited,
         reach_rad=(float(rng.uniform(0.22, 0.45) * lively), float(rng.uniform(0.6, 1.3) * lively)),
@@ -129,7 +131,7 @@ def _draw_style(plan: Plan, runs: int, rng: Generator) -> Style:
         air_memory_s=float(10.0 ** rng.uniform(-2.3, -1.0)) if rng.random() < 0.3 else 0.0,
         jitter_share=float(rng.uniform(0.02, 0.08)) if rng.random() < 0.12 else 0.0,
     )
-    if any(effect.needs == "reversal" for effect in plan.effects):
+    if needs_reversal(plan):
         style = replace(style, dither_V=(style.dither_V[0], 5.0 if plan.excited else 3.0))
     return style
 
@@ -138,10 +140,10 @@ def _draw_bearing(rng: Generator) -> Bearing:
     law = int(rng.choice(list(WIDTHS)))
     low, high = np.log10(WIDTHS[law])
     first, second = 10.0 ** rng.uniform(low, high, 2)
-    return Bearing((law, law), (float(first), float(second)))
+    return bearing(law, float(first), float(second))
 
 
-def _steps(style: Style, rng: Generator, rows: int, settle: int, period_s: float) -> NDArray[np.int32]:
+def _steps(style: SecondStyle, rng: Generator, rows: int, settle: int, period_s: float) -> NDArray[np.int32]:
     steps = np.full(rows, round(period_s / STEP_S), np.int32)
     most = round(style.jitter_share * steps[0])
     if most:
@@ -149,13 +151,13 @@ def _steps(style: Style, rng: Generator, rows: int, settle: int, period_s: float
     return steps
 
 
-def _air(style: Style, rng: Generator, rows: int, period_s: float) -> Array:
+def _air(style: SecondStyle, rng: Generator, rows: int, period_s: float) -> Array:
     """Accelerations of the given intensity (rad/s^1.5), white down to 1 ms or with a memory, held for 1 ms each."""
-    slot_s = SLOT_STEPS * STEP_S
-    slots = round(period_s / slot_s)
-    white = rng.standard_normal((rows * slots, 2)) * np.asarray(style.air) / np.sqrt(slot_s)
-    keep = np.exp(-slot_s / style.air_memory_s) if style.air_memory_s else 0.0
-    return np.ascontiguousarray(lfilter([1.0 - keep], [1.0, -keep], white, axis=0).reshape(rows, slots, 2))
+    gust_s = GUST_STEPS * STEP_S
+    gusts = round(period_s / gust_s)
+    white = rng.standard_normal((rows * gusts, 2)) * np.asarray(style.air) / np.sqrt(gust_s)
+    keep = np.exp(-gust_s / style.air_memory_s) if style.air_memory_s else 0.0
+    return np.ascontiguousarray(lfilter([1.0 - keep], [1.0, -keep], white, axis=0).reshape(rows, gusts, 2))
 
 
 def _lost(loss: Loss, rng: Generator, rows: int, settle: int) -> NDArray[np.uint8]:

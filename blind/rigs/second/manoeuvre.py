@@ -8,6 +8,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, sosfilt
 
+from blind.rigs.shaping import smoothed
+
 Array = NDArray[np.float64]
 Draw = Callable[[Generator, Array, int, bool], Array]
 
@@ -15,20 +17,13 @@ Draw = Callable[[Generator, Array, int, bool], Array]
 def reference(kind: str, rng: Generator, t_s: Array, axis: int, lively: bool, reach_rad: float) -> Array:
     """A reference over the times `t_s` from 0 (equally spaced), within about +-reach_rad, without jumps."""
     raw = MANOEUVRES[kind](rng, t_s, axis, lively) * reach_rad
-    return _smoothed(raw, t_s[1] - t_s[0], float(rng.uniform(0.12, 0.3)))
+    return smoothed(raw, t_s[1] - t_s[0], float(rng.uniform(0.12, 0.3)))
 
 
 def dither(rng: Generator, t_s: Array, size_V: float) -> Array:
     """A disturbance of an input with an RMS of about half of `size_V`."""
     kind = DITHERS[rng.integers(len(DITHERS))]
     return np.asarray(size_V * kind(rng, t_s))
-
-
-def _smoothed(raw: Array, step_s: float, time_s: float) -> Array:
-    """Two lags in a row, at rest at the first value."""
-    keep = np.exp(-step_s / time_s)
-    b, a = [1.0 - keep], [1.0, -keep]
-    return np.ascontiguousarray(lfilter(b, a, lfilter(b, a, raw - raw[0])) + raw[0])
 
 
 def _knots(rng: Generator, t_s: Array, gap_s: tuple[float, float]) -> Array:

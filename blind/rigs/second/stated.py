@@ -8,19 +8,19 @@ from numpy.random import Generator
 
 from blind.simulation.ce150 import Rig
 
-COUNTS = (1024, 2048, 4096, 8192)
-CUT = 3.0
-LEAST = 0.02  # of the stated value: what is positive stays so
+ENCODER_COUNTS = (1024, 2048, 4096, 8192)
+FURTHEST_SD = 3.0
+LEAST_SHARE = 0.02  # of the stated value: what is positive stays so
 
 
-def draw_stated(nominal: Rig, absent: Sequence[str], rng: Generator) -> tuple[Rig, Mapping[tuple[str, str], str]]:
+def draw_stated(nominal: Rig, denied: Sequence[str], rng: Generator) -> tuple[Rig, Mapping[tuple[str, str], str]]:
     """(the rig as stated, what its plant file says otherwise): spreads half to twice as wide, encoders of 1024 to 8192
     counts."""
     factor = float(2.0 ** rng.uniform(-1.0, 1.0))
     sds = {name: np.array([float(f"{factor * sd:.4g}") for sd in values]) for name, values in nominal.sds.items()}
-    counts = [int(rng.choice(COUNTS)) for _ in range(2)]
+    counts = [int(rng.choice(ENCODER_COUNTS)) for _ in range(2)]
     steps = (2.0 * np.pi / counts[0], 2.0 * np.pi / counts[1])
-    zero = {name: np.zeros(1) for name in absent}
+    zero = {name: np.zeros(1) for name in denied}
     stated = {
         (f"parameters.{name}", "sd"): repr(values.tolist() if len(values) > 1 else float(values[0]))
         for name, values in sds.items()
@@ -47,6 +47,6 @@ def _drawn(value: float, sd: float, rng: Generator) -> float:
     while sd > 0.0:
         deviation = float(rng.standard_normal())
         found = value + sd * deviation
-        if abs(deviation) <= CUT and found * np.sign(value) >= LEAST * abs(value):
+        if abs(deviation) <= FURTHEST_SD and found * np.sign(value) >= LEAST_SHARE * abs(value):
             return found
     return value

@@ -1,34 +1,24 @@
 /* From the commanded voltage to the voltage that turns a rotor. */
 #include <math.h>
 
-#include "truth.h"
-
-enum { PIPE_LENGTH = 64 };
+#include "simulation.h"
 
 static double clamp(double x, double low, double high)
 {
     return x < low ? low : (x > high ? high : x);
 }
 
-/* The newest command that has been under way for the whole delay. */
-static double arrived(pipe_t *pipe, double t_s, double delay_s)
+void commands_send(state_t *s, const double u_V[2])
 {
-    while (pipe->tail != pipe->head && pipe->time_s[pipe->tail] + delay_s <= t_s + 1e-9) {
-        pipe->now_V = pipe->u_V[pipe->tail];
-        pipe->tail = (pipe->tail + 1) % PIPE_LENGTH;
-    }
-    return pipe->now_V;
+    for (int rotor = 0; rotor < 2; rotor++)
+        line_send(&s->line[rotor], s->t_s, 0.0, u_V[rotor]);
 }
 
-void rig_command(const effects_t *fx, state_t *s, const double u_V[2])
+void commands_settle(state_t *s, const double u_V[2])
 {
-    (void)fx;
-    for (int rotor = 0; rotor < 2; rotor++) {
-        pipe_t *pipe = &s->pipe[rotor];
-        pipe->time_s[pipe->head] = s->t_s;
-        pipe->u_V[pipe->head] = u_V[rotor];
-        pipe->head = (pipe->head + 1) % PIPE_LENGTH;
-    }
+    for (int i = 0; i < 2; i++)
+        s->line[i].now_V = s->slewed_V[i] = s->lagged_V[i] = s->played_V[i] = u_V[i];
+    s->load_V = fabs(u_V[0]) + fabs(u_V[1]);
 }
 
 /* Dead band with rounded knees: w ln(1 + exp((|u| - d) / w)), d subtracted far outside, almost nothing inside. */
@@ -51,13 +41,13 @@ static double soft_limit(double u, double limit)
 static double motor_voltage(const rig_t *rig, const effects_t *fx, state_t *s, int rotor, double u)
 {
     if (fx->dead_V[rotor] > 0.0)
-        u = dead_band(u, fx->dead_V[rotor], fx->dead_width_V[rotor]);
+        u = dead_band(u, fx->dead_V[rotor], fx->dead_width[rotor] * fx->dead_V[rotor]);
     if (fx->limit_V[rotor] > 0.0)
         u = soft_limit(u, fx->limit_V[rotor]);
     if (fx->sag[rotor] != 0.0)
         u *= 1.0 - fx->sag[rotor] * s->load_V / 10.0;
     if (fx->current_V[rotor] > 0.0) {
-        double back_V = rig_damping(rig, rotor, s->omega[rotor]) * s->omega[rotor] / rig->drive[rotor];
+        double back_V = rotor_damping(rig, rotor, s->omega[rotor]) * s->omega[rotor] / rig->drive[rotor];
         u = clamp(u, back_V - fx->current_V[rotor], back_V + fx->current_V[rotor]);
     }
     return u;
@@ -65,7 +55,8 @@ static double motor_voltage(const rig_t *rig, const effects_t *fx, state_t *s, i
 
 double driver_output(const rig_t *rig, const effects_t *fx, state_t *s, int rotor, double dt)
 {
-    double u = clamp(arrived(&s->pipe[rotor], s->t_s, fx->delay_s[rotor]), rig->u_min_V[rotor], rig->u_max_V[rotor]);
+    double came = line_arrived(&s->line[rotor], s->t_s, fx->delay_s[rotor], 0.0);
+    double u = clamp(came, rig->u_min_V[rotor], rig->u_max_V[rotor]);
     if (fx->step_V[rotor] > 0.0)
         u = fx->step_V[rotor] * floor(u / fx->step_V[rotor] + 0.5);
     if (fx->play_V[rotor] > 0.0)

@@ -1,9 +1,7 @@
 /* From an axis to the number that its encoder counts. */
 #include <math.h>
 
-#include "truth.h"
-
-enum { PAST_LENGTH = 4096 };
+#include "simulation.h"
 
 /* The shaft on which the encoder sits: behind a light spring, bent scales, play. Order: mode, cyclic error, cross talk, scale, lag, delay, play. */
 static void shaft(const effects_t *fx, state_t *s, int axis, double *angle, double *rate)
@@ -15,16 +13,6 @@ static void shaft(const effects_t *fx, state_t *s, int axis, double *angle, doub
     x += fx->cross[axis] * s->angle[1 - axis];
     *angle = gain * x + fx->offset_rad[axis] + (fx->slip_rad[axis] != 0.0 && s->t_s >= fx->slip_time_s[axis] ? fx->slip_rad[axis] : 0.0);
     *rate = gain * (s->rate[axis] + fx->cross[axis] * s->rate[1 - axis]);
-}
-
-static void delayed(const effects_t *fx, state_t *s, int axis, double dt, double *angle, double *rate)
-{
-    s->past[axis][s->past_index] = *angle;
-    s->past_rate[axis][s->past_index] = *rate;
-    int back = (int)(fx->sensor_delay_s[axis] / dt + 0.5);
-    int index = (s->past_index - back + PAST_LENGTH) % PAST_LENGTH;
-    *angle = s->past[axis][index];
-    *rate = s->past_rate[axis][index];
 }
 
 static void bend(const effects_t *fx, state_t *s, int axis, double dt)
@@ -55,7 +43,7 @@ void sensor_step(const effects_t *fx, state_t *s, double dt)
             angle = s->lagged[axis] += dt * rate;
         }
         if (fx->sensor_delay_s[axis] > 0.0)
-            delayed(fx, s, axis, dt, &angle, &rate);
+            past_delay(&s->past[axis], fx->sensor_delay_s[axis], dt, &angle, &rate);
         if (fx->backlash_rad[axis] > 0.0) {
             double half = 0.5 * fx->backlash_rad[axis];
             angle = s->played[axis] = fmin(fmax(s->played[axis], angle - half), angle + half);
@@ -63,7 +51,6 @@ void sensor_step(const effects_t *fx, state_t *s, double dt)
         s->read[axis] = angle;
         s->read_rate[axis] = rate;
     }
-    s->past_index = (s->past_index + 1) % PAST_LENGTH;
 }
 
 /* Everything behind the axis starts as if it had rested there for ever. */
@@ -76,14 +63,11 @@ void sensor_reset(const effects_t *fx, state_t *s)
         shaft(fx, s, axis, &angle, &rate);
         s->lagged[axis] = s->played[axis] = s->read[axis] = angle;
         s->read_rate[axis] = rate;
-        for (int index = 0; index < PAST_LENGTH; index++) {
-            s->past[axis][index] = angle;
-            s->past_rate[axis][index] = rate;
-        }
+        past_fill(&s->past[axis], angle, rate);
     }
 }
 
-double sensor_count(const rig_t *rig, const effects_t *fx, const state_t *s, int axis)
+double sensor_count(const rig_t *rig, const effects_t *fx, state_t *s, int axis)
 {
     double y = s->read[axis], q = rig->resolution_rad[axis];
     if (fx->count_rad[axis] > 0.0)

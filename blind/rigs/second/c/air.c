@@ -1,8 +1,8 @@
-/* Rotors and the air: damping, thrust and what spoils it, the brake of a dry bearing; and what changes slowly with
+/* Rotors and the air: thrust and what spoils it, the brake of a dry bearing; and what changes slowly with
  * time. */
 #include <math.h>
 
-#include "rig.h"
+#include "simulation.h"
 
 enum { MAIN = 0, TAIL = 1 };
 
@@ -25,13 +25,6 @@ double rounded_drop(double v, double drop, double width)
         return copysign(left > 20.0 ? left * width : width * asinh(0.5 * exp(left)), v);
     }
     return copysign(width * asinh(sinh(y) * exp(-drop / width)), v);
-}
-
-double rotor_damping(const rig_t *rig, int rotor, double speed)
-{
-    const double *p = rig->damping[rotor];
-    double w = fabs(speed);
-    return (p[2] * w + p[1]) * w + p[0];
 }
 
 static double plain_thrust(const double p[5], double speed)
@@ -138,7 +131,7 @@ void weather(const effects_t *fx, state_t *s)
     s->gravity_factor = 1.0;
     if (fx->weight != 0.0) {
         /* A weight that slides: slow at first, fast in the middle, slow at the end. */
-        double part = fmin(fmax((s->t_s - fx->weight_time_s) / fx->weight_slide_s, 0.0), 1.0);
+        double part = fmin(fmax((s->t_s - fx->weight_time_s) / fx->weight_ramp_s, 0.0), 1.0);
         s->gravity_factor += fx->weight * 0.5 * (1.0 - cos(M_PI * part));
     }
 }

@@ -1,7 +1,7 @@
 /* Dry friction of the two bearings by one of three laws, solved apart from the rest of the motion. */
 #include <math.h>
 
-#include "rig.h"
+#include "simulation.h"
 
 enum { ELEVATION = 0, AZIMUTH = 1, ROUNDED = 0, PRESLIDING = 1, STICK_SLIP = 2 };
 

@@ -2,7 +2,7 @@
  * derivative. */
 #include <math.h>
 
-#include "rig.h"
+#include "simulation.h"
 
 enum { PID = 0, CASCADE = 1, FEEDBACK = 2 };
 

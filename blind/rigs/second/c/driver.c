@@ -1,45 +1,26 @@
 /* From the commands sent to the voltages that turn the rotors. */
 #include <math.h>
 
-#include "rig.h"
-
-enum { LINE_LENGTH = 64 };
+#include "simulation.h"
 
 static double within(double x, double low, double high)
 {
     return x < low ? low : (x > high ? high : x);
 }
 
-void line_send(state_t *s, const double u_V[2])
+/* Both inputs are late alike. */
+void commands_send(state_t *s, const double u_V[2])
 {
     double luck = 2.0 * scatter(s->sent++) - 1.0;
-    for (int i = 0; i < 2; i++) {
-        line_t *line = &s->line[i];
-        line->sent_s[line->head] = s->t_s;
-        line->luck[line->head] = luck;
-        line->u_V[line->head] = u_V[i];
-        line->head = (line->head + 1) % LINE_LENGTH;
-    }
+    for (int i = 0; i < 2; i++)
+        line_send(&s->line[i], s->t_s, luck, u_V[i]);
 }
 
-void line_settle(state_t *s, const double u_V[2])
+void commands_settle(state_t *s, const double u_V[2])
 {
     for (int i = 0; i < 2; i++)
         s->line[i].now_V = s->stepped_V[i] = s->slewed_V[i] = s->first_V[i] = s->second_V[i] = u_V[i];
     s->load_V = fabs(u_V[0]) + fabs(u_V[1]);
-}
-
-/* Each command is under way for the delay, more or less; none overtakes another. */
-static double arrived(const effects_t *fx, line_t *line, int i, double t_s)
-{
-    while (line->tail != line->head) {
-        double delay_s = fx->delay_s[i] * (1.0 + fx->delay_spread[i] * line->luck[line->tail]);
-        if (line->sent_s[line->tail] + delay_s > t_s + 1e-9)
-            break;
-        line->now_V = line->u_V[line->tail];
-        line->tail = (line->tail + 1) % LINE_LENGTH;
-    }
-    return line->now_V;
 }
 
 /* Steps with a memory: the level changes only once the command is clearly nearer to another. */
@@ -86,8 +67,10 @@ static double limited(const effects_t *fx, int i, double u)
 void driver_step(const rig_t *rig, const effects_t *fx, state_t *s, double dt)
 {
     double came[2];
-    for (int i = 0; i < 2; i++)
-        came[i] = within(arrived(fx, &s->line[i], i, s->t_s), rig->u_min_V[i], rig->u_max_V[i]);
+    for (int i = 0; i < 2; i++) {
+        double newest = line_arrived(&s->line[i], s->t_s, fx->delay_s[i], fx->delay_spread[i]);
+        came[i] = within(newest, rig->u_min_V[i], rig->u_max_V[i]);
+    }
     if (fx->supply_s > 0.0)
         s->load_V += (fabs(came[0]) + fabs(came[1]) - s->load_V) * -expm1(-dt / fx->supply_s);
     for (int i = 0; i < 2; i++) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "rig.h"
+#include "simulation.h"
 
 enum { MAIN = 0, TAIL = 1, ELEVATION = 0, AZIMUTH = 1, PLAIN = 6, WHOLE = 12 };
 
@@ -163,17 +163,56 @@ static void stop(const rig_t *rig, const effects_t *fx, state_t *s, int axis)
         s->x[7 + 2 * axis] = 0.0;
 }
 
-void plant_step(const rig_t *rig, const bearing_t *bearing, const effects_t *fx, state_t *s, const double gust[2],
-                double dt)
+void plant_step(const model_t *m, state_t *s, const double gust[2], double dt)
 {
+    const rig_t *rig = &m->rig;
+    const effects_t *fx = &m->effects;
     driver_step(rig, fx, s, dt);
     follow_up(rig, fx, s, dt);
-    bearing_grip(rig, bearing, fx, s, gust);
-    bearing_step(rig, bearing, fx, s, 0.5 * dt);
+    bearing_grip(rig, &m->bearing, fx, s, gust);
+    bearing_step(rig, &m->bearing, fx, s, 0.5 * dt);
     runge_kutta(rig, fx, s, gust, dt);
-    bearing_step(rig, bearing, fx, s, 0.5 * dt);
+    bearing_step(rig, &m->bearing, fx, s, 0.5 * dt);
     rotor_brake(fx, s, dt);
     stop(rig, fx, s, ELEVATION);
     stop(rig, fx, s, AZIMUTH);
     s->t_s += dt;
+}
+
+void state_motion(const state_t *s, double x[6])
+{
+    memcpy(x, s->x, PLAIN * sizeof *x);
+}
+
+void state_place(const model_t *m, const double x[6], state_t *s)
+{
+    memcpy(s->x, x, PLAIN * sizeof *x);
+    sensor_rest(&m->effects, s);
+}
+
+void state_begin(const model_t *m, const double x[6], double t_s, state_t *s)
+{
+    memset(s, 0, sizeof *s);
+    s->t_s = t_s;
+    state_place(m, x, s);
+    s->x[10] = s->x[5];
+    s->x[11] = s->x[4];
+    s->maxwell_rad = x[0];
+    weather(&m->effects, s);
+}
+
+void state_advance(const model_t *m, state_t *s, const inputs_t *in, int row, int windy)
+{
+    static const double calm[2] = {0.0, 0.0};
+    const effects_t *fx = &m->effects;
+    int moves = sensor_moves(fx), steps = in->steps[row];
+    for (int step = 0; step < steps; step++) {
+        /* The last gust goes on in a row that comes late. */
+        int gust = step / in->gust_steps < in->gusts ? step / in->gust_steps : in->gusts - 1;
+        if (step % in->gust_steps == 0)
+            weather(fx, s);
+        plant_step(m, s, windy ? in->gust + 2 * (in->gusts * row + gust) : calm, in->step_s);
+        if (moves || step + 1 == steps)
+            sensor_step(fx, s, in->step_s);
+    }
 }

@@ -1,9 +1,7 @@
 /* From an axis to the number that its encoder gives. */
 #include <math.h>
 
-#include "rig.h"
-
-enum { PAST_LENGTH = 1024 };
+#include "simulation.h"
 
 /* The encoder's own angle and rate: those of the arm, or of the hub that it drives through a spring. */
 static void shaft(const effects_t *fx, const state_t *s, int axis, double *angle, double *rate)
@@ -26,15 +24,10 @@ static double filtered(const effects_t *fx, state_t *s, int axis, double angle, 
 }
 
 /* The bus asks for the angle now and then: how old the answer is differs from 10 ms to 10 ms. */
-static void delayed(const effects_t *fx, state_t *s, int axis, double dt, double *angle, double *rate)
+static double age_s(const effects_t *fx, const state_t *s, int axis)
 {
-    s->past[axis][s->past_index] = *angle;
-    s->past_rate[axis][s->past_index] = *rate;
     double luck = 2.0 * scatter((int)floor(s->t_s / 0.01) + 977 * axis) - 1.0;
-    int back = (int)(fx->sensor_delay_s[axis] * (1.0 + fx->sensor_spread[axis] * luck) / dt + 0.5);
-    int index = (s->past_index - back + PAST_LENGTH) % PAST_LENGTH;
-    *angle = s->past[axis][index];
-    *rate = s->past_rate[axis][index];
+    return fx->sensor_delay_s[axis] * (1.0 + fx->sensor_spread[axis] * luck);
 }
 
 static double play(double *held, double angle, double half)
@@ -81,13 +74,12 @@ void sensor_step(const effects_t *fx, state_t *s, double dt)
             rate = (angle - before) / dt;
         }
         if (fx->sensor_delay_s[axis] > 0.0)
-            delayed(fx, s, axis, dt, &angle, &rate);
+            past_delay(&s->past[axis], age_s(fx, s, axis), dt, &angle, &rate);
         if (fx->backlash_rad[axis] > 0.0)
             angle = geared(fx, s, axis, angle);
         s->read[axis] = angle;
         s->read_rate[axis] = rate;
     }
-    s->past_index = (s->past_index + 1) % PAST_LENGTH;
 }
 
 /* Everything behind the arm starts as if it had moved or rested with it for ever. */
@@ -103,10 +95,7 @@ void sensor_rest(const effects_t *fx, state_t *s)
             s->filtered[axis][i] = s->played[axis][i] = angle;
         s->read[axis] = s->counted[axis] = angle;
         s->read_rate[axis] = rate;
-        for (int index = 0; index < PAST_LENGTH; index++) {
-            s->past[axis][index] = angle;
-            s->past_rate[axis][index] = rate;
-        }
+        past_fill(&s->past[axis], angle, rate);
     }
 }
 

@@ -1,22 +1,13 @@
 /* Rotors, thrust, the two axes and their friction: one step (rotors at their middle, then rates,
  * then angles with the mean of old and new rates; bristles implicitly). */
 #include <math.h>
+#include <string.h>
 
-#include "truth.h"
+#include "simulation.h"
 
 enum { MAIN = 0, TAIL = 1, ELEVATION = 0, AZIMUTH = 1 };
 
-/* Displacement of the bristles at full slip: far below one encoder count, as in a hard bearing. */
-static const double PRESLIDING_RAD = 1.0e-5;
-
-double rig_damping(const rig_t *rig, int rotor, double speed)
-{
-    double w = fabs(speed);
-    const double *p = rig->damping[rotor];
-    return p[0] + w * (p[1] + w * p[2]);
-}
-
-double rig_thrust(const rig_t *rig, int rotor, double speed)
+static double rotor_thrust(const rig_t *rig, int rotor, double speed)
 {
     double w = fabs(speed);
     const double *p = rig->thrust[rotor];
@@ -45,8 +36,8 @@ static void spin_rotor(const rig_t *rig, const effects_t *fx, state_t *s, int ro
 {
     double drive = rig->drive[rotor] * s->warm_factor[rotor] * driver_output(rig, fx, s, rotor, dt);
     double w = s->omega[rotor];
-    double middle = w + 0.5 * dt * (drive - rig_damping(rig, rotor, w) * w);
-    double next = w + dt * (drive - rig_damping(rig, rotor, middle) * middle);
+    double middle = w + 0.5 * dt * (drive - rotor_damping(rig, rotor, w) * w);
+    double next = w + dt * (drive - rotor_damping(rig, rotor, middle) * middle);
     double dry = fx->dry[rotor] * dt;
     if (dry > 0.0)
         next = fabs(next) <= dry ? 0.0 : next - copysign(dry, next);
@@ -57,7 +48,7 @@ static void spin_rotor(const rig_t *rig, const effects_t *fx, state_t *s, int ro
 
 static double main_thrust(const rig_t *rig, const effects_t *fx, const state_t *s)
 {
-    double force = rig_thrust(rig, MAIN, s->middle[MAIN]);
+    double force = rotor_thrust(rig, MAIN, s->middle[MAIN]);
     if (fx->ground != 0.0) {
         /* Image rotor below the floor: inverse square of the height. */
         double h = fx->ground_height_rad / (fx->ground_height_rad + s->angle[ELEVATION] + rig->stop_rad[ELEVATION]);
@@ -69,7 +60,7 @@ static double main_thrust(const rig_t *rig, const effects_t *fx, const state_t *
 static double tail_thrust(const rig_t *rig, const effects_t *fx, const state_t *s)
 {
     double w = s->middle[TAIL];
-    double force = rig_thrust(rig, TAIL, w);
+    double force = rotor_thrust(rig, TAIL, w);
     if (fx->reverse != 0.0)
         force *= 1.0 + fx->reverse * 0.5 * (1.0 - tanh(w / fx->reverse_width_rad_s));
     if (fx->downwash != 0.0)
@@ -82,8 +73,10 @@ static double tail_thrust(const rig_t *rig, const effects_t *fx, const state_t *
 }
 
 /* Bristles (LuGre): z' = v - sigma |v| z / g(v), torque sigma z + sigma1 z'; the stiff part is taken implicitly. */
-static double friction(const rig_t *rig, const effects_t *fx, state_t *s, int axis, double load_Nm, double dt)
+static double friction(const model_t *m, state_t *s, int axis, double load_Nm, double dt)
 {
+    const rig_t *rig = &m->rig;
+    const effects_t *fx = &m->effects;
     double v = s->rate[axis];
     double level = rig->coulomb_Nm[axis] + load_Nm + fx->asymmetry_Nm[axis] * 0.5 * (v > 0.0 ? 1.0 : -1.0);
     double peak = level;
@@ -91,7 +84,8 @@ static double friction(const rig_t *rig, const effects_t *fx, state_t *s, int ax
         peak += fx->stribeck_Nm[axis] * exp(-fabs(v) / fx->stribeck_rad_s[axis]);
     if (peak <= 0.0)
         return 0.0;
-    double stiffness = (rig->coulomb_Nm[axis] + load_Nm + fabs(fx->asymmetry_Nm[axis]) + fx->stribeck_Nm[axis]) / PRESLIDING_RAD;
+    double most_Nm = rig->coulomb_Nm[axis] + load_Nm + fabs(fx->asymmetry_Nm[axis]) + fx->stribeck_Nm[axis];
+    double stiffness = most_Nm / m->bearing.width[axis];
     double old = s->bristle[axis];
     s->bristle[axis] = (old + dt * v) / (1.0 + dt * stiffness * fabs(v) / peak);
     double damping = 0.6 * sqrt(stiffness * rig->inertia[axis]);
@@ -115,8 +109,10 @@ static double common_torque(const effects_t *fx, state_t *s, int axis, double dt
     return torque;
 }
 
-static double elevation_torque(const rig_t *rig, const effects_t *fx, state_t *s, double lift, double side, double c, double sn, double dt)
+static double elevation_torque(const model_t *m, state_t *s, double lift, double side, double c, double sn, double dt)
 {
+    const rig_t *rig = &m->rig;
+    const effects_t *fx = &m->effects;
     double v = s->rate[ELEVATION], turn = s->rate[AZIMUTH];
     double torque = rig->arm_m[MAIN] * lift + 2.0 * rig->centrifugal * turn * turn * sn * c;
     torque -= rig->gravity_Nm * s->gravity_factor * c - fx->centre_Nm * sn;
@@ -125,11 +121,13 @@ static double elevation_torque(const rig_t *rig, const effects_t *fx, state_t *s
     if (fx->bumper_Nm_rad > 0.0 && s->angle[ELEVATION] > fx->bumper_rad)
         torque -= fx->bumper_Nm_rad * (s->angle[ELEVATION] - fx->bumper_rad);
     torque += common_torque(fx, s, ELEVATION, dt);
-    return torque - friction(rig, fx, s, ELEVATION, fx->load_friction_m * fabs(lift), dt);
+    return torque - friction(m, s, ELEVATION, fx->load_friction_m * fabs(lift), dt);
 }
 
-static double azimuth_torque(const rig_t *rig, const effects_t *fx, state_t *s, double side, double c, double sn, double dt)
+static double azimuth_torque(const model_t *m, state_t *s, double side, double c, double sn, double dt)
 {
+    const rig_t *rig = &m->rig;
+    const effects_t *fx = &m->effects;
     double v = s->rate[AZIMUTH], w = s->middle[MAIN], x = s->angle[AZIMUTH];
     double torque = c * (rig->arm_m[TAIL] * side - rig->reaction * w - fx->reaction_quadratic * w * w);
     torque -= rig->viscous[AZIMUTH] * s->grease_factor[AZIMUTH] * v + c * fx->spin_inertia[AZIMUTH] * s->spin[MAIN];
@@ -143,7 +141,7 @@ static double azimuth_torque(const rig_t *rig, const effects_t *fx, state_t *s, 
         torque += fx->wind * stream * fabs(stream);
     }
     torque += common_torque(fx, s, AZIMUTH, dt);
-    return torque - friction(rig, fx, s, AZIMUTH, 0.0, dt);
+    return torque - friction(m, s, AZIMUTH, 0.0, dt);
 }
 
 /* Inelastic stop. */
@@ -160,17 +158,61 @@ static void move(const rig_t *rig, state_t *s, int axis, double acceleration, do
     }
 }
 
-void rig_step(const rig_t *rig, const effects_t *fx, state_t *s, const double gust_Nm[2], double dt)
+void plant_step(const model_t *m, state_t *s, const double gust_Nm[2], double dt)
 {
-    s->load_V += (fabs(s->pipe[MAIN].now_V) + fabs(s->pipe[TAIL].now_V) - s->load_V) * dt / 0.02;
+    const rig_t *rig = &m->rig;
+    const effects_t *fx = &m->effects;
+    s->load_V += (fabs(s->line[MAIN].now_V) + fabs(s->line[TAIL].now_V) - s->load_V) * dt / 0.02;
     spin_rotor(rig, fx, s, MAIN, dt);
     spin_rotor(rig, fx, s, TAIL, dt);
     double c = cos(s->angle[ELEVATION]), sn = sin(s->angle[ELEVATION]);
     double lift = main_thrust(rig, fx, s), side = tail_thrust(rig, fx, s);
     double about_azimuth = (rig->inertia[AZIMUTH] + fx->inertia_cosine2 * (c - 1.0)) * c;
-    double raise = gust_Nm[ELEVATION] + elevation_torque(rig, fx, s, lift, side, c, sn, dt);
-    double turn = gust_Nm[AZIMUTH] + azimuth_torque(rig, fx, s, side, c, sn, dt);
+    double raise = gust_Nm[ELEVATION] + elevation_torque(m, s, lift, side, c, sn, dt);
+    double turn = gust_Nm[AZIMUTH] + azimuth_torque(m, s, side, c, sn, dt);
     move(rig, s, ELEVATION, raise / rig->inertia[ELEVATION], dt);
     move(rig, s, AZIMUTH, turn / about_azimuth, dt);
     s->t_s += dt;
+}
+
+void state_motion(const state_t *s, double x[6])
+{
+    for (int i = 0; i < 2; i++) {
+        x[2 * i] = s->angle[i];
+        x[2 * i + 1] = s->rate[i];
+        x[4 + i] = s->omega[i];
+    }
+}
+
+void state_place(const model_t *m, const double x[6], state_t *s)
+{
+    for (int i = 0; i < 2; i++) {
+        s->angle[i] = x[2 * i];
+        s->rate[i] = x[2 * i + 1];
+        s->omega[i] = x[4 + i];
+    }
+    sensor_reset(&m->effects, s);
+}
+
+void state_begin(const model_t *m, const double x[6], double t_s, state_t *s)
+{
+    memset(s, 0, sizeof *s);
+    s->t_s = t_s;
+    state_place(m, x, s);
+    rig_slow(&m->effects, s);
+}
+
+void state_advance(const model_t *m, state_t *s, const inputs_t *in, int row, int windy)
+{
+    static const double calm[2] = {0.0, 0.0};
+    const effects_t *fx = &m->effects;
+    int moves = sensor_moves(fx), steps = in->steps[row];
+    rig_slow(fx, s);
+    for (int step = 0; step < steps; step++) {
+        /* A row that comes late has longer gusts. */
+        int gust = step * in->gusts / steps;
+        plant_step(m, s, windy ? in->gust + 2 * (in->gusts * row + gust) : calm, in->step_s);
+        if (moves || step + 1 == steps)
+            sensor_step(fx, s, in->step_s);
+    }
 }

@@ -1,0 +1,95 @@
+"""What is true of a flown case: severities, parameters in the library's words, what predictions of its hold-out run leave."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blind.cases.injection import Injected, coarse_rad
+from blind.cases.sealed import Hold, TrueEffect, Truth
+from blind.cases.severity import STEP_S, floor_rad, moved_rig, retune, rms, sensitivity, severity, severity_left
+from blind.effects.visited import Visited
+from blind.rigs.bench import Bench, Plan
+from blind.simulation.record import Record
+from blind.simulation.rest import rotor_thrust
+
+Array = NDArray[np.float64]
+
+
+def truth_of(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Sequence[Record]) -> Truth:
+    """The truth of a case; the last of its records is the hold-out run."""
+    rig, train, hold, coarse = bench.nominal, records[:-1], records[-1], coarse_rad(injected)
+    slopes = [sensitivity(bench.lab, rig, record) for record in train]
+    visited = _visited(bench, train)
+    shadows = [2 + i if len(injected) > 1 else 1 for i in range(len(injected))]
+    alone = [severity(rig, train, k, coarse_rad([e])) for k, e in zip(shadows, injected, strict=True)]
+    left = [severity_left(rig, train, slopes, k, coarse_rad([e])) for k, e in zip(shadows, injected, strict=True)]
+    return Truth(
+        kind=plan.kind,
+        effects=tuple(_described(*entry, visited) for entry in zip(injected, alone, left, strict=True)),
+        severity=severity(rig, train, 1, coarse) if injected else 0.0,
+        severity_left=severity_left(rig, train, slopes, 1, coarse) if injected else 0.0,
+        floor_rad=_by_output(floor_rad(rig, train)),
+        hold=_hold(bench, train, hold, slopes),
+        excited=plan.excited,
+        rotor_speeds=plan.rotor_speeds,
+        defects=("jitter",) if bench.lab.jitter else (),
+    )
+
+
+def _described(entry: Injected, size: float, left: float, visited: Visited) -> TrueEffect:
+    effect = entry.effect
+    return TrueEffect(
+        name=effect.name,
+        known=effect.known,
+        places=effect.places,
+        depends=effect.depends,
+        severity=size,
+        severity_left=left,
+        parameters=dict(effect.equivalent(entry.m, entry.shape, visited)),
+        twins=effect.twins,
+        keywords=effect.keywords,
+    )
+
+
+def _hold(bench: Bench, train: Sequence[Record], hold: Record, slopes: Sequence[Array]) -> Hold:
+    """What predictions of the hold-out run leave; the re-tune is fitted on the training runs, re-linearised at its own answer."""
+    floor = floor_rad(bench.nominal, train)
+    predict = bench.lab.predict
+    stated = predict(bench.nominal, hold, STEP_S)
+    rig, total = bench.nominal, np.zeros(len(slopes[0]))
+    for _ in range(3):
+        gaps = [(record.y_rad - predict(rig, record, STEP_S))[:: record.thin] for record in train]
+        linear = [gap + np.tensordot(total, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
+        total = retune(linear, slopes, floor)
+        rig = moved_rig(bench.nominal, total)
+    return Hold(
+        rms_sensor=_by_output(rms(hold.y_rad - hold.exact_rad)),
+        rms_true=_by_output(rms(hold.y_rad - hold.shadow[:, 0])),
+        rms_nominal=_by_output(rms(hold.y_rad - stated)),
+        rms_retuned=_by_output(rms(hold.y_rad - predict(rig, hold, STEP_S))),
+    )
+
+
+def _by_output(values: Array) -> dict[str, float]:
+    return {"psi_rad": float(values[0]), "phi_rad": float(values[1])}
+
+
+def _visited(bench: Bench, records: Sequence[Record]) -> Visited:
+    psi, psi_dot, phi, phi_dot, omega_M, omega_T = np.concatenate([record.apparent for record in records]).T
+    u = np.concatenate([record.u_V for record in records])
+    tail = rotor_thrust(bench.true, "T")
+    return Visited(
+        t_s=np.concatenate([record.t_s for record in records]),
+        psi=psi,
+        psi_dot=psi_dot,
+        phi=phi,
+        phi_dot=phi_dot,
+        omega_M=omega_M,
+        omega_T=omega_T,
+        u_M=u[:, 0],
+        u_T=u[:, 1],
+        gravity_Nm=bench.true.value("tau_gE"),
+        tail_thrust=lambda w: np.sign(w) * tail(np.abs(w)),
+        start_s=bench.logging.start_s,
+    )

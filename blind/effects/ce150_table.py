@@ -1,0 +1,159 @@
+"""The contract's table of effects on a CE150: what each is called, where it sits, on what it depends, the library's formula."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from blind.effects import ce150_formulas as formulas
+from blind.effects.ce150_formulas import Formula, Sized, Start, Term
+from blind.effects.draws import Source
+from blind.effects.effect import SCALAR, Effect, Shape, Size
+from blind.effects.equivalent import Equivalents
+from blind.effects.visited import Visited
+
+Judged = Callable[[float, Shape, Visited], Equivalents]
+# What the words in braces are for index 0 and 1.
+WORDS: tuple[Mapping[str, str], ...] = (
+    {"rotor": "main", "axis": "elevation", "angle": "psi", "letter": "M", "other": "T"},
+    {"rotor": "tail", "axis": "azimuth", "angle": "phi", "letter": "T", "other": "M"},
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What the table says of an effect, whichever rig has it; no formula where each rig says itself what its number is there."""
+
+    depends: str
+    formula: Formula | None
+    sensor: bool = False
+    needs: str = ""
+
+
+TABLE: Mapping[str, Entry] = {
+    "{rotor}_input.deadzone": Entry("dead band of u_{letter}", formulas.dead_zone),
+    "{rotor}_input.saturation": Entry("limit of u_{letter}", formulas.saturation),
+    "{rotor}_input.supply_sag": Entry("gain(u_M, u_T) of u_{letter}", formulas.supply_sag),
+    "{rotor}_input.delay": Entry("delay of u_{letter}", formulas.same("tau")),
+    "{rotor}_input.slew_limit": Entry("rate limit of u_{letter}", formulas.same("r")),
+    "{rotor}_input.quantization": Entry("steps of u_{letter}", formulas.same("q")),
+    "{rotor}_input.lag": Entry("lag of u_{letter}", formulas.same("tau")),
+    "{rotor}_rotor.warmup": Entry("gain(t) of omega_{letter}", formulas.warm_up),
+    "{rotor}_rotor.dry_friction": Entry("torque(sgn omega_{letter}) on rotor", formulas.dry_rotor),
+    "main_rotor.ground_effect": Entry("thrust(psi)", formulas.ground_effect),
+    "tail_rotor.reverse_asymmetry": Entry("thrust(sgn omega_T)", formulas.reversed_thrust, needs="reversal"),
+    "tail_rotor.downwash": Entry("thrust(omega_M)", formulas.downwash),
+    "{axis}.coulomb": Entry("torque(sgn {angle}_dot) on {axis}", formulas.same("b")),
+    "{axis}.stribeck": Entry("torque({angle}_dot) on {axis}", formulas.stribeck),
+    "{axis}.quadratic_drag": Entry("torque({angle}_dot) on {axis}", formulas.quadratic_drag),
+    "{axis}.cable_spring": Entry("torque({angle}) on {axis}", formulas.cable_spring),
+    "{axis}.rotor_acceleration": Entry("torque(domega_{other}/dt) on {axis}", formulas.same("J", either_sign=True)),
+    "{axis}.disturbance": Entry("torque(t) on {axis}", formulas.disturbance),
+    "{axis}.flexible_mode": Entry("mode(torque) of {axis}", None, sensor=True),
+    "elevation.centre_of_gravity": Entry("torque(psi) on elevation", formulas.centre_of_gravity),
+    "elevation.weight_shift": Entry("torque(t) on elevation", formulas.weight_shift),
+    "elevation.tail_coupling": Entry("torque(omega_T) on elevation", formulas.tail_coupling),
+    "azimuth.tilt": Entry("torque(phi) on azimuth", formulas.tilt),
+    "azimuth.gyroscopic": Entry("torque(psi_dot, omega_M, psi) on azimuth", formulas.gyroscopic),
+    "azimuth.friction_asymmetry": Entry(
+        "torque(sgn phi_dot) on azimuth", formulas.same("difference", either_sign=True)
+    ),
+    "{angle}_sensor.offset": Entry("offset of {angle}", formulas.sensor_offset, sensor=True),
+    "{angle}_sensor.scale": Entry("scale of {angle}", formulas.sensor_scale, sensor=True),
+    "{angle}_sensor.quantization": Entry("quantization of {angle}", formulas.same("q"), sensor=True),
+    "{angle}_sensor.delay": Entry("delay of {angle}", formulas.same("tau"), sensor=True),
+    "{angle}_sensor.lag": Entry("lag of {angle}", formulas.same("tau"), sensor=True),
+    "{angle}_sensor.backlash": Entry("backlash of {angle}", formulas.same("width"), sensor=True),
+    "loop.delay": Entry("delay of u_M and u_T", formulas.same("tau")),
+    "loop.dropped_frames": Entry("lost updates of u_M and u_T", formulas.same("p")),
+}
+
+
+def in_table(
+    name: str,
+    size: Size,
+    *indices: int,
+    bounds: tuple[float, float],
+    drawn: Mapping[str, Source] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    signed: bool = False,
+    single: tuple[str, ...] = (),
+    term: Term | None = None,
+    start: Start | None = None,
+    equivalent: Judged | None = None,
+    hides: str = "",
+    loses_frames: bool = False,
+) -> Effect:
+    """A rig's row of the contract's table: `name` as there, words in braces those of the first of `indices` (none: no pair).
+
+    `term`, `start`: the rig's own formula, see `Sized`; `equivalent`: instead of the table's formula.
+    """
+    entry = TABLE[name]
+    words = WORDS[indices[0]] if indices else {}
+    own = name.format(**words)
+    return Effect(
+        name=own,
+        places=(own.partition(".")[0],),
+        depends=entry.depends.format(**words),
+        size=size,
+        drawn=drawn or {},
+        fixed=fixed or {},
+        signed=signed,
+        indices=indices or (SCALAR,),
+        single=single,
+        bounds=bounds,
+        equivalent=equivalent or _judged(entry, size, signed, indices, term, start),
+        known=True,
+        sensor=entry.sensor,
+        needs=entry.needs,
+        hides=hides,
+        loses_frames=loses_frames,
+    )
+
+
+def _judged(
+    entry: Entry, size: Size, signed: bool, indices: tuple[int, ...], term: Term | None, start: Start | None
+) -> Judged:
+    formula = entry.formula
+    if formula is None:
+        raise ValueError(f"{entry.depends}: the table has no formula, and the rig's row gives no equivalent")
+
+    def judged(m: float, shape: Shape, visited: Visited) -> Equivalents:
+        a = size.at(m) * shape["sign"] if signed else size.at(m)
+        return formula(Sized(a, shape, visited, indices[0] if indices else SCALAR, term, start))
+
+    return judged
+
+
+def outside_table(
+    name: str,
+    places: str,
+    depends: str,
+    size: Size,
+    *indices: int,
+    drawn: Mapping[str, Source] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    signed: bool = False,
+    bounds: tuple[float, float] = (0.01, 10.0),
+    keywords: str = "",
+    twins: str = "",
+    sensor: bool = False,
+) -> Effect:
+    """A rig's row of an effect that the contract's table does not hold; lists of words are one text, words in braces as in the table."""
+    words = WORDS[indices[0]] if indices else {}
+
+    def told(text: str) -> str:
+        return text.format(**words)
+
+    return Effect(
+        name=told(name),
+        places=tuple(told(places).split()),
+        depends=told(depends),
+        size=size,
+        drawn=drawn or {},
+        fixed=fixed or {},
+        signed=signed,
+        indices=indices or (SCALAR,),
+        bounds=bounds,
+        sensor=sensor,
+        keywords=tuple(keywords.split()),
+        twins=tuple(told(twins).split()),
+    )

@@ -1,0 +1,108 @@
+/* A flight of a rig. Beside it run shadows: other models that are set to the rig's whole state at the head of each window and then
+ * go on without gusts on the same commands; one whose sensors differ starts from the angles and rates that the rig's sensors show. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simulation.h"
+
+enum { STARTS_FROM_SHOWN = 1, LOSES_FRAMES = 2 };
+
+static void measure(const model_t *m, state_t *s, int row, record_t *out)
+{
+    double x[6], *apparent = out->apparent + 6 * row;
+    state_motion(s, x);
+    out->t_s[row] = s->t_s;
+    for (int i = 0; i < 2; i++) {
+        out->y_rad[2 * row + i] = sensor_count(&m->rig, &m->effects, s, i);
+        out->exact_rad[2 * row + i] = s->read[i];
+        apparent[2 * i] = s->read[i];
+        apparent[2 * i + 1] = s->read_rate[i];
+        apparent[4 + i] = x[4 + i];
+    }
+}
+
+static void renew(int shadows, const model_t *other, const unsigned char *mode, state_t *shadow, const state_t *s,
+                  const double *apparent)
+{
+    for (int k = 0; k < shadows; k++) {
+        shadow[k] = *s;
+        if (mode[k] & STARTS_FROM_SHOWN)
+            state_place(&other[k], apparent, &shadow[k]);
+    }
+}
+
+/* Where a row leaves the rig: on a stop, or lost. */
+static void judge(const model_t *m, const state_t *s, record_t *out)
+{
+    double x[6];
+    state_motion(s, x);
+    out->at_stop += fabs(x[0]) >= m->rig.stop_rad[0];
+    out->failed = !isfinite(x[0] + x[2] + x[4] + x[5]);
+}
+
+void fly(const model_t *own, const rig_t *nominal, const control_t *control, const inputs_t *in, const double start[6],
+         int shadows, const model_t *other, const unsigned char *mode, int window, record_t *out)
+{
+    state_t *all = malloc((size_t)(shadows + 1) * sizeof *all), *s = all, *shadow = all + 1;
+    control_state_t k;
+    double u_V[2];
+    out->at_stop = 0;
+    out->failed = !all;
+    if (all)
+        state_begin(own, start, -in->settle * control->period_s, s);
+    for (int row = 0; row < in->rows && !out->failed; row++) {
+        measure(own, s, row, out);
+        if (row >= in->settle && (row - in->settle) % window == 0)
+            renew(shadows, other, mode, shadow, s, out->apparent + 6 * row);
+        if (row == 0)
+            control_start(control, in->reference, out->y_rad, &k);
+        control_step(control, nominal, in->reference + 2 * row, out->y_rad + 2 * row, in->dither_V + 2 * row, &k, u_V);
+        memcpy(out->u_V + 2 * row, u_V, sizeof u_V);
+        if (row == 0)
+            commands_settle(s, u_V);
+        if (!in->lost[row])
+            commands_send(s, u_V);
+        state_advance(own, s, in, row, 1);
+        for (int i = 0; i < shadows && row >= in->settle; i++) {
+            memcpy(out->shadow + 2 * (shadows * row + i), shadow[i].read, 2 * sizeof(double));
+            if (!(mode[i] & LOSES_FRAMES) || !in->lost[row])
+                commands_send(&shadow[i], u_V);
+            state_advance(&other[i], &shadow[i], in, row, 0);
+        }
+        judge(own, s, out);
+    }
+    free(all);
+}
+
+/* The state of a rig that has moved like this for long: its bristles are stretched to the full. */
+static void begin_moving(const model_t *m, const double x[6], state_t *s)
+{
+    state_begin(m, x, 0.0, s);
+    for (int i = 0; i < 2; i++)
+        s->bristle[i] = x[1 + 2 * i] == 0.0 ? 0.0 : copysign(m->bearing.width[i], x[1 + 2 * i]);
+}
+
+/* Free runs of an effect-free model over recorded rows, anew from the recorded state at the head of each window; out (rows, 2). */
+void predict(const model_t *m, int rows, const double *t_s, const double *u_V, const double *apparent, int window,
+             double dt, double *out)
+{
+    static const double calm[2] = {0.0, 0.0};
+    state_t *s = malloc(sizeof *s);
+    for (int row = 0; row < rows && s; row++) {
+        double x[6];
+        if (row % window == 0)
+            begin_moving(m, apparent + 6 * row, s);
+        state_motion(s, x);
+        out[2 * row] = x[0];
+        out[2 * row + 1] = x[2];
+        if (row + 1 == rows)
+            break;
+        double span = t_s[row + 1] - t_s[row];
+        int steps = (int)(span / dt + 0.5) > 0 ? (int)(span / dt + 0.5) : 1;
+        commands_settle(s, u_V + 2 * row);
+        for (int step = 0; step < steps; step++)
+            plant_step(m, s, calm, span / steps);
+    }
+    free(s);
+}
