@@ -11,7 +11,7 @@ from blind.simulation.record import Record
 
 Array = NDArray[np.float64]
 SLOPE_STEP_S = 2e-3
-STEP_S = 5e-4
+PREDICTION_STEP_S = 5e-4
 
 
 def rms(errors: Array) -> Array:

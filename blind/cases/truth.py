@@ -7,7 +7,16 @@ from numpy.typing import NDArray
 
 from blind.cases.injection import Injected, coarse_rad
 from blind.cases.sealed import Hold, TrueEffect, Truth
-from blind.cases.severity import STEP_S, floor_rad, moved_rig, retune, rms, sensitivity, severity, severity_left
+from blind.cases.severity import (
+    PREDICTION_STEP_S,
+    floor_rad,
+    moved_rig,
+    retune,
+    rms,
+    sensitivity,
+    severity,
+    severity_left,
+)
 from blind.effects.visited import Visited
 from blind.rigs.bench import Bench, Plan
 from blind.simulation.record import Record
@@ -56,10 +65,10 @@ def _hold(bench: Bench, train: Sequence[Record], hold: Record, slopes: Sequence[
     """What predictions of the hold-out run leave; the re-tune is fitted on the training runs, re-linearised at its own answer."""
     floor = floor_rad(bench.nominal, train)
     predict = bench.lab.predict
-    stated = predict(bench.nominal, hold, STEP_S)
+    stated = predict(bench.nominal, hold, PREDICTION_STEP_S)
     rig, total = bench.nominal, np.zeros(len(slopes[0]))
     for _ in range(3):
-        gaps = [(record.y_rad - predict(rig, record, STEP_S))[:: record.thin] for record in train]
+        gaps = [(record.y_rad - predict(rig, record, PREDICTION_STEP_S))[:: record.thin] for record in train]
         linear = [gap + np.tensordot(total, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
         total = retune(linear, slopes, floor)
         rig = moved_rig(bench.nominal, total)
@@ -67,7 +76,7 @@ def _hold(bench: Bench, train: Sequence[Record], hold: Record, slopes: Sequence[
         rms_sensor=_by_output(rms(hold.y_rad - hold.exact_rad)),
         rms_true=_by_output(rms(hold.y_rad - hold.shadow[:, 0])),
         rms_nominal=_by_output(rms(hold.y_rad - stated)),
-        rms_retuned=_by_output(rms(hold.y_rad - predict(rig, hold, STEP_S))),
+        rms_retuned=_by_output(rms(hold.y_rad - predict(rig, hold, PREDICTION_STEP_S))),
     )
 
 

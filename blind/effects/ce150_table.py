@@ -100,7 +100,7 @@ def in_table(
         indices=indices or (SCALAR,),
         single=single,
         bounds=bounds,
-        equivalent=equivalent or _judged(entry, size, signed, indices, term, start),
+        equivalent=equivalent or _by_formula(entry, size, signed, indices, term, start),
         known=True,
         sensor=entry.sensor,
         needs=entry.needs,
@@ -109,7 +109,7 @@ def in_table(
     )
 
 
-def _judged(
+def _by_formula(
     entry: Entry, size: Size, signed: bool, indices: tuple[int, ...], term: Term | None, start: Start | None
 ) -> Judged:
     formula = entry.formula
@@ -157,3 +157,8 @@ def outside_table(
         keywords=tuple(keywords.split()),
         twins=tuple(told(twins).split()),
     )
+
+
+def for_both(*rows: Callable[[int], tuple[Effect, ...]]) -> tuple[Effect, ...]:
+    """All rows of index 0, then all of index 1."""
+    return tuple(effect for index in (0, 1) for rows_of in rows for effect in rows_of(index))

@@ -4,47 +4,48 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from blind.cases.sealed import TrueEffect, Truth
-from blind.scoring.results import Answer, Hypothesis, Names, Unreadable
+from blind.scoring.results import Answer, Names, RankedAnswer, Unreadable
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """What was right. `rank`: place of the true cause among the ranked hypotheses from 1, None where it is not among them.
+    """What was right; nothing, unless said otherwise.
 
+    `rank`: place of the true cause among the ranked answers from 1, None where it is not among them;
     `wrong_names`: names found that neither the truth nor its look-alikes carry; `stated`: (top probability, whether the top answer is
-    right) for an answer that claims a gap; `shrinkage` as in blind.shrinkage.
+    right) for an answer that claims a gap; `shrinkage` as in blind.scoring.shrinkage.
     """
 
     case: str
     truth: Truth
-    failure: str | None
-    detected: bool
-    place_right: bool
-    side_right: bool
-    rank: int | None
-    found_right: bool
-    set_hit: bool
-    all_named: bool
-    class_right: bool
-    wrong_names: Names
-    found: Names
-    parameter_errors: tuple[float, ...]
     shrinkage: float | None
-    stated: tuple[float, bool] | None
-    time_s: float | None
+    detected: bool
+    failure: str | None = None
+    place_right: bool = False
+    side_right: bool = False
+    rank: int | None = None
+    found_right: bool = False
+    set_hit: bool = False
+    all_named: bool = False
+    class_right: bool = False
+    wrong_names: Names = frozenset()
+    found: Names = frozenset()
+    parameter_errors: tuple[float, ...] = ()
+    stated: tuple[float, bool] | None = None
+    time_s: float | None = None
 
 
 def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float | None) -> Judgement:
     """The judgement of a case; an unreadable answer is wrong everywhere, a gap where there is none included."""
     if isinstance(answer, Unreadable):
-        return _failed(case, truth, answer.reason, shrinkage)
+        return Judgement(case, truth, shrinkage, detected=truth.kind == "nominal", failure=answer.reason)
     true = frozenset(effect.name for effect in truth.effects)
-    ranks = [i for i, hypothesis in enumerate(answer.hypotheses, 1) if _means(hypothesis.names, truth)]
-    top = answer.hypotheses[0] if answer.hypotheses else None
+    ranks = [place for place, entry in enumerate(answer.ranked, 1) if _means(entry.names, truth)]
+    top = answer.ranked[0] if answer.ranked else None
     return Judgement(
         case=case,
         truth=truth,
-        failure=None,
+        shrinkage=shrinkage,
         detected=answer.verdict == "gap",
         place_right=_first_place(answer) in _right_places(truth),
         side_right=_side(_first_place(answer)) in {_side(place) for place in _right_places(truth)},
@@ -55,33 +56,9 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         class_right=_class_right(truth, answer),
         wrong_names=frozenset(name for name in answer.found if not any(_fits(name, e) for e in truth.effects)),
         found=answer.found,
-        parameter_errors=_parameter_errors(truth, answer.hypotheses),
-        shrinkage=shrinkage,
-        stated=_stated(truth, answer, top) if answer.verdict == "gap" else None,
+        parameter_errors=_parameter_errors(truth, answer.ranked),
+        stated=_stated_probability(truth, answer, top) if answer.verdict == "gap" else None,
         time_s=answer.time_s,
-    )
-
-
-def _failed(case: str, truth: Truth, reason: str, shrinkage: float | None) -> Judgement:
-    alarm = truth.kind == "nominal"
-    return Judgement(
-        case=case,
-        truth=truth,
-        failure=reason,
-        detected=alarm,
-        place_right=False,
-        side_right=False,
-        rank=None,
-        found_right=False,
-        set_hit=False,
-        all_named=False,
-        class_right=False,
-        wrong_names=frozenset(),
-        found=frozenset(),
-        parameter_errors=(),
-        shrinkage=shrinkage,
-        stated=None,
-        time_s=None,
     )
 
 
@@ -121,10 +98,10 @@ def _set_hit(true: Names, answer: Answer) -> bool:
     if not answer.found or len(answer.found) != len(true):
         return False
     group = set(answer.found)
-    for hypothesis in answer.hypotheses:
-        if hypothesis.names <= answer.found:
-            group |= {name for names in hypothesis.ambiguous_with for name in names}
-            if true in hypothesis.ambiguous_with and hypothesis.names == answer.found:
+    for entry in answer.ranked:
+        if entry.names <= answer.found:
+            group |= {name for names in entry.ambiguous_with for name in names}
+            if true in entry.ambiguous_with and entry.names == answer.found:
                 return True
     return true <= group
 
@@ -144,11 +121,11 @@ def _signals(text: str) -> set[str]:
     } - {""}
 
 
-def _parameter_errors(truth: Truth, hypotheses: Sequence[Hypothesis]) -> tuple[float, ...]:
-    """Relative errors of a single effect's main parameters, from the hypothesis that names it, whatever its rank."""
+def _parameter_errors(truth: Truth, ranked: Sequence[RankedAnswer]) -> tuple[float, ...]:
+    """Relative errors of a single effect's main parameters, from the entry that names it, whatever its rank."""
     if len(truth.effects) != 1:
         return ()
-    named = [hypothesis for hypothesis in hypotheses if _means(hypothesis.names, truth)]
+    named = [entry for entry in ranked if _means(entry.names, truth)]
     if not named:
         return ()
     errors = []
@@ -162,7 +139,7 @@ def _parameter_errors(truth: Truth, hypotheses: Sequence[Hypothesis]) -> tuple[f
     return tuple(errors)
 
 
-def _stated(truth: Truth, answer: Answer, top: Hypothesis | None) -> tuple[float, bool]:
+def _stated_probability(truth: Truth, answer: Answer, top: RankedAnswer | None) -> tuple[float, bool]:
     """Top probability and whether that answer is right; "unknown" is right for an effect that the table does not hold."""
     if top is None or answer.unknown_probability > top.probability:
         return answer.unknown_probability, truth.kind == "outside"

@@ -10,7 +10,7 @@ Names = frozenset[str]
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class RankedAnswer:
     """One ranked answer: one effect or several jointly, its stated probability, parameters by effect-free symbol, its look-alikes."""
 
     names: Names
@@ -21,11 +21,11 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Answer:
-    """diagnosis.json in the scorer's terms; places and hypotheses in the order of the file."""
+    """diagnosis.json in the scorer's terms; places and ranked answers in the order of the file."""
 
     verdict: str
     places: tuple[str, ...]
-    hypotheses: tuple[Hypothesis, ...]
+    ranked: tuple[RankedAnswer, ...]
     found: Names
     unknown_probability: float
     unknown_place: str
@@ -66,7 +66,7 @@ def _answer(content: Mapping[str, Any], time_s: float | None) -> Answer:
     return Answer(
         verdict=content["verdict"],
         places=tuple(str(entry["place"]) for entry in content["places"]),
-        hypotheses=tuple(_hypothesis(entry) for entry in content["effects"]),
+        ranked=tuple(_ranked(entry) for entry in content["effects"]),
         found=frozenset(name for entry in content["found"] for name in names_of(entry)),
         unknown_probability=float(unknown.get("probability") or 0.0),
         unknown_place=str(unknown.get("place")),
@@ -77,9 +77,9 @@ def _answer(content: Mapping[str, Any], time_s: float | None) -> Answer:
     )
 
 
-def _hypothesis(entry: Mapping[str, Any]) -> Hypothesis:
+def _ranked(entry: Mapping[str, Any]) -> RankedAnswer:
     parameters = entry.get("parameters") or {}
-    return Hypothesis(
+    return RankedAnswer(
         names=names_of(entry["effect"]),
         probability=float(entry["probability"]),
         parameters={key: float(value["value"]) for key, value in parameters.items()},

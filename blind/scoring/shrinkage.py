@@ -23,7 +23,7 @@ def relative_shrinkage(hold: Hold, answer: Answer, log: Path, prediction: Path) 
     `prediction` is scored against the case's own log; where it is missing the diagnosis' stated RMS count. None where the re-tuned
     plant leaves less than half the floor's energy to remove; 0 where nothing usable was predicted.
     """
-    bars = _scored(log, prediction) or _stated(answer)
+    bars = _scored_rms(log, prediction) or _stated_rms(answer)
     if bars is None:
         return 0.0
     before, after = bars
@@ -35,12 +35,12 @@ def relative_shrinkage(hold: Hold, answer: Answer, log: Path, prediction: Path) 
     return float(np.clip(removed / removable, -1.0, 1.05))
 
 
-def _stated(answer: Answer) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
+def _stated_rms(answer: Answer) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
     bars = (answer.rms_before, answer.rms_after)
     return bars if all(isinstance(bar.get(name), float | int) for bar in bars for name in OUTPUTS) else None
 
 
-def _scored(log: Path, prediction: Path) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
+def _scored_rms(log: Path, prediction: Path) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
     measured, predicted = _columns(log), _columns(prediction)
     names = [f"{output[:-4]}_{bar}_rad" for output in OUTPUTS for bar in ("before", "after")]
     if predicted is None or measured is None or any(name not in predicted for name in ("t_s", *names)):

@@ -3,7 +3,8 @@
 import json
 from collections.abc import Sequence
 
-from blind.scoring.score import Detection, Figure, Score
+from blind.scoring.figures import Figure
+from blind.scoring.score import Detection, Score
 
 
 def markdown(score: Score) -> str:

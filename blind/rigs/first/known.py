@@ -3,7 +3,7 @@
 import numpy as np
 
 from blind.effects.ce150_formulas import LOWER_STOP_RAD, flexible_mode
-from blind.effects.ce150_table import in_table
+from blind.effects.ce150_table import for_both, in_table
 from blind.effects.draws import Uniform
 from blind.effects.effect import Effect, Shape, Size, over
 from blind.effects.equivalent import PHASES, Equivalents, relative
@@ -215,7 +215,4 @@ LOOP = (
     in_table("loop.delay", Size("delay_s", 0.01), 0, 1, bounds=(0.1, 6.0)),
     in_table("loop.dropped_frames", Size("", 0.1, most=0.6), bounds=(0.05, 5.0), loses_frames=True),
 )
-PAIRS = tuple(
-    effect for i in (0, 1) for rows in (_input_rows, _rotor_rows, _axis_rows, _sensor_rows) for effect in rows(i)
-)
-KNOWN = (*PAIRS, *AIR, *ONE_AXIS)
+KNOWN = (*for_both(_input_rows, _rotor_rows, _axis_rows, _sensor_rows), *AIR, *ONE_AXIS)

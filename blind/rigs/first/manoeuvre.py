@@ -13,8 +13,8 @@ from blind.simulation.flight import RunInputs
 
 Array = NDArray[np.float64]
 SETTLE_ROWS = 300
-REFERENCES = ("steps", "ramps", "sines", "multisine")
-DITHERS = ("prbs", "multisine")
+REFERENCE_KINDS = ("steps", "ramps", "sines", "multisine")
+DITHER_KINDS = ("prbs", "multisine")
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def make_inputs(style: FirstStyle, rng: Generator) -> RunInputs:
 
 def _reference(style: FirstStyle, rng: Generator, rows: int, axis: int) -> Array:
     reach = style.elevation_rad if axis == 0 else style.azimuth_rad
-    kind = REFERENCES[rng.integers(len(REFERENCES))]
+    kind = REFERENCE_KINDS[rng.integers(len(REFERENCE_KINDS))]
     t = np.arange(rows) * PERIOD_S
     if kind in ("steps", "ramps"):
         raw = _levels(rng, rows, reach, (2.5, 6.0) if style.excited else (5.0, 12.0))
@@ -111,7 +111,7 @@ def _dither(style: FirstStyle, rng: Generator, rows: int, axis: int) -> Array:
     size = style.dither_V[axis]
     if size == 0.0:
         return np.zeros(rows)
-    if DITHERS[rng.integers(len(DITHERS))] == "prbs":
+    if DITHER_KINDS[rng.integers(len(DITHER_KINDS))] == "prbs":
         hold = int(rng.integers(6, 22))
         bits = np.sign(rng.standard_normal(rows // hold + 1))
         return size * np.repeat(bits, hold)[:rows]

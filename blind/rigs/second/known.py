@@ -3,7 +3,7 @@
 import numpy as np
 
 from blind.effects.ce150_formulas import flexible_mode
-from blind.effects.ce150_table import in_table
+from blind.effects.ce150_table import for_both, in_table
 from blind.effects.draws import Fixed, OneOf, Uniform
 from blind.effects.effect import Effect, Shape, Size, over, over_root
 from blind.effects.equivalent import Equivalents
@@ -295,10 +295,4 @@ LOOP = (
         loses_frames=True,
     ),
 )
-PAIRS = tuple(
-    effect
-    for i in (0, 1)
-    for rows in (_input_rows, _rotor_rows, _bearing_rows, _axis_rows, _sensor_rows)
-    for effect in rows(i)
-)
-KNOWN = (*PAIRS, *AIR, *ONE_AXIS)
+KNOWN = (*for_both(_input_rows, _rotor_rows, _bearing_rows, _axis_rows, _sensor_rows), *AIR, *ONE_AXIS)

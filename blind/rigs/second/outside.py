@@ -199,13 +199,7 @@ DRIVES = (
         keywords="contact dropout intermittent loose dip",
     ),
     outside_table(
-        "tail_input.cross_feed",
-        "tail_input",
-        "gain(u_M) of u_T",
-        Size("cross", 0.03),
-        1,
-        signed=True,
-        keywords="cross",
+        "tail_input.cross_feed", "tail_input", "gain(u_M) of u_T", Size("cross", 0.03), 1, signed=True, keywords="cross"
     ),
     outside_table(
         "tail_input.bias",
