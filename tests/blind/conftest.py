@@ -1,4 +1,4 @@
-"""A rig, a way to fly it at one place, and one small benchmark that the tests of this folder share."""
+"""A rig, a way to fly it at one place, and one small benchmark of each rig that the tests of this folder share."""
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -7,16 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blind import make
+from blind import FIRST, make
+from blind.cases.make import Order, make_case
+from blind.cases.sealed import open_seal, truth_to_json
+from blind.rigs.first import lab as first_lab
 from blind.rigs.first.manoeuvre import FirstStyle, make_inputs
 from blind.rigs.first.pilot import make_pilot
 from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PROGRAM
+from blind.rigs.second import lab as second_lab
 from blind.simulation.ce150 import Rig, load_rig
 from blind.simulation.flight import RunInputs, fly
 from blind.simulation.record import Model, Record
 from blind.simulation.rest import start_state
+from tests.soak import SOAK
 
 PLANT = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"
+SEED, KINDS = 8, ("nominal", "single", "double", "outside")
+SECOND_SEED, SECOND_KINDS = 7, ("nominal", "single", "outside")
 Settings = Mapping[tuple[str, int], float]
 
 
@@ -55,10 +62,43 @@ def flown(rig: Rig) -> Callable[..., Record]:
     return run
 
 
+def shorten(patch: pytest.MonkeyPatch) -> None:
+    """Runs of a fifth of their length, unless a soak: as many cases, each with all that a case goes through.
+
+    None of the effects that the seeds give begins later than these runs end.
+    """
+    if not SOAK:
+        for lab in (first_lab, second_lab):
+            patch.setattr(lab, "TRIAL_S", 6.0)
+        patch.setattr(first_lab, "RUN_S", 12.0)
+        patch.setattr(second_lab, "RUN_LENGTHS_S", (12, 15))
+
+
 @pytest.fixture(scope="session")
 def benchmark_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Five cases: one without effect, one single, one double, one out of library, one more."""
-    out = tmp_path_factory.mktemp("blind") / "cases"
-    with ThreadPoolExecutor() as pool:
-        make(5, out, 5, each=pool.map)
+    """One case each of KINDS, by the first rig."""
+    return _made(tmp_path_factory, FIRST, KINDS, SEED)
+
+
+@pytest.fixture(scope="session")
+def second_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One case each of SECOND_KINDS, by the second rig."""
+    return _made(tmp_path_factory, "second", SECOND_KINDS, SECOND_SEED)
+
+
+def _made(paths: pytest.TempPathFactory, rig: str, kinds: tuple[str, ...], seed: int) -> Path:
+    out = paths.mktemp(rig) / "cases"
+    with ThreadPoolExecutor() as pool, pytest.MonkeyPatch.context() as patch:
+        shorten(patch)
+        make(seed, out, len(kinds), kinds, each=pool.map, rig=rig)
     return out
+
+
+def comes_out_the_same(folder: Path, rig: str, kinds: tuple[str, ...], seed: int) -> bool:
+    """Whether the single case of such a benchmark has the same files and the same truth when it is made once more, without company."""
+    name, truth = next((name, truth) for name, truth in open_seal(folder).items() if truth.kind == "single")
+    with pytest.MonkeyPatch.context() as patch:
+        shorten(patch)
+        made = make_case(Order(seed, int(name[-4:]), len(kinds), kinds, PLANT.read_text(), rig))
+    known = {path.name: path.read_text() for path in (folder / name).iterdir()}
+    return bool(made["files"] == known and made["truth"] == truth_to_json(truth))

@@ -35,6 +35,12 @@ class Part:
         self.state.x = [*(x or []), *[0.0] * (12 - len(x or []))]
         self.lib.weather(self.effects, self.state)
 
+    def at(self, t_s: float) -> Any:
+        """The state with what depends on nothing but the time as it is then."""
+        self.state.t_s = t_s
+        self.lib.weather(self.effects, self.state)
+        return self.state
+
     def slope(self) -> np.ndarray:
         """Derivative of the state, friction apart, in still air."""
         dx = self.ffi.new("double[12]")

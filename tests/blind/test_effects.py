@@ -1,6 +1,7 @@
 """Each effect moves the rig the way physics says, every one is felt, and its size in the library's words is what it was made from."""
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -8,11 +9,17 @@ import pytest
 from blind.effects.effect import Effect
 from blind.effects.visited import Visited
 from blind.rigs.first.catalogue import CATALOGUE
+from blind.rigs.first.pilot import make_pilot
+from blind.rigs.first.simulation import BRISTLES, FASTEST_RAD_S, PROGRAM
 from blind.simulation.ce150 import Rig
-from blind.simulation.record import Record
+from blind.simulation.flight import fly
+from blind.simulation.record import Model, Record
+from blind.simulation.rest import start_state
 from tests.blind.conftest import calm_flight, lively_flight
+from tests.soak import sampled
 
 Flown = Callable[..., Record]
+Plain = Callable[[float, float], np.ndarray]
 KNOWN, OUTSIDE = CATALOGUE.known, CATALOGUE.outside
 ALL = CATALOGUE.all
 # The others act through lost commands, the rig's own friction, or the counts.
@@ -22,11 +29,17 @@ SIMULATED = [e for e in ALL if e.size.field and not e.name.endswith("sensor.quan
 def hovering_V(
     flown: Flown, settings: dict[tuple[str, int], float], psi_rad: float = 0.0, phi_rad: float = 0.0
 ) -> np.ndarray:
-    """Mean voltages (main, tail) that hold the rig still, last 4 s of 12; no dry friction, which would let them wander."""
+    """Mean voltages (main, tail) that hold the rig still, last 3 s of 9; no dry friction, which would let them wander."""
     smooth = {"b_cE": 0.0, "b_cA": 0.0}
-    record = flown(calm_flight(12.0, psi_rad, phi_rad), settings, changes=smooth)
-    assert np.abs(record.apparent[-400:, [1, 3]]).max() < 0.05
-    return record.u_V[-400:].mean(axis=0)
+    record = flown(calm_flight(9.0, psi_rad, phi_rad), settings, changes=smooth)
+    assert np.abs(record.apparent[-300:, [1, 3]]).max() < 0.05
+    return record.u_V[-300:].mean(axis=0)
+
+
+@pytest.fixture(scope="module")
+def plain_V(flown: Flown) -> Plain:
+    """The same of a rig without effects, flown once for each pair of angles."""
+    return cache(lambda psi_rad, phi_rad: hovering_V(flown, {}, psi_rad, phi_rad))
 
 
 @pytest.mark.parametrize(
@@ -38,9 +51,11 @@ def hovering_V(
         ({("dry", 1): 37.1}, (0.0, 0.1)),
     ],
 )
-def test_a_dead_band_and_a_dry_rotor_cost_their_voltage(flown: Flown, settings: dict, expected_V: tuple) -> None:
+def test_a_dead_band_and_a_dry_rotor_cost_their_voltage(
+    flown: Flown, plain_V: Plain, settings: dict, expected_V: tuple
+) -> None:
     """Truth: the band itself; dry friction c costs c / K (363 and 371 rad/s^2/V). Within 10 mV."""
-    extra = hovering_V(flown, settings) - hovering_V(flown, {})
+    extra = hovering_V(flown, settings) - plain_V(0.0, 0.0)
     np.testing.assert_allclose(extra, expected_V, atol=0.01)
 
 
@@ -60,9 +75,9 @@ def test_a_dead_band_and_a_dry_rotor_cost_their_voltage(flown: Flown, settings: 
     ],
 )
 def test_a_weaker_drive_asks_for_more_voltage_and_a_helping_one_for_less(
-    flown: Flown, settings: dict, input_index: int, sign: int
+    flown: Flown, plain_V: Plain, settings: dict, input_index: int, sign: int
 ) -> None:
-    extra = hovering_V(flown, settings) - hovering_V(flown, {})
+    extra = hovering_V(flown, settings) - plain_V(0.0, 0.0)
     assert sign * extra[input_index] > 0.01
 
 
@@ -80,9 +95,9 @@ def test_a_weaker_drive_asks_for_more_voltage_and_a_helping_one_for_less(
     ],
 )
 def test_a_restoring_torque_is_held_against_with_the_right_sign(
-    flown: Flown, settings: dict, psi_rad: float, phi_rad: float, input_index: int, sign: int
+    flown: Flown, plain_V: Plain, settings: dict, psi_rad: float, phi_rad: float, input_index: int, sign: int
 ) -> None:
-    extra = hovering_V(flown, settings, psi_rad, phi_rad) - hovering_V(flown, {}, psi_rad, phi_rad)
+    extra = hovering_V(flown, settings, psi_rad, phi_rad) - plain_V(psi_rad, phi_rad)
     assert sign * extra[input_index] > 0.01
 
 
@@ -183,14 +198,28 @@ def test_more_friction_or_drag_slows_a_coasting_axis(flown: Flown) -> None:
         assert carried(slower) < 0.99 * free, slower
 
 
-@pytest.mark.parametrize("effect", SIMULATED, ids=lambda effect: effect.name)
-def test_every_effect_is_felt_and_the_rig_without_it_is_not_changed_by_its_shape(flown: Flown, effect: Effect) -> None:
-    """At four times its reference size (within bounds) an excited run's free predictions differ by more than 1e-4 rad."""
+def large(effect: Effect) -> dict[tuple[str, int], float]:
+    """Settings of an effect at four times its reference size (within bounds) that begins early."""
     shape = effect.draw(np.random.default_rng(1))
     size = float(np.clip(4.0 if effect.bounds[1] > 4.0 else 1.0, *effect.bounds))
+    early = {key: min(value, 4.55) if key.endswith(("start_s", "time_s")) else value for key, value in shape.items()}
+    return dict(effect.settings(size, early))
+
+
+def test_every_effect_is_felt(rig: Rig) -> None:
+    """Beside an excited run of the rig without effects, free predictions with each differ by more than 1e-4 rad."""
+    inputs, plain = lively_flight(5.0, 4), Model(rig, {})
+    start = start_state(rig, *inputs.reference[0], FASTEST_RAD_S)
+    shadows = [plain, *(Model(rig, large(effect), placed=effect.sensor) for effect in SIMULATED)]
+    record = fly(PROGRAM, plain, BRISTLES, rig, make_pilot(rig, 1.0), inputs, start, shadows)
+    moved = np.abs(record.shadow[:, 1:] - record.shadow[:, :1]).max(axis=(0, 2))
+    assert not [effect.name for effect, most in zip(SIMULATED, moved, strict=True) if most < 1e-4]
+
+
+@pytest.mark.parametrize("effect", sampled(SIMULATED, SIMULATED[::10]), ids=lambda effect: effect.name)
+def test_a_rig_with_an_effect_flies_and_its_predictions_differ_from_those_without(flown: Flown, effect: Effect) -> None:
     seconds = 12.0 if effect.name.endswith(("weight_shift", "disturbance", "count_slip", "bumper")) else 6.0
-    late = {key: min(value, 4.55) if key.endswith(("start_s", "time_s")) else value for key, value in shape.items()}
-    record = flown(lively_flight(seconds), effect.settings(size, late), placed=effect.sensor)
+    record = flown(lively_flight(seconds), large(effect), placed=effect.sensor)
     assert not record.failed
     assert np.abs(record.shadow[:, 1] - record.shadow[:, 0]).max() > 1e-4
 

@@ -142,9 +142,9 @@ def test_frames_lost_at_random_count_in_one_figure_of_shrinkage_only(tmp_path: P
 
 
 def test_guessing_scores_what_chance_gives(tmp_path: Path) -> None:
-    """A guess among four names, stated with 1/4: right in 1/4, so calibrated; over 400 cases within 4 standard errors."""
+    """A guess among four names, stated with 1/4: right in 1/4, so calibrated; over 200 cases within 4 standard errors."""
     rng = np.random.default_rng(4)
-    truths = {f"case-{i:04d}": truth("single", effect(LIBRARY[i % 4])) for i in range(400)}
+    truths = {f"case-{i:04d}": truth("single", effect(LIBRARY[i % 4])) for i in range(200)}
     cases, opened = seal(truths, dict.fromkeys(truths, "s"))
     (tmp_path / "sealed").mkdir()
     (tmp_path / "cases.json").write_text(cases)
@@ -153,7 +153,7 @@ def test_guessing_scores_what_chance_gives(tmp_path: Path) -> None:
         guess = LIBRARY[rng.integers(4)]
         write(tmp_path / "results", name, answer("gap", guess.split(".")[0], [(guess, 0.25)], [guess]))
     found = figures(tmp_path, tmp_path / "results")
-    error = 4.0 * np.sqrt(0.25 * 0.75 / 400)
+    error = 4.0 * np.sqrt(0.25 * 0.75 / 200)
     assert found["cause first, single library effect"].value == pytest.approx(0.25, abs=error)
     assert found["expected calibration error"].value < error
 

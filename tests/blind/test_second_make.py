@@ -2,7 +2,6 @@
 for a seed."""
 
 import re
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 import blind
 from blind import make
-from blind.cases.make import Order, make_case
 from blind.cases.sealed import open_seal
 from records.errors import BadInput
 from records.log import RunLog, load_log
@@ -18,30 +16,22 @@ from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from sim.plants import MODELS
-from tests.blind.conftest import PLANT
+from tests.blind.conftest import PLANT, SECOND_SEED, comes_out_the_same
+from tests.blind.conftest import SECOND_KINDS as MIX
+from tests.soak import SOAK
 from twinlaw.command import main
 
-SEED = 9
-MIX = ("nominal", "single", "outside")
+LENGTHS_S = (45.0, 76.0) if SOAK else (12.0, 15.0)
 COLUMNS = log_columns(MODELS["ce150"]())
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three cases: one without effect, one with one, one with one out of library."""
-    out = tmp_path_factory.mktemp("second") / "cases"
-    with ThreadPoolExecutor() as pool:
-        make(SEED, out, len(MIX), MIX, each=pool.map, rig="second")
-    return out
 
 
 def logs(case: Path) -> list[RunLog]:
     return [load_log(path, COLUMNS) for path in sorted(case.glob("*.csv"))]
 
 
-def test_every_case_is_logs_and_a_plant_that_the_records_read(folder: Path) -> None:
+def test_every_case_is_logs_and_a_plant_that_the_records_read(second_folder: Path) -> None:
     """Counts of the stated encoders, commands within the controller's limits, lengths of 45 to 75 s, off the stops."""
-    cases = sorted(folder.glob("case-*"))
+    cases = sorted(second_folder.glob("case-*"))
     assert len(cases) == len(MIX)
     for case in cases:
         plant = load_plant(case / "plant.toml")
@@ -54,7 +44,7 @@ def test_every_case_is_logs_and_a_plant_that_the_records_read(folder: Path) -> N
         for log in runs:
             assert log.sample_period_s in (0.005, 0.01, 0.02)
             assert np.median(np.diff(log.t_s)) == pytest.approx(log.sample_period_s, rel=0.1)
-            assert 44.0 < log.t_s[-1] - log.t_s[0] < 76.0
+            assert LENGTHS_S[0] - 1.0 < log.t_s[-1] - log.t_s[0] < LENGTHS_S[1]
             assert 0.0 <= log.u[:, 0].min() <= log.u[:, 0].max() <= 10.0
             assert np.abs(log.u[:, 1]).max() <= 10.0
             assert np.mean(np.abs(log.y[:, 0]) > np.pi / 4 - 7e-3) <= 0.1
@@ -64,9 +54,9 @@ def test_every_case_is_logs_and_a_plant_that_the_records_read(folder: Path) -> N
                 np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)
 
 
-def test_the_plant_file_differs_in_spreads_encoders_and_absent_friction_alone(folder: Path) -> None:
+def test_the_plant_file_differs_in_spreads_encoders_and_absent_friction_alone(second_folder: Path) -> None:
     stated = PLANT.read_text().split("\n")
-    for case in folder.glob("case-*"):
+    for case in second_folder.glob("case-*"):
         lines = (case / "plant.toml").read_text().split("\n")
         assert len(lines) == len(stated)
         for new, old in zip(lines, stated, strict=True):
@@ -78,14 +68,14 @@ def test_the_plant_file_differs_in_spreads_encoders_and_absent_friction_alone(fo
         assert {name for name in known if given[name].value != known[name].value} <= {"b_cE", "b_cA"}
 
 
-def test_the_note_names_the_runs_that_are_there(folder: Path) -> None:
-    for case in folder.glob("case-*"):
+def test_the_note_names_the_runs_that_are_there(second_folder: Path) -> None:
+    for case in second_folder.glob("case-*"):
         named = set(re.findall(r"\w+-\d\.csv", (case / "README.md").read_text()))
         assert named == {path.name for path in case.glob("*.csv")}
 
 
-def test_truths_hold_what_was_asked_for_and_no_case_tells_its_own(folder: Path) -> None:
-    truths = open_seal(folder)
+def test_truths_hold_what_was_asked_for_and_no_case_tells_its_own(second_folder: Path) -> None:
+    truths = open_seal(second_folder)
     assert {truth.kind for truth in truths.values()} == set(MIX)
     for truth in truths.values():
         assert (truth.severity > 0.0) == bool(truth.effects)
@@ -93,15 +83,12 @@ def test_truths_hold_what_was_asked_for_and_no_case_tells_its_own(folder: Path) 
             assert 2.0 * np.pi / 8192 / np.sqrt(12.0) < floor < 2e-2
             assert 0.0 < truth.hold.rms_true[name] < 0.2
     names = {effect.name for truth in truths.values() for effect in truth.effects}
-    public = [path for path in folder.rglob("*") if path.is_file() and "sealed" not in path.parts]
+    public = [path for path in second_folder.rglob("*") if path.is_file() and "sealed" not in path.parts]
     assert not [path for path in public if any(name in path.read_text() for name in (*names, "severity", "salt"))]
 
 
-def test_a_case_comes_out_the_same_when_it_is_made_again(folder: Path) -> None:
-    name = next(name for name, truth in open_seal(folder).items() if truth.kind == "single")
-    order = Order(SEED, int(name[-4:]), len(MIX), MIX, PLANT.read_text(), "second")
-    known = {path.name: path.read_text() for path in (folder / name).iterdir()}
-    assert make_case(order)["files"] == known
+def test_a_case_comes_out_the_same_when_it_is_made_again(second_folder: Path) -> None:
+    assert comes_out_the_same(second_folder, "second", MIX, SECOND_SEED)
 
 
 def test_an_unknown_kind_of_rig_is_refused_and_nothing_stays_behind(tmp_path: Path) -> None:

@@ -141,7 +141,8 @@ def test_a_dry_rotor_brakes_as_its_formula_says(settings: Settings, rotor: int, 
 def test_knocks_come_one_in_each_stretch_of_time_and_last_sixty_milliseconds() -> None:
     for axis in (0, 1):
         settings = {("knock_Nm", axis): 6e-3, ("knock_every_s", axis): 1.0}
-        kicks = np.array([Part(settings, t_s=t).state.outer_Nm[axis] for t in np.arange(0.0, 20.0, 0.005)])
+        part = Part(settings)
+        kicks = np.array([part.at(t).outer_Nm[axis] for t in np.arange(0.0, 20.0, 0.005)])
         assert np.abs(kicks).max() == pytest.approx(6e-3, rel=0.02)
         assert np.mean(kicks != 0.0) == pytest.approx(0.06, abs=0.01)
         assert kicks.min() < 0.0 < kicks.max()

@@ -33,6 +33,7 @@ from blind.simulation.rest import start_state
 Array = NDArray[np.float64]
 SETTLE_S = 3.0
 TRIAL_S = 20.0
+RUN_LENGTHS_S = (45, 76)  # from, to below
 PERIODS_S = (0.005, 0.01, 0.02)
 # By law: the width of the rounding in rad/s, of presliding in rad, of the band of rest in rad/s.
 WIDTHS = {ROUNDED: (1e-3, 1e-2), PRESLIDING: (2e-4, 4e-3), STICK_SLIP: (5e-4, 3e-3)}
@@ -108,7 +109,7 @@ def draw_bench(nominal: Rig, plan: Plan, rng: Generator) -> Bench:
     _, control = draw_controller(known, period_s, rng)
     training = int(rng.choice([1, 2, 3], p=[0.2, 0.6, 0.2]))
     style = _draw_style(plan, training + 1, rng)
-    lab = SecondLab(known, _draw_bearing(rng), control, style, float(rng.integers(45, 76)))
+    lab = SecondLab(known, _draw_bearing(rng), control, style, float(rng.integers(*RUN_LENGTHS_S)))
     logging = Logging(
         period_s=period_s,
         length_s=lab.run_s,
