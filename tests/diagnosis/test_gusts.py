@@ -54,7 +54,7 @@ def test_an_axis_that_is_held_feels_no_gust(plant: BoundPlant, fly: Fly) -> None
 
 def test_a_restless_room_is_told_by_no_other_name(plant: BoundPlant, fly: Fly) -> None:
     # Before gusts were asked for, such logs were told as a springy arm beside a push, 0.80 together.
-    logs = [fly(seed, GUST, rig_seed=90) for seed in ((91, 92) if SOAK else (91,))]
+    logs = [fly(seed, GUST, rig_seed=90) for seed in (91, 92)] if SOAK else [fly(91, GUST, 20.0, rig_seed=90)]
     result = diagnose(plant, Material(logs, [], [], [None] * len(logs)))
     assert result.diagnosis.verdict == "gap"
     named = {h.effect: h.probability for h in result.diagnosis.effects}

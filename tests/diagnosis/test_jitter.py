@@ -16,15 +16,17 @@ from sim.bind import BoundPlant
 from sim.loop import fly_law
 from sim.manoeuvres import Manoeuvre, at_rest
 from tests.plants import stated_table
+from tests.soak import SOAK
 
 TAU_S, JITTER_S = 0.03, 0.003
 DELAY = "psi_sensor.delay"
+SECONDS = 30.0 if SOAK else 15.0
 
 
 def late_flight(plant: BoundPlant, jitter_s: float) -> RunLog:
-    """Half a minute in which elevation turns at some 0.5 rad/s, read TAU_S late, more or less."""
+    """SECONDS in which elevation turns at some 0.5 rad/s, read TAU_S late, more or less."""
     table = stated_table("ce150")
-    t_s = np.arange(0.0, 30.0, 0.01)
+    t_s = np.arange(0.0, SECONDS, 0.01)
     waves = np.column_stack([0.5 * np.sin(1.8 * t_s), 0.8 * np.sin(1.1 * t_s)])
     lively = Manoeuvre("waves", t_s, waves, at_rest(plant))
     late = with_effects(plant, {DELAY: {"tau": TAU_S, "jitter": jitter_s}})

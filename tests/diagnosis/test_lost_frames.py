@@ -12,7 +12,7 @@ from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
-from diagnosis.search.beam import lost_frames
+from diagnosis.search import lost_frames
 from diagnosis.search.lost_frames import FORGOTTEN_ROWS, SWEEPS, _ratios, likely_share, loss_evidence, with_losses
 from records.log import RunLog
 from sim.bind import BoundPlant

@@ -5,9 +5,12 @@ import pytest
 from diagnosis.diagnose import Material, diagnose
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
+from tests.soak import sampled
+
+OFF = [("J_E", 0.7), ("K_A", 1.35), ("K_M", 0.65)]
 
 
-@pytest.mark.parametrize(("name", "factor"), [("J_E", 0.7), ("K_A", 1.35), ("K_M", 0.65)])
+@pytest.mark.parametrize(("name", "factor"), sampled(OFF, keep=OFF[:1]))
 def test_one_parameter_beyond_its_spread_is_told_and_nothing_else(
     plant: BoundPlant, fly: Fly, name: str, factor: float
 ) -> None:
@@ -20,6 +23,7 @@ def test_one_parameter_beyond_its_spread_is_told_and_nothing_else(
     assert all(entry.probability < 0.5 for entry in result.effects)
 
 
+@pytest.mark.soak
 def test_a_name_holds_in_air_that_pushes_more_than_the_effect(plant: BoundPlant, fly: Fly) -> None:
     # Truth: a wake that takes an eighth of the tail's thrust at hover, in air twenty times as restless as usual. Most of what a second's
     # prediction misses is that air, and no name can take it away.

@@ -15,6 +15,9 @@ COULOMB_N, OFFSET_N = 20.39, -3.16  # published with the benchmark, from other d
 SAME = 0.03
 
 
+pytestmark = pytest.mark.soak
+
+
 @pytest.fixture(scope="module")
 def emps() -> Result:
     """The positioning system: its plain run to explain, the run with force pulses to check on."""

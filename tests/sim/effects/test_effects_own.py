@@ -33,7 +33,6 @@ OTHER_THINGS: Mapping[str, tuple[str, set[str]]] = {
     "identification/frequency/result.py": ("a cost", {"J"}),
     "identification/model/motion.py": ("the vector of coefficients", {"p"}),
     "identification/proof/linear_rotor.py": ("a parameter of the plant", {"K"}),
-    "identification/stages/staged.py": ("the letter of a rotor", {"T"}),
     "replay/law.py": ("rows of a controller's table", {"a", "c", "p", "q"}),
     "replay/lone.py": ("rows of a controller's table", {"a", "p"}),
     "replay/variants.py": ("rows of a controller's table", {"a", "p"}),
