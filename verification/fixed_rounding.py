@@ -4,11 +4,7 @@ As rounding.py for float32, over the same declared ranges and slices of Psi, wit
 The real law has the table's own numbers; both start from the same state and inputs.
 """
 
-from dataclasses import replace
-from itertools import pairwise
 from typing import Any
-
-import numpy as np
 
 from codegen.fixed.constants import FixedAxis, FixedLaw, fixed_constants
 from codegen.fixed.equations import (
@@ -27,26 +23,20 @@ from codegen.law_equations import AxisState as DeclaredState
 from records.table import ControllerTable
 from records.verification import RoundingBound
 from verification.fixed_words import ErrorWords, TrackedWords
-from verification.ranges import LawRanges, Motion, Range, declared_ranges
-from verification.rounding import SLICES, stated_motion
+from verification.ranges import LawRanges, Motion, Range
+from verification.rounding import SLICES, bound_by_slices
 
 METHOD = "affine error forms of words over Arb balls (python-flint), Psi in {slices} slices, {motion}"
 
 
 def fixed_rounding_bound(table: ControllerTable, motion: Motion | None = None, slices: int = SLICES) -> RoundingBound:
     """The bound per output [V] over the declared ranges of `motion`; raises BadInput for a table that no words can hold."""
-    motion = motion or Motion()
-    ranges = declared_ranges(table, motion)
-    edges_rad = np.linspace(*ranges.given.psi_rad, slices + 1)
-    bounds = [_slice_bound(table, ranges, (float(low), float(high))) for low, high in pairwise(edges_rad)]
-    u_M_V, u_T_V = (max(column) for column in zip(*bounds, strict=True))
-    return RoundingBound(u_M_V, u_T_V, METHOD.format(slices=slices, motion=stated_motion(motion)))
+    return bound_by_slices(table, motion or Motion(), slices, METHOD, _slice_bound)
 
 
-def _slice_bound(table: ControllerTable, ranges: LawRanges, psi_rad: Range) -> tuple[float, float]:
+def _slice_bound(table: ControllerTable, ranges: LawRanges) -> tuple[float, float]:
     """The bound of u_M and u_T for measured elevations of one slice."""
-    sliced = replace(ranges, given=replace(ranges.given, psi_rad=psi_rad))
-    u_M, u_T = restricted_voltages(table, TrackedWords(), sliced)
+    u_M, u_T = restricted_voltages(table, TrackedWords(), ranges)
     step_V = 2.0 ** -law_formats(table).voltage_places
     return u_M.error * step_V, u_T.error * step_V
 

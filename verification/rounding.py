@@ -41,12 +41,22 @@ Restriction = Callable[[Any, Range], Any]
 
 def rounding_bound(table: ControllerTable, motion: Motion | None = None, slices: int = SLICES) -> RoundingBound:
     """The bound per output [V] over the declared ranges of `motion`; raises ValueError where these are too wide to prove."""
-    motion = motion or Motion()
+    return bound_by_slices(table, motion or Motion(), slices, METHOD, _slice_bound)
+
+
+def bound_by_slices(
+    table: ControllerTable,
+    motion: Motion,
+    slices: int,
+    method: str,
+    bound_of: Callable[[ControllerTable, LawRanges], tuple[float, float]],
+) -> RoundingBound:
+    """The largest bounds of u_M and u_T [V] over slices of the measured elevation; `method` has room for `slices` and `motion`."""
     ranges = declared_ranges(table, motion)
-    edges_rad = np.linspace(*ranges.given.psi_rad, slices + 1)
-    bounds = [_slice_bound(table, ranges, (float(low), float(high))) for low, high in pairwise(edges_rad)]
-    u_M_V, u_T_V = (max(column) for column in zip(*bounds, strict=True))
-    return RoundingBound(u_M_V, u_T_V, METHOD.format(slices=slices, motion=stated_motion(motion)))
+    edges_rad = np.linspace(*ranges.given.psi_rad, slices + 1).tolist()
+    parts = (replace(ranges, given=replace(ranges.given, psi_rad=psi_rad)) for psi_rad in pairwise(edges_rad))
+    u_M_V, u_T_V = (max(column) for column in zip(*(bound_of(table, part) for part in parts), strict=True))
+    return RoundingBound(u_M_V, u_T_V, method.format(slices=slices, motion=stated_motion(motion)))
 
 
 def stated_motion(motion: Motion) -> str:
@@ -85,16 +95,15 @@ def restricted_voltages(
     return LawOutput(*voltages)
 
 
-def _slice_bound(table: ControllerTable, ranges: LawRanges, psi_rad: Range) -> tuple[float, float]:
+def _slice_bound(table: ControllerTable, ranges: LawRanges) -> tuple[float, float]:
     """The bound of u_M and u_T for measured elevations of one slice."""
     arithmetic = AffineArithmetic()
     law = law_constants(table, arithmetic.constant)
-    given = replace(ranges.given, psi_rad=psi_rad)
     output = restricted_voltages(
         law,
         arithmetic,
         state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
-        LawInput(*(arithmetic.within(*getattr(given, name)) for name in LawInput.__dataclass_fields__)),
+        LawInput(*(arithmetic.within(*getattr(ranges.given, name)) for name in LawInput.__dataclass_fields__)),
         ranges,
         _restricted,
     )

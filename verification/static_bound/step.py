@@ -139,16 +139,16 @@ def _computed(state: State, i: Instruction) -> State:
         result, carry = _shifted(i, a, b)
     else:
         result, carry = _added(i, a, b, state.flags.carry)
-    d = written_register(i)
-    source, derive = _derivation(i, a, b)
-    after = (
-        state
-        if d < 0
-        else state.with_derived(d, source, derive, result)
-        if source >= 0
-        else state.with_value(d, result)
-    )
+    after = _written(state, i, a, b, result)
     return State(after.values, _flags(state, i, a, b, result, carry), after.origins)
+
+
+def _written(state: State, i: Instruction, a: Word, b: Word, result: Word) -> State:
+    """The state with the result in the register that the instruction writes, if it writes one."""
+    d, (source, derive) = written_register(i), _derivation(i, a, b)
+    if d < 0:
+        return state
+    return state.with_derived(d, source, derive, result) if source >= 0 else state.with_value(d, result)
 
 
 def _copied(relation: Relation) -> Relation:
@@ -202,14 +202,7 @@ def _subtracted(state: State, i: Instruction, a: Word, b: Word) -> State:
     if i.op == "rsbs":
         a, b, a_at, b_at = words.constant(0), operand(state, i.m, i), NOWHERE, i.m
     result = words.subtract(a, b) if a_at != b_at else words.constant(0)
-    source, derive = _derivation(i, a, b)
-    after = (
-        state
-        if d < 0
-        else state.with_derived(d, source, derive, result)
-        if source >= 0
-        else state.with_value(d, result)
-    )
+    after = _written(state, i, a, b, result)
     carry = 1 if a.lowest >= b.highest else 0 if a.highest < b.lowest else None
     b_at = b_at if b_at != d and b_at < SP else NOWHERE
     return State(after.values, Flags("subtract", a, b, result, *_family(state, a_at, d), b_at, d, carry), after.origins)

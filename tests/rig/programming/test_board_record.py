@@ -162,6 +162,12 @@ def test_the_emulated_chip_raises_the_interrupts_of_the_record() -> None:
     assert {name: raised[name] for name in STM32G071.interrupts} == STM32G071.interrupts
 
 
+def test_the_emulated_chip_says_what_its_boot_loader_says_it_is() -> None:
+    text = (EMULATOR / "peripherals" / "rcc.c").read_text(encoding="utf-8")
+    (identity,) = re.findall(r"#define DEVICE_ID (0x\w+)u", text)
+    assert int(identity, 16) & 0xFFF == STM32G071.boot_loader_id
+
+
 def test_the_pages_say_what_the_record_says() -> None:
     board = STM32G071
     pairs = {
