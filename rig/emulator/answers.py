@@ -109,6 +109,12 @@ class StoppedError(RuntimeError):
         self.stop = stop
 
 
+def no_symbol(where: str, name: str) -> BadInput:
+    """What is wrong with a name that the image has not."""
+    expected, remedy = "a symbol of the image", "build the image with its symbol table"
+    return BadInput("symbol", where, f"no `{name}`", expected, remedy)
+
+
 def no_memory(address: int, size: int) -> BadInput:
     """What is wrong with an access outside flash and SRAM."""
     return BadInput(

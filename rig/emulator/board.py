@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.errors import BadInput
 from rig.emulator.answers import (
     BoardConfig,
     CallResult,
@@ -19,6 +18,7 @@ from rig.emulator.answers import (
     Reset,
     StoppedError,
     no_memory,
+    no_symbol,
 )
 from rig.emulator.calls import Caller
 from rig.emulator.coverage import LineCounts, lines_executed
@@ -54,6 +54,7 @@ class EmulatedBoard:
         machine = self._lib.emulator_create(self.image.flash, len(self.image.flash), list(config.unique_id))
         self._finalizer = weakref.finalize(self, self._lib.emulator_destroy, machine)
         self._machine = machine
+        self._calls = Caller((self._ffi, self._lib), machine, config.chip)
         limit = self.image.symbols.get("_stack_limit") if config.check_stack_limit else None
         self._lib.emulator_configure(
             machine,
@@ -260,13 +261,7 @@ class EmulatedBoard:
         """(address, size) of a name in the image; raises BadInput when it has none such."""
         found = self.image.symbols.get(name)
         if found is None:
-            raise BadInput(
-                "symbol",
-                self.image.where,
-                f"no `{name}`",
-                "a symbol of the image",
-                "build the image with its symbol table",
-            )
+            raise no_symbol(self.image.where, name)
         return found.address, found.size
 
     def read_memory(self, address: int, size: int) -> bytes:
@@ -296,11 +291,8 @@ class EmulatedBoard:
         return (self.image.ram_end + 7) & ~7
 
     def call(self, name: str, *arguments: int, max_cycles: int = 64_000_000) -> CallResult:
-        """Run one function to its return with interrupts off and peripherals halted (AAPCS: up to 4 words in r0-r3).
-
-        Raises StoppedError when it faults or has not returned after `max_cycles`.
-        """
-        kind, result = self._caller.call(self.symbol(name)[0], arguments, max_cycles)
+        """Run one function, up to 4 words in r0-r3, with interrupts off and peripherals halted; raises StoppedError if it does not return."""
+        kind, result = self._calls.call(self.symbol(name)[0], arguments, max_cycles)
         self._demand_return(kind)
         return result
 
@@ -313,18 +305,11 @@ class EmulatedBoard:
         steps: int,
         max_cycles: int = 64_000_000,
     ) -> CallsResult:
-        """Call a function `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched.
-
-        Raises StoppedError at the first step that does not return.
-        """
+        """The same `steps` times: before each, row k of every input goes to its address; after it, outputs are fetched."""
         address = self.symbol(name)[0]
-        kind, result = self._caller.call_many(address, arguments, inputs, outputs, steps, max_cycles)
+        kind, result = self._calls.call_many(address, arguments, inputs, outputs, steps, max_cycles)
         self._demand_return(kind if steps else StopKind.RETURNED)
         return result
-
-    @property
-    def _caller(self) -> Caller:
-        return Caller((self._ffi, self._lib), self._machine, self.config.chip)
 
     def _demand_return(self, kind: int) -> None:
         if kind != StopKind.RETURNED:
