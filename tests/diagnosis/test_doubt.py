@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis import decisions
 from diagnosis.decide.contradiction import contradiction
-from diagnosis.decide.doubt import UNNAMED, Doubt, contradicting
+from diagnosis.decide.doubt import Doubt, contradicting
 from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
@@ -74,6 +75,6 @@ def test_a_doubt_leaves_next_to_nothing_for_names_and_all_probabilities_sum_to_o
     weighed = Weighed((), (0.7, 0.2), unknown=0.04, retune=0.06, scale=4.0)
     assert Doubt((), (), forbids=False).applied(weighed) is weighed
     doubted = Doubt((), (), forbids=True).applied(weighed)
-    assert doubted.unknown == UNNAMED
+    assert doubted.unknown == decisions.UNNAMED
     assert sum(doubted.probabilities) + doubted.unknown + doubted.retune == pytest.approx(1.0)
     assert doubted.probabilities[0] == pytest.approx(0.7 * 0.05 / 0.96)

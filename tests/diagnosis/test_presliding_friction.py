@@ -115,7 +115,7 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request
     plain, _ = request.getfixturevalue(flown)
     taken = replace(plain, stated=GIVE, stated_sd={name: {"z_0": 0.0} for name in GIVE})
     found = nominal_fit(taken)
-    assert needed(plain, FittedHypothesis((), found, evidence(found))) is (flown == "giving")
+    assert needed(plain, FittedHypothesis((), found, evidence(found, taken.library.effects))) is (flown == "giving")
 
 
 def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypothesis]) -> None:
