@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import FilterInput, filter_input_of
+from diagnosis.hypothesis.held_axes import with_held
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.library.effect_library import EffectLibrary
 from records.log import RunLog
@@ -123,7 +124,7 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
 
 def _flight(library: EffectLibrary, log: RunLog, used: NDArray[np.bool_] | None) -> FilteredLog:
     filter_input = filter_input_of(log, library.bound.plant, library.outputs, used)
-    x0, p0 = start_of(library, filter_input, log.locked)
+    filter_input, x0, p0 = with_held(library, filter_input, *start_of(library, filter_input, log.locked), log.locked)
     return FilteredLog(log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
 
 
