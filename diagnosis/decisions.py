@@ -123,7 +123,15 @@ PLAIN_TO_SEE = Limit(
     "exp(-x) without a gap",
     DEVELOPMENT_21,
 )
-ALLOWED_GAIN = Limit(10.0, "nats", "friction and stops a little other than the model's may gain so much", DEVELOPMENT)
+SURE_GAP = Limit(
+    1e-6, "probability", "a gap of a smaller chance stands whatever explains it, and whatever a hold-out says"
+)
+ALLOWED_GAIN = Limit(
+    10.0,
+    "nats",
+    "friction a little other than the model's may gain so much; nothing may where the model has none",
+    DEVELOPMENT,
+)
 TOLERATED_MOVE = Limit(
     1.0,
     "standard deviations",
@@ -302,13 +310,6 @@ UNKNOWN = Limit(1.7, "scales", "log odds against an unknown effect where exactly
 FARTHEST_GAIN = Limit(3e4, "nats", "a larger gain only says that the nominal plant had lost its way", DEVELOPMENT)
 RETUNE_COST = Limit(10.0, "nats", "of parameters beyond their spread beside effects")
 UNNAMED = Limit(0.95, "probability", "of an unknown effect where what would be named is refuted")
-CONFIDENCE_CAP = Limit(
-    0.91,
-    "probability",
-    "no name is surer: of 445 first answers that stated 0.8 and more 0.91 came true, as a further effect too "
-    "small to see is always possible",
-    "900 cases of seeds 900008, 900010 and 900011",
-)
 FREE_SPREAD = Limit(3.0, "standard deviations", "a parameter within costs no more than its prior", DEVELOPMENT)
 NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
 MOST_FORMS = Count(4, "forms", "of one class")
@@ -318,63 +319,13 @@ SAME_PLACE = Limit(
 OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
 
 # What other logs say (decide)
-LITTLE_LEFT = Limit(
-    0.1,
-    "share of the gap's evidence",
-    "the hold-out overrules an unknown effect where no more is left beside the best name: real rigs always "
-    "leave a little",
-    "real rigs; development cases of the sealed generator, seeds 21 and 22",
-)
-NEARLY_ALL_GONE = Limit(
-    0.85,
-    "share of the removable error",
-    "and so much is gone there",
-    "real rigs; development cases of the sealed generator, seeds 21 and 22",
-)
-PARTLY_GONE = Limit(
-    0.6,
-    "share of the removable error",
-    "a name whose upper 97.5 % lies below leaves something missing",
-    "seed 25; what seeds 900008 and 900009 had shown",
-)
-FAR_ABOVE_FLOOR = Limit(
-    2.5,
-    "floors",
-    "where some output's error is still so far above what the sensor leaves",
-    "seed 25; what seeds 900008 and 900009 had shown",
-)
-IDLE = Limit(
-    0.25,
-    "share of the removable error",
-    "a name whose upper 97.5 % lies below may be a way of the training logs alone",
-    "seed 900014; seed 51 of the second rig",
-)
-HARDLY = Limit(
-    0.01,
-    "share of the removable error",
-    "where its lower 2.5 % lies below this",
-    "seed 900014; seed 51 of the second rig",
-)
-NOT_BORNE_OUT = Limit(
-    0.6,
-    "probability",
-    "of an unknown effect then: three of eleven such cases were outside the library, eight had effects that a "
-    "re-tune hides; with less, rigs without any effect were a gap",
-    "eleven spent cases",
-)
-HELPS = Limit(
-    0.995,
-    "ratio of mean squares",
-    "an effect or a re-tune is added only where the hold-out's error falls by half a percent",
-)
+SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
+NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")
 CONTRADICTION = Limit(
     150.0,
     "nats",
     "logs of one rig were seen to gain up to 85 by numbers of their own, logs of two rigs 250 to 1200",
     "ten development cases; seed 900001",
-)
-CONTRADICTION_SHARE = Limit(
-    0.15, "share of the gap", "where logs contradict each other by more, no single cause is named", DEVELOPMENT
 )
 KNOWS_NOTHING = Limit(
     0.9,
@@ -384,9 +335,6 @@ KNOWS_NOTHING = Limit(
 )
 ANOTHER_PLANT = Limit(
     8.0, "standard deviations", "a parameter so far off beside every effect is another plant's", "logs of other rigs"
-)
-REFUTED = Limit(
-    1.4, "ratio of mean squares", "a name with which the hold-out's error is so much larger is refuted", DEVELOPMENT
 )
 MOVES_FLOORS = Limit(5.0, "floors", "windows in which an output moves less do not count")
 WIRING_S = Limit(20.0, "s", "of each log: time")

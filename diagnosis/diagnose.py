@@ -10,10 +10,11 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
+from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, helpful, holdout_of, likeliest, named, overruled, partly, worse
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Weighed, weigh
+from diagnosis.decide.weighing import Weighed, likeliest, named, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
@@ -156,31 +157,33 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     """Weigh what was found, and check it on the hold-out."""
     retuned = seen.retuned
     seen = seen.because(*found.decisions)
-    found, left, weighed, rules = _with_gusts(seen, found, beyond)
+    found, weighed, rules = _with_gusts(seen, found, beyond)
     seen = seen.because(*rules, *weighed.decisions)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
-    notes = material.notes
+    weighed, rules = _favoured(holdout, weighed)
+    doubts = doubt(seen.case, found, weighed, material.names)
+    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes)
+    chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
+    seen = seen.because(*rules, *doubts.decisions, *named_rules)
     if holdout is not None:
-        weighed, rules = overruled(holdout, weighed, retuned, left)
-        weighed, told, further = partly(holdout, weighed, left)
-        seen = seen.because(*rules, *further)
-    else:
-        told = ()
-    doubts = doubt(seen.case, found, weighed, material.names, 0.0 if holdout is None else worse(holdout, weighed))
-    weighed, notes = doubts.applied(weighed), (*notes, *doubts.notes, *told)
-    chosen, rules = likeliest(weighed, retuned, beyond)
-    seen = seen.because(*doubts.decisions, *rules)
-    if holdout is not None:
-        chosen, rules = helpful(holdout, chosen)
+        chosen, rules = added(holdout, chosen)
         seen = seen.because(*rules)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 
 
-def _with_gusts(
-    seen: Seen, found: Search, beyond: Retune | None
-) -> tuple[Search, float, Weighed, tuple[Decision, ...]]:
+def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
+    """What was weighed, with what the hold-out says of it, as probabilities."""
+    if holdout is None or not weighed.fitted:
+        return calibrated(weighed, None)
+    weighed, preferences = preferred(holdout, weighed)
+    told, rules = asked(holdout, weighed.fitted[0])
+    weighed, law = calibrated(weighed, favour(told))
+    return weighed, (*preferences, *rules, *law)
+
+
+def _with_gusts(seen: Seen, found: Search, beyond: Retune | None) -> tuple[Search, Weighed, tuple[Decision, ...]]:
     """What was found, weighed; with gusts where nothing else explains the logs well and they do."""
-    left, weighed = _weighed(seen, found, beyond)
+    weighed = _weighed(seen, found, beyond)
     likely = max(weighed.retune, *weighed.probabilities, 0.0)
     explained = likely >= decisions.WELL_EXPLAINED
     rules = [
@@ -200,8 +203,8 @@ def _with_gusts(
         rules += [_gust_rule(entry, seen.retuned.evidence, enough) for entry in asked]
         if further:
             found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
-            left, weighed = _weighed(seen, found, beyond)
-    return found, left, weighed, tuple(rules)
+            weighed = _weighed(seen, found, beyond)
+    return found, weighed, tuple(rules)
 
 
 def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decision:
@@ -210,14 +213,14 @@ def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decisio
     return held_against("gust_explains", of, gust.evidence - nominal, enough - nominal, "nats", outcome)
 
 
-def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
-    """What forms still gain beside the best that was found, and the probabilities; all that swings beside noise is a form of its own."""
+def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> Weighed:
+    """The probabilities, by what forms still gain beside the best that was found; all that swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
     own = [library.effects[name] for name in best.effects if not library.effects[name].is_noise]
     left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
-    return left, weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
+    return weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
 
 
 def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tuple[Seen, Holdout | None]:
@@ -249,13 +252,14 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:
-    """Whether a gap stands: a small one does not whose explanations do not hold, be it on the hold-out. Its chance stays what it is."""
-    small = seen.detection.largest <= decisions.PLAIN_TO_SEE
-    stands = not (small and weighed.nameless)
+    """Whether a gap stands: a small one that is not sure does not whose explanations do not hold, be it on the hold-out. Its chance stays
+    what it is."""
+    unsure = seen.detection.largest <= decisions.PLAIN_TO_SEE and seen.detection.p > decisions.SURE_GAP
+    stands = not (unsure and weighed.nameless)
     named = max(weighed.retune, *weighed.probabilities, 0.0)
     outcome = "no gap: nothing that was found holds" if not stands else "stands"
     rule = held_against("borne_out", "what explains it", named, weighed.unknown, "probability", outcome)
-    return (seen.because(rule) if small else seen), stands
+    return (seen.because(rule) if unsure else seen), stands
 
 
 __all__ = ["Material", "diagnose"]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
+from diagnosis.fit.evidence import evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import passes
@@ -52,6 +53,12 @@ def parted_gain(case: Case, found: Fit) -> float:
     """Nats that the logs gain if each is fitted by itself: what first order promises of limits and steps is often not there."""
     apart = [fit(case.with_flights([flight]), found.hypothesis, rounds=6) for flight in case.flights]
     return sum(entry.log_posterior if entry else -np.inf for entry in apart) - found.log_posterior
+
+
+def parted_evidence(case: Case, found: Fit) -> float:
+    """Log evidence of as many plants as there are logs, each within what is stated and none with what the others lack."""
+    apart = [fit(case.with_flights([flight]), found.hypothesis, rounds=6) for flight in case.flights]
+    return sum(evidence(entry, case.library.effects) if entry else -np.inf for entry in apart)
 
 
 def _own_numbers(runs: Sequence[Pass], index: int, scale: Array, before: Array, names: Sequence[str]) -> Contradiction:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis import decisions
-from diagnosis.decide.contradiction import Contradiction, contradiction, parted_gain
+from diagnosis.decide.contradiction import Contradiction, contradiction, parted_evidence, parted_gain
 from diagnosis.decide.weighing import Weighed
-from diagnosis.decisions import decided
+from diagnosis.decisions import decided, held_against
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
@@ -45,14 +45,12 @@ class _Objection:
     forbids: bool = False
 
 
-def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str], worse: float) -> Doubt:
-    """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs, `worse` how many times
-    as large the hold-out's mean square error is with what would be named."""
+def doubt(case: Case, found: Search, weighed: Weighed, names: Sequence[str]) -> Doubt:
+    """What speaks against the best hypothesis that the weighing does not know; `names` are those of the logs."""
     best = found.fitted[0]
     objections = (
-        *_contradicted(case, best, best.evidence - found.nominal.evidence, names),
+        *_contradicted(case, best, found.nominal, names),
         *_unknowing(case, best),
-        *_refuted(case, weighed, worse),
         _of_another_plant(best, weighed),
     )
     notes = tuple(entry.note for entry in objections if entry.note is not None)
@@ -77,21 +75,36 @@ def contradicting(
     return ((_contradiction(apart, names),) if told else ()), (decision,)
 
 
-def _contradicted(case: Case, best: FittedHypothesis, gain: float, names: Sequence[str]) -> Iterator[_Objection]:
-    """Logs that one plant in one state did not make; where that is much of the gap, they forbid a name."""
+def _contradicted(
+    case: Case, best: FittedHypothesis, nominal: FittedHypothesis, names: Sequence[str]
+) -> Iterator[_Objection]:
+    """Logs that want numbers of their own: told where they gain much by them, and a name is forbidden only where logs of as many plants
+    without any effect are likelier than one plant with what was found."""
     apart = contradiction(case, best.fit)
     if apart is None:
         return
-    if apart.gain > max(decisions.CONTRADICTION, decisions.CONTRADICTION_SHARE * gain):
+    if apart.gain > decisions.CONTRADICTION:
         apart = replace(apart, gain=min(apart.gain, parted_gain(case, best.fit)))
     told = apart.gain > decisions.CONTRADICTION
-    forbids = told and apart.gain > decisions.CONTRADICTION_SHARE * gain
-    outcome = FORBIDS if forbids else TELLS if told else UNCHANGED
     yield _Objection(
-        decided("contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, outcome),
+        decided("contradiction", _log(apart, names), apart.gain, decisions.CONTRADICTION, TELLS if told else UNCHANGED),
         _contradiction(apart, names) if told else None,
-        forbids,
     )
+    if told:
+        plants = parted_evidence(case, nominal.fit)
+        forbids = plants > best.evidence
+        yield _Objection(
+            held_against(
+                "as_many_plants",
+                _log(apart, names),
+                plants - nominal.evidence,
+                best.evidence - nominal.evidence,
+                "nats",
+                FORBIDS if forbids else UNCHANGED,
+            ),
+            None,
+            forbids,
+        )
 
 
 def _unknowing(case: Case, best: FittedHypothesis) -> Iterator[_Objection]:
@@ -104,20 +117,6 @@ def _unknowing(case: Case, best: FittedHypothesis) -> Iterator[_Objection]:
         yield _Objection(
             decided("knows_nothing", least, errors[least], decisions.KNOWS_NOTHING, outcome),
             Note("knows_nothing", "plant", errors) if forbids else None,
-            forbids,
-        )
-
-
-def _refuted(case: Case, weighed: Weighed, worse: float) -> Iterator[_Objection]:
-    """A name with which the hold-out is predicted far worse; events, which are others in each log, are not asked."""
-    if worse > 0.0:
-        names = weighed.fitted[0].effects
-        forbids = worse > decisions.REFUTED and not any(case.library.effects[name].is_event for name in names)
-        of = " + ".join(names)
-        outcome = FORBIDS if forbids else UNCHANGED
-        yield _Objection(
-            decided("refuted", of, worse, decisions.REFUTED, outcome),
-            Note("refuted", of, {"mean_square_ratio": worse}) if forbids else None,
             forbids,
         )
 

@@ -1,26 +1,30 @@
-"""What logs that were not fitted say: whether a re-tune, an unknown effect and what is named hold there."""
+"""What logs that were not fitted say: how much better what was found predicts them, as one number with its standard error."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.prior import at_its_end
 from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.instants import happens
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import unfitted
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
-from diagnosis.search.retune import Retune
-from diagnosis.validate.prediction import WINDOW_S
-from diagnosis.validate.shrinkage import Predicted, error, predict_all, shrinkage
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.validate.prediction import predictions, windows
+from diagnosis.validate.score import Errors, Score, errors_of, score
+from diagnosis.validate.shrinkage import Predicted, predict_all, shrinkage
 from records.diagnosis import Shrinkage
 from records.reasons import Decision, Note
 from records.table import ControllerTable
-from sim.effect import Role
+
+NATS = "nats a reading"
+ASKED = 4  # hypotheses of which the logs are asked: time
+LEAST_ASKED = 0.02  # probability
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,25 +38,48 @@ class Holdout:
     base: FittedHypothesis
     notes: tuple[Note, ...] = ()
     decisions: tuple[Decision, ...] = ()
-    kept: dict[FittedHypothesis, tuple[Predicted, ...]] = field(default_factory=dict)
+    read: dict[Hypothesis, list[NDArray[np.float64]]] = field(default_factory=dict)
+    judged: dict[Hypothesis, Errors] = field(default_factory=dict)
 
     def predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
         """Predictions by the plant as stated, by `base`, and with what was `chosen`."""
-        if chosen not in self.kept:
-            self.kept[chosen] = self._predicted(chosen)
-        return self.kept[chosen]
+        own = self.foreseen(chosen.fit.hypothesis)
+        variants = {"nominal": self.stated, "before": self.base.fit.hypothesis, "after": own}
+        return predict_all(self.case, self.names, variants, self._read)
 
-    def _predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
-        stated = replace(
-            nominal_hypothesis(self.case, decisions.FIRST_PROCESS_NOISE),
-            process_noise=self.base.fit.hypothesis.process_noise,
-        )
-        variants = {"nominal": stated, "before": self.base.fit.hypothesis, "after": chosen.fit.hypothesis}
-        return predict_all(self.case, self.names, variants)
+    @cached_property
+    def stated(self) -> Hypothesis:
+        """The plant as stated, with the process noise of `base`."""
+        nominal = nominal_hypothesis(self.case, decisions.FIRST_PROCESS_NOISE)
+        return replace(nominal, process_noise=self.base.fit.hypothesis.process_noise)
+
+    def foreseen(self, hypothesis: Hypothesis) -> Hypothesis:
+        """What a hypothesis says of these logs: an event that happened in another log counts only where it predicts these better."""
+        effects = self.case.library.effects
+        kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
+        if len(kept) == len(hypothesis.effects):
+            return hypothesis
+        without = replace(hypothesis, effects=kept)
+        return hypothesis if score(self._errors(hypothesis), self._errors(without)).gain > 0.0 else without
+
+    def score(self, hypothesis: Hypothesis, other: Hypothesis | None = None) -> Score:
+        """By how much a hypothesis predicts these logs better than another, by default than `base`."""
+        base = self.base.fit.hypothesis if other is None else other
+        return score(self._errors(self.foreseen(hypothesis)), self._errors(base))
 
     def shrinkage(self, predicted: Sequence[Predicted]) -> Shrinkage:
         """How far the gap shrinks in these predictions."""
         return shrinkage(self.case, predicted, self.tables)
+
+    def _read(self, hypothesis: Hypothesis) -> list[NDArray[np.float64]]:
+        if hypothesis not in self.read:
+            self.read[hypothesis] = [predictions(self.case, flight, hypothesis) for flight in self.case.flights]
+        return self.read[hypothesis]
+
+    def _errors(self, hypothesis: Hypothesis) -> Errors:
+        if hypothesis not in self.judged:
+            self.judged[hypothesis] = errors_of(self.case, hypothesis, self._read)
+        return self.judged[hypothesis]
 
 
 def holdout_of(
@@ -64,180 +91,77 @@ def holdout_of(
 ) -> Holdout:
     """The logs of `case` with what judges them; `retuned` is the plant as the `training` logs have it."""
     trial = Holdout(case, names, tables, retuned)
-    predicted = trial.predicted(retuned)
-    stated, before = (error(case, predicted, variant) for variant in ("nominal", "before"))
-    better = 0.0 < stated < decisions.HELPS * before  # a plant that predicts no row has no error
-    ratio = stated / before if before > 0.0 else float("nan")
-    told = decided("as_stated", "plant", ratio, decisions.HELPS, "as stated" if better else "re-tuned")
+    told = trial.score(trial.stated)
+    better = told.gain > decisions.SURELY * told.sd
+    rule = held_against(
+        "as_stated", "plant", told.gain, decisions.SURELY * told.sd, NATS, "as stated" if better else "re-tuned"
+    )
     found = unfitted(training, retuned.fit.hypothesis.process_noise) if better else None
     if found is None:
-        return replace(trial, decisions=(told,))
-    notes = (Note("stated_predicts_better", "plant", {"worse": float(np.sqrt(before / stated)) - 1.0}),)
-    return Holdout(
-        case, names, tables, FittedHypothesis((), found, evidence(found, training.library.effects)), notes, (told,)
+        return replace(trial, decisions=(rule,))
+    notes = (Note("stated_predicts_better", "plant", {"worse": float(np.expm1(told.gain / _outputs(case)))}),)
+    base = FittedHypothesis((), found, evidence(found, training.library.effects))
+    return Holdout(case, names, tables, base, notes, (rule,), trial.read, trial.judged)
+
+
+def _outputs(case: Case) -> int:
+    """How many outputs the score is a sum over."""
+    return max(
+        1, int(np.any([np.isfinite(flight.filter_input.y).any(axis=0) for flight in case.flights], axis=0).sum())
     )
 
 
-def overruled(
-    holdout: Holdout, weighed: Weighed, stated: FittedHypothesis, left: float
-) -> tuple[Weighed, tuple[Decision, ...]]:
-    """What the hold-out says of an unknown effect: real rigs always leave a little that no form explains, beside what was found.
-
-    What has a size at the end of its range is not asked: it may predict well, and is not what it is called.
-    """
-    if not weighed.fitted or weighed.unknown < weighed.probabilities[0]:
+def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
+    """The names in the order of what both the training logs and these say: what one predicts better counts in nats for each second, as
+    readings within one share their errors, on the scale on which the hypotheses are compared."""
+    chosen = [index for index, p in enumerate(weighed.probabilities[:ASKED]) if p >= LEAST_ASKED]
+    if len(chosen) < 2:
         return weighed, ()
-    first, of = weighed.fitted[0], named(weighed)
-    enough = decisions.LITTLE_LEFT * (first.evidence - stated.evidence)
-    little = left <= enough and not any(at_its_end(name, first) for name in first.effects)
-    asked = held_against("little_left", of, left, enough, "nats", "hold-out asked" if little else "unknown stays")
-    if not little:
-        return weighed, (asked,)
-    gone = holdout.shrinkage(holdout.predicted(first)).fraction
-    nearly = gone is not None and gone >= decisions.NEARLY_ALL_GONE
-    share = float("nan") if gone is None else gone
-    told = decided("nearly_all_gone", of, share, decisions.NEARLY_ALL_GONE, "unknown overruled" if nearly else "stays")
-    weighed = weighed.with_unknown(min(1.0 - gone, weighed.unknown)) if gone is not None and nearly else weighed
-    return weighed, (asked, told)
-
-
-def partly(holdout: Holdout, weighed: Weighed, left: float) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What is named and surely leaves most of the hold-out's error, far above what the sensors leave: as much of it is unknown; or
-    hardly takes any of it, maybe none: NOT_BORNE_OUT. `left` are the nats that forms still gain beside it. Where parameters alone are
-    likelier no name is asked."""
-    if weighed.nameless or not weighed.fitted or weighed.retune > weighed.probabilities[0]:
-        return weighed, (), ()
-    first, of = weighed.fitted[0], named(weighed)
-    told = holdout.shrinkage(holdout.predicted(first))
-    leaves, far = _leaves_most(holdout, first, told, left)
-    hardly, idle = _idle(holdout, first, told)
-    asked = (*leaves, *hardly)
-    if told.fraction is None or not (far or idle):
-        return weighed, (), asked
-    gone, most = max(told.fraction, 0.0), 0.0 if told.fraction_ci95 is None else max(told.fraction_ci95[1], 0.0)
-    note = Note("something_else_missing", of, {"gone": gone, "gone_at_most": most})
-    unknown = min(1.0 - gone, decisions.UNNAMED) if far else decisions.NOT_BORNE_OUT
-    return weighed.with_unknown(max(unknown, weighed.unknown)), (note,), asked
-
-
-def _idle(holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage) -> tuple[tuple[Decision, ...], bool]:
-    """Whether a hypothesis surely takes less than IDLE of the error away, and not surely HARDLY: a way of the training logs alone.
-
-    Events, each of which is another one in each log, and the steps of a sensor, which make no prediction better, are not asked.
-    """
-    effects = holdout.case.library.effects
-    if any(effects[name].shown_in_readings or _is_event(holdout.case, fitted, name) for name in fitted.effects):
-        return (), False
-    if told.fraction_ci95 is None:
-        return (), False
-    low, high = told.fraction_ci95
-    idle = low <= decisions.HARDLY and high < decisions.IDLE
-    of = " + ".join(fitted.effects)
-    outcome = "unknown gains" if idle else "stays"
-    return (
-        decided("hold_out_gone_at_least", of, low, decisions.HARDLY, outcome),
-        decided("hold_out_gone_at_most", of, high, decisions.IDLE, outcome),
-    ), idle
-
-
-def _leaves_most(
-    holdout: Holdout, fitted: FittedHypothesis, told: Shrinkage, left: float
-) -> tuple[tuple[Decision, ...], bool]:
-    """Whether a hypothesis surely leaves most of the error, far above what the sensors leave.
-
-    Where forms see next to nothing beside it, process noise as it takes it to be may be all that is left. Events are not asked, nor
-    what happens at random: lost frames, gusts.
-    """
-    effects = holdout.case.library.effects
-    if any(effects[name].is_random or _is_event(holdout.case, fitted, name) for name in fitted.effects):
-        return (), False
-    floor = _floor(holdout.case, fitted, told)
-    floor = floor if left > decisions.LEFT_NATS else _with_process_noise(holdout.case, fitted, floor)
-    far = max((told.rms_after[name] / max(floor[name], 1e-300) for name in told.rms_after), default=0.0)
-    above, of = far >= decisions.FAR_ABOVE_FLOOR, " + ".join(fitted.effects)
-    if told.fraction_ci95 is None:
-        return (
-            decided("floors_left", of, far, decisions.FAR_ABOVE_FLOOR, "unknown gains" if above else "stays"),
-        ), above
-    most = told.fraction_ci95[1]
-    leaves = above and most <= decisions.PARTLY_GONE
-    outcome = "unknown gains" if leaves else "stays"
-    return (
-        decided("floors_left", of, far, decisions.FAR_ABOVE_FLOOR, outcome),
-        decided("partly_gone", of, most, decisions.PARTLY_GONE, outcome),
-    ), leaves
-
-
-def _floor(case: Case, fitted: FittedHypothesis, told: Shrinkage) -> dict[str, float]:
-    """What the sensors leave of each output's error (RMS, in its unit), with the steps of those that a hypothesis takes to be coarse."""
-    effects, sensors = case.library.effects, case.library.bound.model.places.sensors
-    coarse = {
-        sensors[effects[name].place].output: values[effects[name].symbol(Role.STEP)]
-        for name, values in fitted.fit.hypothesis.effects.items()
-        if effects[name].shown_in_readings
-    }
-    return {name: float(np.hypot(rms, coarse.get(name, 0.0) / np.sqrt(12.0))) for name, rms in told.rms_floor.items()}
-
-
-def _with_process_noise(case: Case, fitted: FittedHypothesis, floor: Mapping[str, float]) -> dict[str, float]:
-    """The floor with what the hypothesis' process noise q makes of a free axis within a predicted second: its
-    variance grows with q t^3 / 3."""
-    model, process_noise = case.library.bound.model, fitted.fit.hypothesis.process_noise.tolist()
-    moved = {
-        str(axis.position): 10.0**own * np.sqrt(WINDOW_S**3 / 12.0)
-        for axis, own in zip(model.axes, process_noise, strict=True)
-    }
-    return {name: float(np.hypot(rms, moved.get(str(model.outputs[name]), 0.0))) for name, rms in floor.items()}
-
-
-def _is_event(case: Case, fitted: FittedHypothesis, name: str) -> bool:
-    """Whether an effect happens at an instant that is another one in each log: not where it was before all logs."""
-    return happens(case.library.effects[name], fitted.fit.hypothesis.effects[name])
-
-
-def worse(holdout: Holdout, weighed: Weighed) -> float:
-    """How many times as large the hold-out's mean square error is with what is named as without; 0 for no name, and for the steps of a
-    sensor alone: the hold-out's own readings show those, and no prediction gets better by them."""
-    if not weighed.fitted or weighed.probabilities[0] < weighed.unknown:
-        return 0.0
-    if all(holdout.case.library.effects[name].shown_in_readings for name in weighed.fitted[0].effects):
-        return 0.0
-    predicted = holdout.predicted(weighed.fitted[0])
-    return error(holdout.case, predicted, "after") / _without(holdout, predicted)
-
-
-def helpful(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
-    """What is to be added if it lowers the hold-out's error, else the plant without it."""
-    predicted = holdout.predicted(first)
-    after, without = error(holdout.case, predicted, "after"), _without(holdout, predicted)
-    helps = after < decisions.HELPS * without
-    ratio = after / without if without > 0.0 else float("inf")
-    outcome = "added" if helps else "nothing added"
-    of = " + ".join(first.effects) or "parameters"
-    return first if helps else holdout.base, (decided("helps", of, ratio, decisions.HELPS, outcome),)
-
-
-def likeliest(
-    weighed: Weighed, stated: FittedHypothesis, beyond: Retune | None
-) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
-    """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`."""
-    known, rival = sum(weighed.probabilities), max(weighed.unknown, weighed.retune)
-    if weighed.fitted and known > rival:
-        return weighed.fitted[0], (
-            held_against("named_over_unknown", named(weighed), known, rival, "probability", "named"),
+    told = [holdout.score(weighed.fitted[index].fit.hypothesis) for index in chosen]
+    seconds = sum(len(windows(flight.log.t_s)) for flight in holdout.case.flights)
+    factors = np.ones(len(weighed.fitted))
+    factors[chosen] = np.exp(
+        seconds / weighed.scale * np.clip([entry.gain - told[0].gain for entry in told], -50.0, 50.0)
+    )
+    rules = tuple(
+        held_against(
+            "hold_out_prefers",
+            " + ".join(weighed.fitted[index].effects),
+            entry.gain,
+            told[0].gain,
+            NATS,
+            "likelier" if entry.gain > told[0].gain else "less likely",
         )
-    retuned = beyond is not None and weighed.retune > weighed.unknown
-    outcome = "parameters" if retuned else "unknown"
-    told = held_against("named_over_unknown", named(weighed), known, rival, "probability", outcome)
-    return beyond.fitted if beyond is not None and retuned else stated, (told,)
+        for index, entry in zip(chosen[1:], told[1:], strict=True)
+    )
+    return weighed.with_names(factors), rules
 
 
-def named(weighed: Weighed) -> str:
-    """The effects of the most probable hypothesis; "nothing" where none was fitted."""
-    return " + ".join(weighed.fitted[0].effects) if weighed.fitted else "nothing"
+def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Decision, ...]]:
+    """What the logs say of a hypothesis, and its records."""
+    told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
+    outcome = "surely better" if told.gain > decisions.SURELY * told.sd else "not surely better"
+    return told, (
+        held_against("hold_out_gain", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),
+        decided(
+            "hold_out_favour", of, favour(told), decisions.NO_FAVOUR, "for it" if favour(told) > 0.0 else "against it"
+        ),
+    )
 
 
-def _without(holdout: Holdout, predicted: Sequence[Predicted]) -> float:
-    """The hold-out's error without an effect, as stated or re-tuned, whichever is less; a plant that predicts no row does not count."""
-    errors = [error(holdout.case, predicted, variant) for variant in ("nominal", "before")]
-    return min((value for value in errors if value > 0.0), default=float("inf"))
+def favour(told: Score) -> float:
+    """What speaks for a hypothesis less what it leaves: (gain - left) / (|gain| + left + SURELY sd), 0 where the logs are silent."""
+    left = max(told.misfit, 0.0)
+    whole = abs(told.gain) + left + decisions.SURELY * told.sd
+    return (told.gain - left) / whole if 0.0 < whole < float("inf") else 0.0
+
+
+def added(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
+    """What is to be added unless the hold-out is surely predicted worse by it; else the plant without it."""
+    told = holdout.score(first.fit.hypothesis)
+    worse = told.gain < -decisions.SURELY * told.sd
+    of = " + ".join(first.effects) or "parameters"
+    rule = held_against(
+        "added", of, told.gain, -decisions.SURELY * told.sd, NATS, "nothing added" if worse else "added"
+    )
+    return (holdout.base if worse else first), (rule,)

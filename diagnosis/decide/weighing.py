@@ -34,6 +34,17 @@ class Weighed:
         """Whether nothing that has a name is as probable as an unknown effect."""
         return self.unknown > max(self.retune, *self.probabilities, 0.0)
 
+    def with_names(self, factors: Array) -> "Weighed":
+        """The same with the probability of each name times its factor (names,), all names together as probable as before."""
+        shares = np.array(self.probabilities) * factors
+        shares *= sum(self.probabilities) / shares.sum()
+        order = np.argsort(-shares, kind="stable").tolist()
+        return replace(
+            self,
+            fitted=tuple(self.fitted[index] for index in order),
+            probabilities=tuple(float(shares[index]) for index in order),
+        )
+
     def with_unknown(self, share: float) -> "Weighed":
         """The same with an unknown effect of probability `share`, all else in its old proportions; itself where nothing else is left."""
         known = sum(self.probabilities) + self.retune
@@ -82,7 +93,6 @@ def weigh(
     other = -np.inf if retune is None else (retune - decisions.RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
-    weights = capped(weights)
     order = np.argsort(-weights[:-2], kind="stable")[:RANKED]
     of = " + ".join(first.effects)
     rules = (
@@ -117,17 +127,6 @@ def _read_off(
     return next((entry for entry in named if set(entry.effects) == exact), nominal)
 
 
-def capped(weights: Array) -> Array:
-    """The weights, the unknown's last, a share of what is named kept back for it, and as large a share of it for what is named."""
-    known, unknown = float(weights[:-1].sum()), float(weights[-1])
-    if known <= 0.0:
-        return weights
-    return np.append(
-        weights[:-1] * (decisions.CONFIDENCE_CAP + (1.0 - decisions.CONFIDENCE_CAP) * unknown / known),
-        decisions.CONFIDENCE_CAP * unknown + (1.0 - decisions.CONFIDENCE_CAP) * known,
-    )
-
-
 def _nameless(nominal: FittedHypothesis, left: float, retune: float | None) -> Weighed:
     """Where no effect was worth a fit: other parameters alone, or what no candidate explains."""
     if retune is None:
@@ -154,3 +153,23 @@ def alike(weighed: Weighed, first: FittedHypothesis) -> list[FittedHypothesis]:
         and abs(entry.evidence - first.evidence) < 3.0 * weighed.scale
     ]
     return sorted(near, key=lambda entry: abs(entry.evidence - first.evidence))[:6]
+
+
+def likeliest(
+    weighed: Weighed, stated: FittedHypothesis, beyond: FittedHypothesis | None
+) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
+    """The most probable hypothesis or re-tune if it beats an unknown effect, else the plant as `stated`."""
+    known, rival = sum(weighed.probabilities), max(weighed.unknown, weighed.retune)
+    if weighed.fitted and known > rival:
+        return weighed.fitted[0], (
+            held_against("named_over_unknown", named(weighed), known, rival, "probability", "named"),
+        )
+    retuned = beyond is not None and weighed.retune > weighed.unknown
+    outcome = "parameters" if retuned else "unknown"
+    told = held_against("named_over_unknown", named(weighed), known, rival, "probability", outcome)
+    return beyond if beyond is not None and retuned else stated, (told,)
+
+
+def named(weighed: Weighed) -> str:
+    """The effects of the most probable hypothesis; "nothing" where none was fitted."""
+    return " + ".join(weighed.fitted[0].effects) if weighed.fitted else "nothing"

@@ -1,6 +1,6 @@
 """How far the gap shrinks on logs that were not fitted: errors of 1 s predictions, as stated, re-tuned and with the effects found."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.agreement import agreements
 from diagnosis.validate.closed_loop import MODEL_VARIANTS, closed_loop
-from diagnosis.validate.prediction import predictions, windows
+from diagnosis.validate.prediction import windows
 from records.diagnosis import Shrinkage
 from records.table import ControllerTable
 
@@ -32,17 +32,17 @@ class Predicted:
     variants: Mapping[str, Hypothesis]
 
 
-def predict_all(case: Case, names: Sequence[str], variants: Mapping[str, Hypothesis]) -> tuple[Predicted, ...]:
-    """Predictions of every flight of `case` by each model in `variants`."""
+def predict_all(
+    case: Case,
+    names: Sequence[str],
+    variants: Mapping[str, Hypothesis],
+    read: Callable[[Hypothesis], Sequence[Array]],
+) -> tuple[Predicted, ...]:
+    """Predictions of every flight of `case` by each model in `variants`; `read` gives those of one, (rows, outputs) by flight."""
+    found = {variant: read(hypothesis) for variant, hypothesis in variants.items()}
     return tuple(
-        Predicted(
-            name,
-            flight.log.t_s,
-            flight.log.y,
-            {variant: predictions(case, flight, hypothesis) for variant, hypothesis in variants.items()},
-            variants,
-        )
-        for name, flight in zip(names, case.flights, strict=True)
+        Predicted(name, flight.log.t_s, flight.log.y, {variant: y[place] for variant, y in found.items()}, variants)
+        for place, (name, flight) in enumerate(zip(names, case.flights, strict=True))
     )
 
 
