@@ -31,7 +31,7 @@ from diagnosis.search.gusts import gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
-from records.reasons import Decision
+from records.reasons import Decision, Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
@@ -84,7 +84,7 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
     library.prepare()
     split = len(material.logs)
     case = make_case(library, material.logs, material.used[:split], bound)
-    checked = make_case(library, material.holdout, material.used[split:], bound) if material.holdout else None
+    checked = make_case(library, material.holdout, material.used[split:], bound, split) if material.holdout else None
     return _detected(case, checked)
 
 
@@ -160,25 +160,26 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     found, weighed, rules = _with_gusts(seen, found, beyond)
     seen = seen.because(*rules, *weighed.decisions)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
-    weighed, rules = _favoured(holdout, weighed)
+    weighed, told, rules = _favoured(holdout, weighed)
     doubts = doubt(seen.case, found, weighed, material.names)
-    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes)
+    weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
     chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
     seen = seen.because(*rules, *doubts.decisions, *named_rules)
     if holdout is not None:
-        chosen, rules = added(holdout, chosen)
-        seen = seen.because(*rules)
+        chosen, told, rules = added(holdout, chosen)
+        seen, notes = seen.because(*rules), (*notes, *told)
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 
 
-def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
+def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
     """What was weighed, with what the hold-out says of it, as probabilities."""
     if holdout is None or not weighed.fitted:
-        return calibrated(weighed, None)
+        weighed, law = calibrated(weighed, None)
+        return weighed, (), law
     weighed, preferences = preferred(holdout, weighed)
-    told, rules = asked(holdout, weighed.fitted[0])
+    told, notes, rules = asked(holdout, weighed.fitted[0])
     weighed, law = calibrated(weighed, favour(told))
-    return weighed, (*preferences, *rules, *law)
+    return weighed, notes, (*preferences, *rules, *law)
 
 
 def _with_gusts(seen: Seen, found: Search, beyond: Retune | None) -> tuple[Search, Weighed, tuple[Decision, ...]]:

@@ -35,7 +35,7 @@ def contradiction(case: Case, found: Fit) -> Contradiction | None:
     if len(case.flights) < 2:
         return None
     compiled = case.library.compiled(found.hypothesis.effects)
-    inside = [entry for entry in found.free if entry.effect in compiled.names]
+    inside = [entry for entry in found.free if entry.effect in compiled.names and entry.log is None]
     places = [compiled.place(entry.effect, entry.parameter.symbol) for entry in inside]
     runs = passes(case, found.hypothesis, [*case.free.tolist(), *places])
     if runs is None:

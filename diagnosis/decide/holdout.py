@@ -137,14 +137,26 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
     return weighed.with_names(factors), rules
 
 
-def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Decision, ...]]:
-    """What the logs say of a hypothesis, and its records."""
+def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
+    """What the logs say of a hypothesis, what is to be told of that, and its records."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
     outcome = "surely better" if told.gain > decisions.SURELY * told.sd else "not surely better"
-    return told, (
-        held_against("hold_out_gain", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),
-        decided(
-            "hold_out_favour", of, favour(told), decisions.NO_FAVOUR, "for it" if favour(told) > 0.0 else "against it"
+    notes: tuple[Note, ...] = ()
+    if told.gain > decisions.SURELY * told.sd and favour(told) < decisions.NO_FAVOUR:
+        shares = {"gain_nats": told.gain / _outputs(holdout.case), "left_nats": told.misfit / _outputs(holdout.case)}
+        notes = (Note("something_else_missing", of, shares),)
+    return (
+        told,
+        notes,
+        (
+            held_against("hold_out_gain", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),
+            decided(
+                "hold_out_favour",
+                of,
+                favour(told),
+                decisions.NO_FAVOUR,
+                "for it" if favour(told) > 0.0 else "against it",
+            ),
         ),
     )
 
@@ -156,12 +168,12 @@ def favour(told: Score) -> float:
     return (told.gain - left) / whole if 0.0 < whole < float("inf") else 0.0
 
 
-def added(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Decision, ...]]:
-    """What is to be added unless the hold-out is surely predicted worse by it; else the plant without it."""
-    told = holdout.score(first.fit.hypothesis)
-    worse = told.gain < -decisions.SURELY * told.sd
-    of = " + ".join(first.effects) or "parameters"
-    rule = held_against(
-        "added", of, told.gain, -decisions.SURELY * told.sd, NATS, "nothing added" if worse else "added"
-    )
-    return (holdout.base if worse else first), (rule,)
+def added(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
+    """What is to be added unless the hold-out is surely predicted worse by it; else the plant without it, as is told then."""
+    told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
+    least = -decisions.SURELY * told.sd
+    worse = told.gain < least
+    rule = held_against("added", of, told.gain, least, NATS, "nothing added" if worse else "added")
+    if not worse:
+        return first, (), (rule,)
+    return holdout.base, (Note("predicts_worse", of, {"worse_nats": -told.gain / _outputs(holdout.case)}),), (rule,)

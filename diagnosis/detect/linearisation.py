@@ -169,6 +169,8 @@ def linearised(case: Case, fit: Fit) -> Linearisation:
         slopes=slopes,
         solve=np.asarray(np.linalg.inv(slopes.T @ slopes + case.known), float),
         runs=tuple(runs),
-        filter_inputs=tuple(filter_input_under(case, compiled, flight, hypothesis.effects) for flight in case.flights),
+        filter_inputs=tuple(
+            filter_input_under(case, compiled, flight, hypothesis.over(flight).effects) for flight in case.flights
+        ),
         filter=compiled.filter,
     )

@@ -70,7 +70,8 @@ def _correlation(case: Case, fit: Fit) -> Correlation | None:
 def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
     """Each effect's parameters with one standard deviation."""
     spread = deviations(fit)[len(fit.hypothesis.theta) :]
-    sd = {(e.effect, e.parameter.symbol): s * e.scale for e, s in zip(fit.free, spread, strict=True)}
+    free = zip(fit.free[::-1], spread[::-1], strict=True)  # of what each log has for itself the first log's stay
+    sd = {(entry.effect, entry.parameter.symbol): s * entry.scale for entry, s in free}
     for name in fit.hypothesis.effects:
         beside = _beside_slopes(case, fit, case.library.effects[name])
         sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}

@@ -10,8 +10,9 @@ from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import size_scale
 from diagnosis.fit.moved import moved_effects, moved_parameters
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import coefficients
+from diagnosis.hypothesis.hypothesis import ELSEWHERE, coefficients
 from records.reasons import Note
+from sim.effect import Role
 
 
 def notes_of(
@@ -21,6 +22,7 @@ def notes_of(
     return (
         *_presliding(case, chosen),
         *_moved(case, chosen),
+        *_own_events(case, chosen),
         *_twins(case, weighed),
         *_imitated(score_tests, chosen),
         *_unseen(case, score_tests, chosen),
@@ -58,6 +60,19 @@ def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
             "stated": stated,
         }
         yield Note("moved_effect", entry.effect, of_effect)
+
+
+def _own_events(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
+    """When and how large each log shows what happens at an instant of its own."""
+    for name, own in chosen.fit.hypothesis.own.items():
+        effect = case.library.effects[name]
+        instant, size = effect.symbol(Role.INSTANT), effect.size
+        logs = {
+            f"log {log + 1}": {"instant_s": values[instant], "size": values[size.symbol], "unit": size.unit}
+            for log, values in own.items()
+            if log != ELSEWHERE and values[size.symbol] != size.zero
+        }
+        yield Note("own_events", name, {"symbol": size.symbol, "logs": logs})
 
 
 def _twins(case: Case, weighed: Weighed | None) -> Iterator[Note]:

@@ -104,9 +104,9 @@ def _knows_nothing(note: Note) -> str:
     )
 
 
-def _refuted(note: Note) -> str:
-    times = float(np.sqrt(note.numbers["mean_square_ratio"]))
-    return f"the hold-out refutes {note.subject}: with it, predictions are {times:.2f} times as far off as without"
+def _predicts_worse(note: Note) -> str:
+    times = float(np.exp(note.numbers["worse_nats"]))
+    return f"with {note.subject} the hold-out is predicted {times:.2f} times as far off as without, so the model stays without it"
 
 
 def _another_plant(note: Note) -> str:
@@ -117,8 +117,20 @@ def _another_plant(note: Note) -> str:
 
 
 def _something_else_missing(note: Note) -> str:
-    gone, most = 100.0 * note.numbers["gone"], 100.0 * note.numbers["gone_at_most"]
-    return f"{note.subject} takes {gone:.0f} % of the hold-out's error away, {most:.0f} % at most: something else is missing"
+    better, left = float(np.exp(note.numbers["gain_nats"])), float(np.exp(note.numbers["left_nats"]))
+    return (
+        f"{note.subject} makes predictions of the hold-out {better:.2g} times as good, yet they stay {left:.2g} times as far off as "
+        "the sensors and the noise would leave them: something else is missing"
+    )
+
+
+def _own_events(note: Note) -> str:
+    symbol = note.numbers["symbol"]
+    told = (
+        f"{log} at {own['instant_s']:.4g} s with {symbol} = {own['size']:.3g} {own['unit']}"
+        for log, own in note.numbers["logs"].items()
+    )
+    return f"{note.subject} happens at another instant in each log: {'; '.join(told)}"
 
 
 def _stated_predicts_better(note: Note) -> str:
@@ -140,7 +152,8 @@ _SENTENCES: Mapping[str, Callable[[Note], str]] = {
     "unfollowed": _unfollowed,
     "contradiction": _contradiction,
     "knows_nothing": _knows_nothing,
-    "refuted": _refuted,
+    "predicts_worse": _predicts_worse,
+    "own_events": _own_events,
     "another_plant": _another_plant,
     "something_else_missing": _something_else_missing,
     "stated_predicts_better": _stated_predicts_better,

@@ -1,6 +1,6 @@
 """Maximum a posteriori fit of what is supposed: Gauss-Newton with Levenberg's damping on the whitened innovations."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.filter.kalman import Pass
-from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
+from diagnosis.hypothesis.case import Case, FilteredLog
+from diagnosis.hypothesis.hypothesis import ELSEWHERE, SHORTEST_LAG_S, Hypothesis, nominal_hypothesis, passes
+from diagnosis.library.effect_library import CompiledFilter
 from diagnosis.library.input_effects import share_slopes
-from sim.effect import EffectParameter, Role
+from sim.effect import EffectParameter, Role, Values
 
 Array = NDArray[np.float64]
 LEAST_STEP_GAIN = 0.1  # gain of the log posterior below which a fit has ended
@@ -25,13 +26,42 @@ OUT_OF_REACH = 1e3  # references
 class Free:
     """One free number of an effect: its effect, its parameter, and the unit in which the fit counts it.
 
-    `stated` is its value in the plant file, known to one `scale`; None where the file does not state the effect.
+    `stated` is its value in the plant file, known to one `scale`; None where the file does not state the effect. `log` is the number of
+    the log whose own it is, None where it is that of all.
     """
 
     effect: str
     parameter: EffectParameter
     scale: float
     stated: float | None = None
+    log: int | None = None
+
+    def of(self, hypothesis: Hypothesis) -> float:
+        """Its value in a hypothesis."""
+        return hypothesis.value(self.effect, self.parameter.symbol, self.log)
+
+
+class _Columns:
+    """Which columns of a pass are the slopes by which of the fitted numbers: theta first, then those of `free` that the equations hold.
+
+    `places` are the pass' columns as places in p; a number that each log has for itself takes the same column in all of them.
+    """
+
+    def __init__(self, case: Case, compiled: CompiledFilter, free: Sequence[Free]) -> None:
+        self._count, self._free = len(case.free), free
+        inside = [(row, entry) for row, entry in enumerate(free, self._count) if entry.effect in compiled.names]
+        own = {row: compiled.place(entry.effect, entry.parameter.symbol) for row, entry in inside}
+        further = list(dict.fromkeys(own.values()))
+        self.places: list[int] = [*case.free.tolist(), *further]
+        self.rows = np.array([*range(self._count), *own], dtype=int)
+        self._column = {row: self._count + further.index(place) for row, place in own.items()}
+
+    def of(self, log: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The numbers that a log tells of, and the column of each in its pass."""
+        rows = [
+            row for row in self.rows.tolist() if row < self._count or self._free[row - self._count].log in (None, log)
+        ]
+        return np.array(rows, dtype=int), np.array([self._column.get(row, row) for row in rows], dtype=int)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +81,7 @@ class Fit:
 def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tuple[Free, ...]:
     """The numbers of the supposed effects that a fit may move: those of which its slopes tell."""
     found = []
-    for name, values in hypothesis.effects.items():
+    for name, log, values in _instances(case, hypothesis):
         effect = case.library.effects[name]
         for parameter in effect.parameters:
             if effect.shown_in_readings or effect.is_noise or parameter.role is Role.JITTER:
@@ -60,10 +90,23 @@ def free_numbers(case: Case, hypothesis: Hypothesis, shapes: bool = True) -> tup
                 stated, sd = (given[name][parameter.symbol] for given in (case.stated, case.stated_sd))
                 found += [Free(name, parameter, sd, stated)] if sd > 0.0 else []
             elif from_zero(parameter):
-                found.append(Free(name, parameter, size_scale(parameter)))
+                found.append(Free(name, parameter, size_scale(parameter), log=log))
             elif shapes:
-                found.append(Free(name, parameter, 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))))
+                scale = 0.2 * max(abs(values[parameter.symbol]), shape_unit(parameter))
+                found.append(Free(name, parameter, scale, log=log))
     return tuple(found)
+
+
+def _instances(case: Case, hypothesis: Hypothesis) -> Iterator[tuple[str, int | None, Values]]:
+    """Each effect with its values, and those that are another in each log once for each log in which they happen."""
+    for name, values in hypothesis.effects.items():
+        if name not in hypothesis.own:
+            yield name, None, values
+            continue
+        size = case.library.effects[name].size
+        for log, own in hypothesis.own[name].items():
+            if log != ELSEWHERE and own[size.symbol] != size.zero:
+                yield name, log, own
 
 
 def from_zero(parameter: EffectParameter) -> bool:
@@ -102,9 +145,7 @@ def likelihood_of(case: Case, hypothesis: Hypothesis) -> float:
 def log_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float:
     """Of theta, standard normal, of numbers that the plant file states, likewise, and of sizes, wide."""
     sizes = [
-        (hypothesis.effects[entry.effect][entry.parameter.symbol] - (entry.parameter.zero or 0.0))
-        / entry.scale
-        / decisions.SIZE_SD
+        (entry.of(hypothesis) - (entry.parameter.zero or 0.0)) / entry.scale / decisions.SIZE_SD
         for entry in free
         if from_zero(entry.parameter) and entry.stated is None
     ]
@@ -113,11 +154,7 @@ def log_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free]) -> float
 
 def away(hypothesis: Hypothesis, free: Sequence[Free]) -> Array:
     """How far all numbers that the plant file states are from there, in standard deviations: theta, then those of its effects."""
-    stated = [
-        (hypothesis.effects[entry.effect][entry.parameter.symbol] - entry.stated) / entry.scale
-        for entry in free
-        if entry.stated is not None
-    ]
+    stated = [(entry.of(hypothesis) - entry.stated) / entry.scale for entry in free if entry.stated is not None]
     return np.append(hypothesis.theta, stated)
 
 
@@ -158,20 +195,20 @@ def _moved(case: Case, at: Fit, damping: float) -> Hypothesis:
     theta = at.hypothesis.theta
     curvature = at.information + damping * np.diag(np.diag(at.information))
     step = -np.linalg.solve(curvature, at.pull)
-    effects = {name: dict(values) for name, values in at.hypothesis.effects.items()}
+    moved = replace(at.hypothesis, theta=theta + step[:count])
     for entry, change in zip(at.free, step[count:], strict=True):
-        symbol, parameter = entry.parameter.symbol, entry.parameter
-        value = effects[entry.effect][symbol] + float(np.clip(change, -30.0, 30.0)) * entry.scale
-        effects[entry.effect][symbol] = float(np.clip(value, parameter.lower, parameter.upper))
-    return replace(at.hypothesis, theta=theta + step[:count], effects=effects)
+        value = entry.of(moved) + float(np.clip(change, -30.0, 30.0)) * entry.scale
+        value = float(np.clip(value, entry.parameter.lower, entry.parameter.upper))
+        moved = moved.with_value(entry.effect, entry.parameter.symbol, value, entry.log)
+    return moved
 
 
 def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: float = -np.inf) -> Fit | None:
     """Likelihood and linear problem at a point; None where the filter or its slopes fail, or it is no likelier than `least`."""
     compiled = case.library.compiled(hypothesis.effects)
     inside = np.array([entry.effect in compiled.names for entry in free], dtype=bool)
-    places = [compiled.place(entry.effect, entry.parameter.symbol) for entry in free if entry.effect in compiled.names]
-    runs = passes(case, hypothesis, [*case.free.tolist(), *places], slopes=not inside.all())
+    columns = _Columns(case, compiled, free)
+    runs = passes(case, hypothesis, columns.places, slopes=not inside.all())
     if runs is None:
         return None
     found = likelihood(runs)
@@ -179,16 +216,17 @@ def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: f
     if not log_posterior > least:
         return None
     count = len(case.free)
-    own = np.concatenate([np.arange(count), count + np.flatnonzero(inside)])
     scale = np.concatenate([case.sd, [entry.scale for entry in free]])
     information, pull = np.zeros((len(scale), len(scale))), np.zeros(len(scale))
-    information[np.ix_(own, own)] = np.sum([run.gram for run in runs], axis=0)
-    pull[own] = np.sum([run.pull for run in runs], axis=0)
+    for flight, run in zip(case.flights, runs, strict=True):
+        rows, own = columns.of(flight.number)
+        information[np.ix_(rows, rows)] += run.gram[np.ix_(own, own)]
+        pull[rows] += run.pull[own]
     if not inside.all():
-        _add_differences(case, hypothesis, free, runs, own, information, pull)
+        _add_differences(case, hypothesis, free, runs, columns, information, pull)
     for row, entry in enumerate(free, count):
         late = case.library.effects[entry.effect].reads_late
-        if late and hypothesis.effects[entry.effect][entry.parameter.symbol] > SHORTEST_LAG_S:
+        if late and entry.of(hypothesis) > SHORTEST_LAG_S:
             pull[row], further = _smoothed(case, hypothesis, entry, float(information[row, row]))
             information[row, row] += further
     information *= np.outer(scale, scale)
@@ -214,7 +252,7 @@ def _add_prior(case: Case, hypothesis: Hypothesis, free: Sequence[Free], informa
     information[:count, :count] += case.known
     pull[:count] += case.pull_of(hypothesis.theta)
     for row, entry in enumerate(free, count):
-        value = hypothesis.effects[entry.effect][entry.parameter.symbol]
+        value = entry.of(hypothesis)
         if entry.stated is not None:
             information[row, row] += 1.0
             pull[row] += (value - entry.stated) / entry.scale
@@ -229,28 +267,37 @@ def _add_differences(
     hypothesis: Hypothesis,
     free: Sequence[Free],
     runs: Sequence[Pass],
-    own: NDArray[np.int64],
+    columns: "_Columns",
     information: Array,
     pull: Array,
 ) -> None:
     """Rows and columns of numbers that act on the way of a signal, by finite differences."""
-    w = stacked(runs)
-    slopes = np.concatenate([flat_slopes(run) for run in runs])
+    w, own = stacked(runs), columns.rows
+    slopes = np.concatenate([_own_slopes(columns, flight, run) for flight, run in zip(case.flights, runs, strict=True)])
     count = len(hypothesis.theta)
     outside = np.setdiff1d(np.arange(count, len(pull)), own)
     for row in [row for row in outside.tolist() if _is_loss(free[row - count]) and _knows_losses(case)]:
-        share = hypothesis.effects[free[row - count].effect][free[row - count].parameter.symbol]
+        share = free[row - count].of(hypothesis)
         slopes_by_share = [share_slopes(flight.filter_input, share) for flight in case.flights]
         pull[row] = -sum(slope for slope, _ in slopes_by_share)
         information[row, row] = -sum(bend for _, bend in slopes_by_share)
         outside = outside[outside != row]
     if not len(outside):
         return
-    columns = np.stack([_difference(case, hypothesis, free[row - count], w) for row in outside.tolist()], axis=1)
-    information[np.ix_(own, outside)] = slopes.T @ columns
+    changes = np.stack([_difference(case, hypothesis, free[row - count], w) for row in outside.tolist()], axis=1)
+    information[np.ix_(own, outside)] = slopes.T @ changes
     information[np.ix_(outside, own)] = information[np.ix_(own, outside)].T
-    information[np.ix_(outside, outside)] = columns.T @ columns
-    pull[outside] = columns.T @ w
+    information[np.ix_(outside, outside)] = changes.T @ changes
+    pull[outside] = changes.T @ w
+
+
+def _own_slopes(columns: "_Columns", flight: FilteredLog, run: Pass) -> Array:
+    """Slopes of all whitened innovations of a pass by the numbers of `columns.rows`, 0 by those of other logs."""
+    rows, own = columns.of(flight.number)
+    slopes = flat_slopes(run)
+    found = np.zeros((len(slopes), len(columns.rows)))
+    found[:, np.searchsorted(columns.rows, rows)] = slopes[:, own]
+    return found
 
 
 def _smoothed(case: Case, hypothesis: Hypothesis, entry: Free, known: float) -> tuple[float, float]:
@@ -260,7 +307,7 @@ def _smoothed(case: Case, hypothesis: Hypothesis, entry: Free, known: float) -> 
     Taken over a standard deviation to both sides, by the information `known` from those slopes: closer by, an axis that comes to rest
     a row earlier decides. Rows whose variance jumps for that have no slope. NaN where the filter fails on a side.
     """
-    lag_s = hypothesis.effects[entry.effect][entry.parameter.symbol]
+    lag_s = entry.of(hypothesis)
     reach = min(1.0 / np.sqrt(known), WIDEST * lag_s) if known > 0.0 else WIDEST * lag_s
     below, above = (passes(case, _with_number(hypothesis, entry, lag_s + side * reach)) for side in (-1.0, 1.0))
     if below is None or above is None:
@@ -287,7 +334,7 @@ def flat_slopes(run: Pass) -> Array:
 
 def _difference(case: Case, hypothesis: Hypothesis, entry: Free, w: Array) -> Array:
     """The slope by a number that acts on the way of a signal, from a small step away from its bound."""
-    value = hypothesis.effects[entry.effect][entry.parameter.symbol]
+    value = entry.of(hypothesis)
     step = NUDGE * entry.scale
     step = step if value + step <= entry.parameter.upper else -step
     runs = passes(case, _with_number(hypothesis, entry, value + step))
@@ -296,5 +343,4 @@ def _difference(case: Case, hypothesis: Hypothesis, entry: Free, w: Array) -> Ar
 
 def _with_number(hypothesis: Hypothesis, entry: Free, value: float) -> Hypothesis:
     """The same with another value of one number."""
-    values = {**hypothesis.effects[entry.effect], entry.parameter.symbol: value}
-    return hypothesis.with_effects({**hypothesis.effects, entry.effect: values})
+    return hypothesis.with_value(entry.effect, entry.parameter.symbol, value, entry.log)

@@ -23,9 +23,10 @@ LEAST_VARIANCE = 1e-6  # of any combination of the coefficients, in squares of t
 
 @dataclass(frozen=True, eq=False)
 class FilteredLog:
-    """One log as the filter takes it: filter input, start x0 and its variances p0 (states,), axes held; `drive`
+    """One log as the filter takes it: its number among all, filter input, start x0 and its variances p0 (states,), axes held; `drive`
     (states,) as in filter.Noise."""
 
+    number: int
     log: RunLog
     filter_input: FilterInput
     x0: Array
@@ -99,10 +100,14 @@ def make_case(
     logs: Sequence[RunLog],
     used: Sequence[NDArray[np.bool_] | None] | None = None,
     stated: BoundPlant | None = None,
+    first: int = 0,
 ) -> Case:
-    """The logs ready for the filter; rows not `used` count as not measured. `stated` is the plant whose effects are stated."""
+    """The logs ready for the filter; rows not `used` count as not measured. `stated` is the plant whose effects are stated, `first` the
+    number of the first log."""
     masks = used or [None] * len(logs)
-    flights = tuple(_flight(library, log, mask) for log, mask in zip(logs, masks, strict=True))
+    flights = tuple(
+        _flight(library, number, log, mask) for number, (log, mask) in enumerate(zip(logs, masks, strict=True), first)
+    )
     seen = np.any([np.isfinite(flight.filter_input.y).any(axis=0) for flight in flights], axis=0)
     slots = tuple(int(np.sum(seen[:place])) if seen[place] else -1 for place in range(len(seen)))
     entries = {} if stated is None else stated.effects
@@ -122,10 +127,10 @@ def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:
     return np.asarray(vectors * np.sqrt(np.maximum(values, LEAST_VARIANCE)))
 
 
-def _flight(library: EffectLibrary, log: RunLog, used: NDArray[np.bool_] | None) -> FilteredLog:
+def _flight(library: EffectLibrary, number: int, log: RunLog, used: NDArray[np.bool_] | None) -> FilteredLog:
     filter_input = filter_input_of(log, library.bound.plant, library.outputs, used)
     filter_input, x0, p0 = with_held(library, filter_input, *start_of(library, filter_input, log.locked), log.locked)
-    return FilteredLog(log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
+    return FilteredLog(number, log, _found_its_state(filter_input), x0, p0, log.locked, _drive(library, filter_input))
 
 
 def _drive(library: EffectLibrary, filter_input: FilterInput) -> Array:

@@ -1,7 +1,7 @@
 """What one supposes of a plant: its coefficients, effects with their parameters, and its process noise; and how the logs fit that."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -20,21 +20,51 @@ from sim.effect import Values
 Array = NDArray[np.float64]
 SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
 START_SD = 0.05  # of states that effects brought, in their own units
+ELSEWHERE = -1  # instead of a log's number: all logs that have no values of their own
 LEAST_PROCESS = 1e-12  # of the noise intensity of states that are none of an axis' speeds, times their square
 
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
-    `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second."""
+    `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second.
+
+    `own`: what happens at another instant and by another size in each log has values by the log's number, and by ELSEWHERE those of all
+    other logs; in `effects` it has those of the first in which it happens.
+    """
 
     theta: Array
     effects: Mapping[str, Values]
     process_noise: Array
+    own: Mapping[str, Mapping[int, Values]] = field(default_factory=dict)
 
     def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
         """The same with other effects."""
-        return replace(self, effects=effects)
+        own = {name: values for name, values in self.own.items() if effects.get(name) is self.effects.get(name)}
+        return replace(self, effects=effects, own=own)
+
+    def over(self, flight: FilteredLog) -> "Hypothesis":
+        """What it supposes of one log."""
+        if not self.own:
+            return self
+        here = {name: values.get(flight.number, values[ELSEWHERE]) for name, values in self.own.items()}
+        return replace(self, effects={**self.effects, **here}, own={})
+
+    def value(self, effect: str, symbol: str, log: int | None = None) -> float:
+        """A number of an effect, that of one log where it has its own."""
+        return (self.effects[effect] if log is None else self.own[effect][log])[symbol]
+
+    def with_value(self, effect: str, symbol: str, value: float, log: int | None = None) -> "Hypothesis":
+        """The same with another value of one number."""
+        if log is None:
+            return self.with_effects({**self.effects, effect: {**self.effects[effect], symbol: value}})
+        own = {**self.own[effect], log: {**self.own[effect][log], symbol: value}}
+        return self.with_own(effect, own)
+
+    def with_own(self, effect: str, own: Mapping[int, Values]) -> "Hypothesis":
+        """The same with values of an effect by log."""
+        first = own[min(log for log in own if log != ELSEWHERE)]
+        return replace(self, effects={**self.effects, effect: first}, own={**self.own, effect: own})
 
 
 def nominal_hypothesis(case: Case, process_noise: float) -> Hypothesis:
@@ -110,11 +140,12 @@ def passes(
 ) -> list[Pass] | None:
     """The filter over all flights; None where it left all bounds on one."""
     compiled = case.library.compiled(hypothesis.effects)
-    p = coefficients(case, compiled, hypothesis)
 
     def over(flight: FilteredLog) -> Pass | None:
-        filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
-        x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, hypothesis)
+        here = hypothesis.over(flight)
+        p = coefficients(case, compiled, here)
+        filter_input = filter_input_under(case, compiled, flight, here.effects)
+        x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
         run = compiled.filter.run(
             filter_input,
             p,

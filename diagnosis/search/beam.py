@@ -16,6 +16,7 @@ from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
+from diagnosis.search.own_events import with_own_events
 from jobs.thread_map import thread_map
 from records.reasons import Decision
 
@@ -173,6 +174,8 @@ def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
     for entry in thread_map(lambda fitted: refined(case, fitted), best[: decisions.SETTLED_FITS]):
         if entry is not None and entry.evidence > found[frozenset(entry.effects)].evidence:
             found[frozenset(entry.effects)] = entry
+    settled = [found[frozenset(entry.effects)] for entry in best[: decisions.SETTLED_FITS]]
+    keep_better(found, [with_own_events(case, entry) for entry in settled])
 
 
 def _certain(fitted: FittedHypothesis, found: Mapping[frozenset[str], FittedHypothesis]) -> bool:

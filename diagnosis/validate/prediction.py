@@ -38,7 +38,7 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
 
     NaN in rows of no span, and where the filter fails or cannot yet tell.
     """
-    library = case.library
+    library, hypothesis = case.library, hypothesis.over(flight)
     compiled = library.compiled(hypothesis.effects)
     filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
     unforeseen_input = filter_input_under(case, compiled, _unforeseen(flight), hypothesis.effects)

@@ -44,7 +44,8 @@ def fly(plant: BoundPlant) -> Fly:
     """fly(seed, effects): a run of 30 s about level under lively references, with turbulence and parameters of `seed`.
 
     With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
-    `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes.
+    `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes;
+    axes that are `locked` are held.
     """
     table = stated_table("ce150")
 
@@ -57,6 +58,7 @@ def fly(plant: BoundPlant) -> Fly:
         air: bool = True,
         jumps_rad: float = 0.0,
         gusts: float = 1.0,
+        locked: tuple[str, ...] = (),
     ) -> RunLog:
         rng = np.random.default_rng(seed)
         t_s = np.arange(0.0, seconds, 0.01)
@@ -81,9 +83,9 @@ def fly(plant: BoundPlant) -> Fly:
             p[names.index(name)] = factor * plant.p[names.index(name)]
         x0 = np.array([470.0, *(0.0, 0.0), 150.0, *(0.0, 0.0)])
         noise = Noise(seed, process_sd=[0.0, 0.0, 1e-3 * gusts, 0.0, 0.0, 1e-3 * gusts]) if air else None
-        run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy")
+        run = simulate(rig, t_s, x0, table, reference=reference, p=p, noise=noise, keep="uy", locked=locked)
         manoeuvre = _Flown(t_s, reference)
-        return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={})  # type: ignore[arg-type]
+        return replace(closed_loop_log(plant, manoeuvre, run.u, run.y, None), extra={}, locked=locked)  # type: ignore[arg-type]
 
     return flown
 

@@ -1,0 +1,47 @@
+"""Weights become probabilities by the learned law, all else keeps its proportions."""
+
+import numpy as np
+import pytest
+
+from diagnosis.decide.calibration import FARTHEST, FEATURES, Law, calibrated, features_of, learned
+from diagnosis.decide.weighing import Weighed
+from diagnosis.fit.evidence import FittedHypothesis
+from tests.diagnosis.arm import plain_linearisation
+
+
+def weighed(first: float, second: float, unknown: float) -> Weighed:
+    fit = plain_linearisation().fit
+    names = tuple(FittedHypothesis((name,), fit, 0.0) for name in ("a.one", "a.two"))
+    return Weighed(names, (first, second), unknown, 1.0 - first - second - unknown, 10.0)
+
+
+def test_the_first_gets_the_laws_probability_and_the_rest_share_what_is_left() -> None:
+    law = Law(-0.5, (1.0, 2.0, 0.0, 0.0))
+    found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, law)
+    truth = 1.0 / (1.0 + np.exp(0.5 - 0.0 - 0.5))  # logit(0.5) = 0
+    assert found.probabilities[0] == pytest.approx(truth)
+    assert found.unknown == pytest.approx((1.0 - truth) * 0.2 / 0.5)
+    assert sum(found.probabilities) + found.unknown + found.retune == pytest.approx(1.0)
+    told = {rule.rule: rule.value for rule in rules}
+    assert (told["calibration_favour"], told["calibration_silent"]) == (0.25, 0.0)
+
+
+def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
+    assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None).sure == FARTHEST
+    assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None).sure == -FARTHEST
+
+
+def test_without_a_name_nothing_is_asked() -> None:
+    nameless = Weighed((), (), 1.0, 0.0, 10.0)
+    assert calibrated(nameless, 0.5) == (nameless, ())
+
+
+def test_the_learned_law_is_surer_of_what_weighs_more_and_of_what_a_hold_out_favours() -> None:
+    law = learned()
+    assert len(law.coefficients) == len(FEATURES)
+
+    def p(sure: float, favour: float) -> float:
+        return law.probability(features_of(weighed(sure, 0.0, 1.0 - sure), favour))
+
+    assert p(0.9, 0.5) > p(0.4, 0.5)
+    assert p(0.7, 0.8) > p(0.7, -0.5)
