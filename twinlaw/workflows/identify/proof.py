@@ -22,5 +22,6 @@ def proven(result: Identification, truth: BoundPlant | None) -> tuple[list[Secti
     with console.stage("the real plant and the identified one"):
         if result.plant.model == "ce150_velagic":
             shown = responses(truth, bind(result.plant))
-            return [*sections, figure_section(shown)], pictures | figure_plots(shown)
+            plots = figure_plots(shown)
+            return [*sections, figure_section(shown, plots)], pictures | plots
         return [*sections, flight_section(compare_flights(bind(result.plant), truth))], pictures
