@@ -260,7 +260,7 @@ def test_an_empty_port_is_a_forgotten_one_and_means_no_other_way(verb: str, caps
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_a_full_disk_behind_standard_output_is_one_clear_line() -> None:
     with open("/dev/full", "w") as full:
-        command = [sys.executable, "-m", "twinlaw.command", "import", "quanser_aero"]
+        command = [sys.executable, "-m", "twinlaw.command", "doctor", "--json"]
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1

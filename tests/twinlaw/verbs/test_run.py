@@ -177,18 +177,24 @@ def test_measured_pitch_and_yaw_of_the_quanser_aero_replay_alike_on_twin_host_an
         assert rows[pair]["steps"] >= samples
 
 
-def test_an_unfinished_run_leaves_no_verdict_and_no_flight_of_an_earlier_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture(scope="module")
+def unfinished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a run leaves that was interrupted as soon as its table was written, where an earlier run had left its files."""
+    folder = tmp_path_factory.mktemp("unfinished")
     for name in ("verification.json", "run.csv", "run.toml", "report.html"):
-        (tmp_path / name).write_text("of an earlier run")
+        (folder / name).write_text("of an earlier run")
 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("twinlaw.verbs.run.generate_sources", interrupt)
-    assert main(["run", "--plant", str(PLANT), "--out", str(tmp_path)]) == 130
-    assert {path.name for path in tmp_path.iterdir()} == {"controller.json"}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("twinlaw.verbs.run.generate_sources", interrupt)
+        assert main(["run", "--plant", str(PLANT), "--out", str(folder)]) == 130
+    return folder
+
+
+def test_an_unfinished_run_leaves_no_verdict_and_no_flight_of_an_earlier_one(unfinished: Path) -> None:
+    assert {path.name for path in unfinished.iterdir()} == {"controller.json"}
 
 
 class _Page(HTMLParser):
@@ -215,8 +221,8 @@ def test_the_report_is_one_page_without_network_or_script(out: Path) -> None:
     assert load_table(out / "controller.json").digest in text
 
 
-def test_the_same_plant_gives_the_same_bytes_again(out: Path, tmp_path: Path) -> None:
-    assert main(["design", "--plant", str(PLANT), "--out", str(tmp_path)]) == 0
+def test_the_same_plant_gives_the_same_bytes_again(out: Path, unfinished: Path, tmp_path: Path) -> None:
+    shutil.copy(unfinished / "controller.json", tmp_path)
     assert main(["build", "--table", str(tmp_path / "controller.json"), "--out", str(tmp_path)]) == 0
     for name in (
         "controller.json",
