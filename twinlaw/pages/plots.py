@@ -3,7 +3,7 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import matplotlib as mpl
 import numpy as np
@@ -144,7 +144,7 @@ def svg(figure: Figure) -> str:
 
     Drawn once: `savefig` would draw the whole of it a first time only to lay it out, which drawing does itself.
     """
-    stream = io.StringIO()
-    FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
+    stream, canvas = io.StringIO(), cast(Any, FigureCanvasSVG(figure))
+    canvas.print_svg(stream, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()
     return text[text.index("<svg") :]

@@ -20,7 +20,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("compare")
     words = ["compare", "--plant", str(ROOT / "plants" / "ce150.toml"), "--out", str(out)]
     assert (
-        main([*words, "--controllers", "pid", "--runs", "2", "--effects", "azimuth.cable_spring", "--steps", "1000"])
+        main(
+            [
+                *words,
+                "--controllers",
+                "pid",
+                "--runs",
+                "2",
+                "--effects",
+                "azimuth.cable_spring",
+                "--steps",
+                "1000",
+                "--workers",
+                "1",
+            ]
+        )
         == 0
     )
     return out
