@@ -162,9 +162,11 @@ def test_a_plant_file_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.
     assert not (tmp_path / "out").exists()
 
 
-def test_an_output_folder_that_cannot_be_made_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_output_folder_that_cannot_be_made_is_named(
+    table_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "out").write_text("a file stands here")
-    arguments = ["design", "--plant", str(ROOT / "plants/ce150.toml"), "--out", str(tmp_path / "out")]
+    arguments = ["generate", "--table", str(table_path), "--out", str(tmp_path / "out")]
     _refused(arguments, ["out", "--out"], capsys)
     assert (tmp_path / "out").read_text() == "a file stands here"
 

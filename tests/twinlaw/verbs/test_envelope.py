@@ -19,6 +19,7 @@ from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
 from jobs.plain import plain
+from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
 from twinlaw.pages.envelope.report import envelope_page
 from twinlaw.pages.page import Page
@@ -88,11 +89,12 @@ class Answered:
 
 @pytest.fixture(scope="module")
 def answered(folder: Path, start: tuple[float, list[str]], tmp_path_factory) -> Answered:
-    """The verb on these flights with one worker and the start that is typed in."""
+    """The verb on these flights, all in this process, with the start that is typed in."""
     out, said = tmp_path_factory.mktemp("answered"), StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said):
         drawn_of = watched(patch, envelope_page)
-        assert main(["envelope", "--workers", "1", "--out", str(out), *start[1], str(folder)]) == 0
+        works_here(patch)
+        assert main(["envelope", "--out", str(out), *start[1], str(folder)]) == 0
     return Answered(out, said.getvalue(), drawn_of)
 
 

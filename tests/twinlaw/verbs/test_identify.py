@@ -13,6 +13,7 @@ from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
+from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 from twinlaw.workflows.identify import by_time
@@ -209,7 +210,8 @@ def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is
     assert set(plant.correlation.names) == {"J_A", "b_vA"}
 
 
-def test_repetitions_tell_how_often_the_truth_lies_inside(tmp_path, capsys):
+def test_repetitions_tell_how_often_the_truth_lies_inside(monkeypatch, tmp_path, capsys):
+    works_here(monkeypatch)
     plant = ["--plant", "plants/ce150_velagic.toml"]  # with four experiments, where the other has nine
     assert main(["experiments", *plant, "--seed", "7", "--repetitions", "1", "--out", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)

@@ -61,7 +61,9 @@ def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folde
     ):
         assert words in page
     for number in ("6", "12", "13", "14"):
-        assert (tmp_path / f"fig-{number}.svg").read_text().startswith("<svg")
+        picture = (tmp_path / f"fig-{number}.svg").read_text()
+        assert picture.startswith("<svg")
+        assert picture in page
     found = {entry["name"]: entry["value"] for entry in told["estimates"]}
     assert found["a_1"] == pytest.approx(0.1165, rel=2e-3)
     truth = bind(load_plant(folder / "truth.toml"))

@@ -15,7 +15,8 @@ from twinlaw.pages.page import Section
 
 def proven(result: Identification, truth: BoundPlant | None) -> tuple[list[Section], Mapping[str, str]]:
     """Sections of the report, and pictures (SVG text) by the number of the paper's figure."""
-    sections, evolution = search_sections(result.stages, truth), evolution_plot(result.stages)
+    evolution = evolution_plot(result.stages)
+    sections = search_sections(result.stages, truth, evolution)
     pictures = {"6": evolution} if evolution else {}
     if truth is None:
         return sections, pictures
