@@ -33,23 +33,29 @@ SECONDS = 12.0
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def flown() -> list[Flight]:
     """The flights that identify both ends and those between, and of all that validate two, as each is a picture more in the report."""
+    flights = fly(drawn(5), plan(ENDS, BETWEEN), 5, SECONDS)
+    return [flight for flight in flights if flight.use != "validation" or flight.name in (VALIDATION, OTHER)]
+
+
+@pytest.fixture(scope="module")
+def folder(flown: list[Flight], tmp_path_factory) -> Path:
+    """The same as files."""
     found = tmp_path_factory.mktemp("flights")
-    for flight in fly(drawn(5), plan(ENDS, BETWEEN), 5, SECONDS):
-        if flight.use != "validation" or flight.name in (VALIDATION, OTHER):
-            save_flight(found, flight)
+    for flight in flown:
+        save_flight(found, flight)
     return found
 
 
-def test_a_flight_reads_back_as_it_was_written(folder: Path) -> None:
+def test_a_flight_reads_back_as_it_was_written(flown: list[Flight], folder: Path) -> None:
     flights = load_flights(folder)
     assert len(flights) == 2 * 4 + 2 + 4
-    (truth,) = fly(drawn(5), plan(ENDS, BETWEEN)[:1], 5, SECONDS)
-    found = next(flight for flight in flights if flight.name == truth.name)
-    assert (found.condition, found.use, found.mission) == (truth.condition, truth.use, truth.mission)
-    for mine, true in ((found.u, truth.u), (found.x, truth.x), (found.y, truth.y)):
-        assert np.array_equal(mine, true)
+    for truth in flown:
+        (found,) = (flight for flight in flights if flight.name == truth.name)
+        assert (found.condition, found.use, found.mission) == (truth.condition, truth.use, truth.mission)
+        for mine, true in ((found.u, truth.u), (found.x, truth.x), (found.y, truth.y)):
+            assert np.array_equal(mine, true)
 
 
 def typed_in(path: Path, text: str) -> list[str]:
@@ -253,6 +259,7 @@ def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answe
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
 
     drawn_of = watched(monkeypatch, lambda *_: Page("not drawn", "", True, (), ()))
+    works_here(monkeypatch)  # what the two processes have done is kept, and the rest is little
     assert main(words) == 0
     assert (tmp_path / "envelope.json").read_bytes() == (answered.out / "envelope.json").read_bytes()
     assert plain(drawn_of) == plain(answered.drawn_of)
