@@ -3,11 +3,12 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -139,8 +140,11 @@ def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
 
 
 def svg(figure: Figure) -> str:
-    """The figure as SVG text without date or program."""
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    """The figure as SVG text without date or program.
+
+    Drawn once: `savefig` would draw the whole of it a first time only to lay it out, which drawing does itself.
+    """
+    stream, canvas = io.StringIO(), cast(Any, FigureCanvasSVG(figure))
+    canvas.print_svg(stream, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()
     return text[text.index("<svg") :]

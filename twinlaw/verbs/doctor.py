@@ -115,7 +115,11 @@ def _compiler() -> str | None:
 
         _, lib = load_shared(
             "int doctor_sum(int a, int b);",
-            build_shared("doctor", [CText("doctor.c", "int doctor_sum(int a, int b) { return a + b; }\n")], flags=()),
+            # With the flags of all other C here: without them zig checks for undefined behaviour, and compiles a runtime for it first.
+            build_shared(
+                "doctor",
+                [CText("doctor.c", "int doctor_sum(int a, int b);\nint doctor_sum(int a, int b) { return a + b; }\n")],
+            ),
         )
     except (BadInput, ImportError, OSError):
         return None

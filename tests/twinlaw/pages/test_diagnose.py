@@ -75,6 +75,10 @@ GAP = Diagnosis(
 )
 
 
+# What the tests of single words lay out: the same, of which nothing is drawn but the rig as blocks.
+WORDS = replace(GAP, shrinkage=None, when=(), regions=(), bands=())
+
+
 def predicted(rows: int = 3000) -> Predicted:
     t_s = 0.01 * np.arange(rows)
     wave = np.sin(t_s)
@@ -90,14 +94,19 @@ def predicted(rows: int = 3000) -> Predicted:
     )
 
 
-def text_of(diagnosis: Diagnosis, moved: tuple[Moved, ...] = (), widths: dict[str, float] | None = None) -> str:
+def text_of(
+    diagnosis: Diagnosis,
+    moved: tuple[Moved, ...] = (),
+    widths: dict[str, float] | None = None,
+    logs: tuple[Predicted, ...] = (),
+) -> str:
     places = bind(load_plant(ROOT / "plants" / "ce150.toml")).model.places
     page = diagnosis_page(
         "ce150",
         diagnosis,
         places,
         STORIES,
-        (predicted(),),
+        logs,
         ("a.csv", "b.csv"),
         moved=moved,
         widths=widths or {},
@@ -105,8 +114,14 @@ def text_of(diagnosis: Diagnosis, moved: tuple[Moved, ...] = (), widths: dict[st
     return re.sub(r"\s+", " ", page_text(page))
 
 
-def test_the_page_says_all_that_the_record_holds() -> None:
-    page = text_of(GAP)
+@pytest.fixture(scope="module")
+def whole_page() -> str:
+    """With every picture that the page can have."""
+    return text_of(GAP, logs=(predicted(),))
+
+
+def test_the_page_says_all_that_the_record_holds(whole_page: str) -> None:
+    page = whole_page
     told = (
         "81 % of the gap",
         "93.0 %",
@@ -127,8 +142,9 @@ def test_the_page_says_all_that_the_record_holds() -> None:
     assert [words for words in told if words not in page] == []
 
 
-def test_the_page_needs_no_network_and_no_script() -> None:
-    page = text_of(GAP)
+def test_the_page_needs_no_network_and_no_script(whole_page: str) -> None:
+    page = whole_page
+    assert page.count("<svg") == 4
     assert "<script" not in page
     assert re.findall(r"""(?:src|href)=["'](?!#)""", page.replace("xlink:href", "href")) == []
 
@@ -166,7 +182,7 @@ def test_an_empty_record_still_makes_a_page() -> None:
 
 
 def test_names_from_a_log_are_escaped() -> None:
-    assert "<b>" not in text_of(replace(GAP, note_records=(Note("missing_rows", "a", {}, "<b>bold</b>"),)))
+    assert "<b>" not in text_of(replace(WORDS, note_records=(Note("missing_rows", "a", {}, "<b>bold</b>"),)))
 
 
 def test_the_curves_show_where_the_stated_plant_errs_most() -> None:
@@ -263,7 +279,7 @@ def test_joint_effects_have_a_line_each_and_their_names_once() -> None:
             "azimuth.coulomb.b": Estimate(1e-4, 1e-5, "N m"),
         },
     )
-    told = replace(GAP, effects=(joint,), found=(), firmware=None)
+    told = replace(WORDS, effects=(joint,), found=(), firmware=None)
     page = text_of(told)
     assert page.count("azimuth.flexible_mode") == 1
     assert "<td>gain = 0.5 ± 0.1, zeta = 0.2 ± 0.1</td>" in page
@@ -280,7 +296,7 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
         0.9,
         {"d": Estimate(0.01, 0.001, "V"), "w": Estimate(6e-9, 60.0, "1"), "n": Estimate(19.0, 0.1, "rad rad^-1")},
     )
-    told, widths = replace(GAP, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
+    told, widths = replace(WORDS, effects=(dead,)), {"tail_input.deadzone.w": 3.0, "tail_input.deadzone.d": 0.4}
     assert "d = 0.01 ± 0.001 V, w not told by these data, n = 19 ± 0.1 per rad" in text_of(told, widths=widths)
     assert "d 0.01 ± 0.001 V, w not told by these data, n 19 ± 0.1 per rad" in summary_text(told, (), widths)
 
@@ -302,7 +318,7 @@ def test_a_number_that_may_be_any_between_its_bounds_is_not_printed() -> None:
     ],
 )
 def test_what_the_firmware_did_otherwise_is_said_before_the_plant(cause: str, first: float, said: str) -> None:
-    told = replace(GAP, firmware=Firmware(True, False, first, cause))
+    told = replace(WORDS, firmware=Firmware(True, False, first, cause))
     sentence = verdict_sentence(told)
     assert 0 <= sentence.index(said) < sentence.index("The rig has")
     assert said in summary_text(told).splitlines()[0]
@@ -310,17 +326,17 @@ def test_what_the_firmware_did_otherwise_is_said_before_the_plant(cause: str, fi
 
 
 def test_what_a_replay_says_of_the_log_alone_is_no_finding_of_the_firmware() -> None:
-    told = replace(GAP, firmware=Firmware(True, False, 1.0, "log_rounding: the log rounded its inputs"))
+    told = replace(WORDS, firmware=Firmware(True, False, 1.0, "log_rounding: the log rounded its inputs"))
     assert verdict_sentence(told).startswith("The rig has")
 
 
 def test_without_the_table_or_a_controller_it_is_said_that_nothing_was_run_again() -> None:
     lost = replace(
-        GAP, firmware=Firmware(False, False, None, "table_not_found: table ab, which the log names, is gone")
+        WORDS, firmware=Firmware(False, False, None, "table_not_found: table ab, which the log names, is gone")
     )
     for text in (text_of(lost), summary_text(lost)):
         assert "was not run again, so nothing is known of the firmware: table ab" in text
-    assert "no controller's code was run again" in text_of(replace(GAP, firmware=None)).replace("&#39;", "'")
+    assert "no controller's code was run again" in text_of(replace(WORDS, firmware=None)).replace("&#39;", "'")
 
 
 def test_where_nothing_was_found_no_share_of_the_error_is_told() -> None:
@@ -352,9 +368,9 @@ def test_an_answer_many_times_the_models_is_told_without_powers_of_ten() -> None
         ErrorResponse("psi_rad", "u_M_V", 1.0, 2.0, error, sd, 0.7, coherence)
         for error, sd, coherence in ((12.14, 2.1, 0.97), (0.04541, 0.0052, 0.9))
     )
-    told = summary_text(replace(GAP, error_responses=rows))
+    told = summary_text(replace(WORDS, error_responses=rows))
     assert "psi to u_M from 1 to 2 Hz differs by 1210 % ± 200 %, phase 40 deg (coherence 0.97)" in told
-    assert "4.54 % ± 0.5 %" in text_of(replace(GAP, error_responses=rows))
+    assert "4.54 % ± 0.5 %" in text_of(replace(WORDS, error_responses=rows))
 
 
 def test_bars_of_one_unit_have_one_scale_that_is_said_to_be_logarithmic() -> None:
@@ -373,7 +389,7 @@ RULES = (
 
 
 def test_why_an_answer_is_what_it_is_shows_every_rule_in_order_on_page_and_terminal() -> None:
-    traced = replace(GAP, decisions=RULES, verdict_reason="effect_added")
+    traced = replace(WORDS, decisions=RULES, verdict_reason="effect_added")
     page, told = text_of(traced), why_text(traced)
     assert page.index("Why this answer") < page.index("false alarm") < page.index("borne out")
     assert told.startswith("gap: effect_added\n")

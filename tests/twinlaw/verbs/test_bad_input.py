@@ -162,9 +162,11 @@ def test_a_plant_file_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.
     assert not (tmp_path / "out").exists()
 
 
-def test_an_output_folder_that_cannot_be_made_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_output_folder_that_cannot_be_made_is_named(
+    table_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "out").write_text("a file stands here")
-    arguments = ["design", "--plant", str(ROOT / "plants/ce150.toml"), "--out", str(tmp_path / "out")]
+    arguments = ["generate", "--table", str(table_path), "--out", str(tmp_path / "out")]
     _refused(arguments, ["out", "--out"], capsys)
     assert (tmp_path / "out").read_text() == "a file stands here"
 
@@ -260,7 +262,7 @@ def test_an_empty_port_is_a_forgotten_one_and_means_no_other_way(verb: str, caps
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_a_full_disk_behind_standard_output_is_one_clear_line() -> None:
     with open("/dev/full", "w") as full:
-        command = [sys.executable, "-m", "twinlaw.command", "import", "quanser_aero"]
+        command = [sys.executable, "-m", "twinlaw.command", "doctor", "--json"]
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=ROOT, check=False)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1

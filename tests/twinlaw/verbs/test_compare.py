@@ -10,6 +10,7 @@ from controllers.table import CONTROLLERS
 from sim.loop import fly
 from tests.controllers.rows import ce150, designed
 from tests.test_project import ROOT
+from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
 from verification.comparison.manoeuvres import FIGURES
 from verification.comparison.measures import merit
@@ -18,11 +19,10 @@ from verification.comparison.measures import merit
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("compare")
-    words = ["compare", "--plant", str(ROOT / "plants" / "ce150.toml"), "--out", str(out)]
-    assert (
-        main([*words, "--controllers", "pid", "--runs", "2", "--effects", "azimuth.cable_spring", "--steps", "1000"])
-        == 0
-    )
+    words = ["compare", "--plant", str(ROOT / "plants" / "ce150.toml"), "--out", str(out), "--controllers", "pid"]
+    with pytest.MonkeyPatch.context() as patch:
+        works_here(patch)
+        assert main([*words, "--runs", "2", "--effects", "azimuth.cable_spring", "--steps", "1000"]) == 0
     return out
 
 

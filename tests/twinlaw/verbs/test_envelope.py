@@ -1,10 +1,12 @@
 """`twinlaw envelope` on two conditions and one between: files back and forth, what is written, what is refused."""
 
 import json
-import sys
+from collections.abc import Callable
 from contextlib import redirect_stdout
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,50 +18,44 @@ from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
+from jobs.plain import plain
+from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
+from twinlaw.pages.envelope.report import envelope_page
+from twinlaw.pages.page import Page
+from twinlaw.verbs import envelope as verb
 
 ENDS, BETWEEN = (Condition("HF", 3000, 50), Condition("HF", 3000, 70)), (Condition("HF", 3000, 60),)
 
 
+VALIDATION, OTHER = "HF3000ft-50kts-level-lateral-3", "HF3000ft-50kts-level-longitudinal-1"
+SECONDS = 12.0
+
+
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def flown() -> list[Flight]:
+    """The flights that identify both ends and those between, and of all that validate two, as each is a picture more in the report."""
+    flights = fly(drawn(5), plan(ENDS, BETWEEN), 5, SECONDS)
+    return [flight for flight in flights if flight.use != "validation" or flight.name in (VALIDATION, OTHER)]
+
+
+@pytest.fixture(scope="module")
+def folder(flown: list[Flight], tmp_path_factory) -> Path:
+    """The same as files."""
     found = tmp_path_factory.mktemp("flights")
-    for flight in fly(drawn(5), plan(ENDS, BETWEEN), 5, 12.0):
+    for flight in flown:
         save_flight(found, flight)
     return found
 
 
-def test_a_flight_reads_back_as_it_was_written(folder: Path) -> None:
+def test_a_flight_reads_back_as_it_was_written(flown: list[Flight], folder: Path) -> None:
     flights = load_flights(folder)
-    assert len(flights) == 2 * 7 + 4
-    (truth,) = fly(drawn(5), plan(ENDS, BETWEEN)[:1], 5, 12.0)
-    found = next(flight for flight in flights if flight.name == truth.name)
-    assert (found.condition, found.use, found.mission) == (truth.condition, truth.use, truth.mission)
-    for mine, true in ((found.u, truth.u), (found.x, truth.x), (found.y, truth.y)):
-        assert np.array_equal(mine, true)
-
-
-@pytest.fixture(scope="module")
-def answered(folder: Path, tmp_path_factory) -> Path:
-    """What the verb leaves of these flights with one worker, and in said.txt what it says."""
-    out = tmp_path_factory.mktemp("answered")
-    with (out / "said.txt").open("w") as said, redirect_stdout(said):
-        assert main(["envelope", "--workers", "1", "--out", str(out), str(folder)]) == 0
-    return out
-
-
-def test_the_verb_identifies_interpolates_and_draws(answered: Path) -> None:
-    told = json.loads((answered / "envelope.json").read_text())
-    assert [entry["condition"] for entry in told["conditions"]] == [at.name for at in ENDS]
-    assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
-    assert told["summary"]["interpolation"]["flights"] == 4
-    page = (answered / "report.html").read_text()
-    for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
-        assert words in page
-    assert "HF3000ft-50kts, one step ahead" in (answered / "said.txt").read_text()
-
-
-VALIDATION = "HF3000ft-50kts-level-lateral-3"
+    assert len(flights) == 2 * 4 + 2 + 4
+    for truth in flown:
+        (found,) = (flight for flight in flights if flight.name == truth.name)
+        assert (found.condition, found.use, found.mission) == (truth.condition, truth.use, truth.mission)
+        for mine, true in ((found.u, truth.u), (found.x, truth.x), (found.y, truth.y)):
+            assert np.array_equal(mine, true)
 
 
 def typed_in(path: Path, text: str) -> list[str]:
@@ -67,26 +63,76 @@ def typed_in(path: Path, text: str) -> list[str]:
     return ["--starts", str(path)]
 
 
-def test_initial_states_typed_in_are_tried_beside_the_tuned_ones(folder: Path, tmp_path: Path, capsys) -> None:
-    """Truth: a start 0.9 of a margin off in bank leaves more points outside than any tuning; other flights start as measured."""
+@pytest.fixture(scope="module")
+def start(folder: Path, tmp_path_factory) -> tuple[float, list[str]]:
+    """The bank of one start that is typed in, 0.9 of a margin off what was measured, and the options that say so."""
     measured = float(load_flight(folder / f"{VALIDATION}.toml").x[0, STATES.index("phi_rad")])
     phi_rad = measured + 0.9 * MARGINS["level"]["phi_rad"]
-    given = typed_in(tmp_path / "starts.toml", f"[{VALIDATION}]\nphi_rad = {phi_rad!r}\n")
-    assert main(["envelope", "--out", str(tmp_path), *given, str(folder)]) == 0
+    path = tmp_path_factory.mktemp("start") / "starts.toml"
+    return phi_rad, typed_in(path, f"[{VALIDATION}]\nphi_rad = {phi_rad!r}\n")
+
+
+def watched(monkeypatch: pytest.MonkeyPatch, draw: Callable[..., Page]) -> list[tuple[Any, ...]]:
+    """What the report is drawn of from now on, by `draw`."""
+    seen: list[tuple[Any, ...]] = []
+
+    def drawing(*given: Any) -> Page:
+        seen.append(given)
+        return draw(*given)
+
+    monkeypatch.setattr(verb, "envelope_page", drawing)
+    return seen
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What the verb leaves in `out`, what it says, and what it drew the report of."""
+
+    out: Path
+    said: str
+    drawn_of: list[tuple[Any, ...]]
+
+
+@pytest.fixture(scope="module")
+def answered(folder: Path, start: tuple[float, list[str]], tmp_path_factory) -> Answered:
+    """The verb on these flights, all in this process, with the start that is typed in."""
+    out, said = tmp_path_factory.mktemp("answered"), StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(said):
+        drawn_of = watched(patch, envelope_page)
+        works_here(patch)
+        assert main(["envelope", "--out", str(out), *start[1], str(folder)]) == 0
+    return Answered(out, said.getvalue(), drawn_of)
+
+
+def test_the_verb_identifies_interpolates_and_draws(answered: Answered) -> None:
+    told = json.loads((answered.out / "envelope.json").read_text())
+    assert [entry["condition"] for entry in told["conditions"]] == [at.name for at in ENDS]
+    assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
+    assert told["summary"]["interpolation"]["flights"] == 4
+    page = (answered.out / "report.html").read_text()
+    for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
+        assert words in page
+    assert "HF3000ft-50kts, one step ahead" in answered.said
+
+
+def test_initial_states_typed_in_are_tried_beside_the_tuned_ones(
+    answered: Answered, start: tuple[float, list[str]]
+) -> None:
+    """Truth: a start 0.9 of a margin off in bank leaves more points outside than any tuning; other flights start as measured."""
+    phi_rad, _ = start
     checks = {
         check["name"]: check
-        for check in json.loads((tmp_path / "envelope.json").read_text())["conditions"][0]["checks"]
+        for check in json.loads((answered.out / "envelope.json").read_text())["conditions"][0]["checks"]
     }
-    own, other = checks[VALIDATION], checks["HF3000ft-50kts-level-longitudinal-1"]
+    own, other = checks[VALIDATION], checks[OTHER]
     assert own["starts"]["by hand"][0]["phi_rad"] == pytest.approx(phi_rad, abs=1e-12)
     assert own["starts"]["by hand"][0]["p_rad_s"] == own["starts"]["measured"][0]["p_rad_s"]
     assert other["starts"]["by hand"] == other["starts"]["measured"]
     outside = {how: found["phi_rad"]["outside_percent"] for how, found in own["states"].items()}
     assert min(outside, key=lambda how: -outside[how]) == "by hand"
-    told = capsys.readouterr().out
-    assert "start, by hand" in told
-    assert f"{phi_rad:.4g}" in told
-    assert "Starts typed in (2.3.3.1, Table 2.2)" in (tmp_path / "report.html").read_text()
+    assert "start, by hand" in answered.said
+    assert f"{phi_rad:.4g}" in answered.said
+    assert "Starts typed in (2.3.3.1, Table 2.2)" in (answered.out / "report.html").read_text()
 
 
 def test_starts_that_cannot_be_meant_are_refused(folder: Path, tmp_path: Path, capsys) -> None:
@@ -187,7 +233,7 @@ def test_an_empty_folder_is_refused(tmp_path: Path, capsys) -> None:
 
 def stops_at(monkeypatch: pytest.MonkeyPatch, name: str, call: int) -> None:
     """Ctrl-C as the function of this name of the verb is called so many times."""
-    verb, calls = sys.modules["twinlaw.verbs.envelope"], []
+    calls = []
     original = getattr(verb, name)
 
     def stopping(*given):
@@ -199,10 +245,11 @@ def stops_at(monkeypatch: pytest.MonkeyPatch, name: str, call: int) -> None:
     monkeypatch.setattr(verb, name, stopping)
 
 
-def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_bytes(
-    monkeypatch, folder: Path, answered: Path, tmp_path: Path, capsys
+def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answer(
+    monkeypatch, folder: Path, start: tuple[float, list[str]], answered: Answered, tmp_path: Path, capsys
 ) -> None:
-    words = ["envelope", "--workers", "2", "--out", str(tmp_path), str(folder)]
+    """Truth: to the same bytes of envelope.json; the report, which takes most of the time, would be drawn of the same to the last bit."""
+    words = ["envelope", "--workers", "2", "--out", str(tmp_path), *start[1], str(folder)]
     with monkeypatch.context() as patch:
         stops_at(patch, "write_atomic", 2)
         assert main(words) == 130
@@ -211,7 +258,10 @@ def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_bytes
     assert [entry["condition"] for entry in told["conditions"]] == [ENDS[0].name]
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
 
+    drawn_of = watched(monkeypatch, lambda *_: Page("not drawn", "", True, (), ()))
+    works_here(monkeypatch)  # what the two processes have done is kept, and the rest is little
     assert main(words) == 0
-    for name in ("envelope.json", "report.html"):
-        assert (tmp_path / name).read_bytes() == (answered / name).read_bytes()
+    assert (tmp_path / "envelope.json").read_bytes() == (answered.out / "envelope.json").read_bytes()
+    assert plain(drawn_of) == plain(answered.drawn_of)
+    assert (tmp_path / "report.html").is_file()
     assert not (tmp_path / "jobs").exists()

@@ -6,6 +6,7 @@ import pytest
 
 from records.plant import load_plant
 from tests.plants import PLANTS
+from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 
@@ -43,6 +44,7 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
     page = (tmp_path / "report.html").read_text()
     for words in ("Fig. 5", "Fig. 6", "eq (8)", "coherence", "delta_ped to a_y_m_s2"):
         assert words in page
+    assert all(path.read_text() in page for path in tmp_path.glob("*.svg"))
     assert {path.name for path in tmp_path.glob("*.svg")} == {
         "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg",
     }  # fmt: skip
@@ -94,7 +96,8 @@ def test_what_is_wrong_is_one_line_and_leaves_nothing(arguments, said, flown, tm
     assert not (tmp_path / "out").exists()
 
 
-def test_the_helicopter_s_repetitions_tell_their_coverage(tmp_path, capsys):
+def test_the_helicopter_s_repetitions_tell_their_coverage(monkeypatch, tmp_path, capsys):
+    works_here(monkeypatch)
     short = ["--repetitions", "1", "--repeats", "1", "--band-rad-s", "0.4", "12"]
     assert main(["sweep", *RAPTOR, *short, "--out", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)

@@ -13,6 +13,7 @@ from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
+from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
 from twinlaw.workflows.identify import by_time
@@ -111,25 +112,19 @@ def test_a_log_that_cannot_be_one_of_this_rig_is_refused(flown, tmp_path, capsys
     assert not (tmp_path / "out").exists()
 
 
-def test_an_axis_that_was_never_read_is_said_and_the_other_is_identified(flown, tmp_path, capsys):
+def test_of_an_axis_that_was_never_read_what_shows_there_is_held_and_named_and_the_other_is_identified(
+    flown, tmp_path, capsys
+):
     """Truth: the plant file's J_A, to 5 %, from the azimuth alone."""
     bound = bind(load_plant(Path("plants/ce150.toml")))
     log = load_log(Path(flown[-1]), log_columns(bound.model))
     save_log(tmp_path / "half.csv", replace(log, y=np.column_stack([np.full(len(log.t_s), np.nan), log.y[:, 1]])))
-    options = ["--free", "J_A", "--window", "2", "--json", "--out", str(tmp_path / "out")]
-    assert main(["identify", *options, str(tmp_path / "half.csv")]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert "half: psi_rad was not recorded: NaN in every row" in told["notes"]
-    assert told["estimates"][0]["value"] == pytest.approx(bound.parameter("J_A"), rel=0.05)
-
-
-def test_what_shows_only_in_an_axis_that_was_never_read_is_held_and_named(flown, tmp_path, capsys):
-    log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
-    save_log(tmp_path / "half.csv", replace(log, y=np.column_stack([np.full(len(log.t_s), np.nan), log.y[:, 1]])))
     out, record = tmp_path / "out", str(tmp_path / "half.csv")
     assert main(["identify", "--free", "J_E,J_A,tau_gE", "--window", "2", "--json", "--out", str(out), record]) == 0
     told = json.loads(capsys.readouterr().out)
+    assert "half: psi_rad was not recorded: NaN in every row" in told["notes"]
     assert [entry["name"] for entry in told["estimates"]] == ["J_A"]
+    assert told["estimates"][0]["value"] == pytest.approx(bound.parameter("J_A"), rel=0.05)
     assert (
         "J_E, tau_gE: shows only in psi_rad, which no log has a reading of; the plant file's value is kept"
         in told["notes"]
@@ -215,10 +210,12 @@ def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is
     assert set(plant.correlation.names) == {"J_A", "b_vA"}
 
 
-def test_repetitions_tell_how_often_the_truth_lies_inside(tmp_path, capsys):
-    assert main(["experiments", "--seed", "7", "--repetitions", "1", "--out", str(tmp_path), "--json"]) == 0
+def test_repetitions_tell_how_often_the_truth_lies_inside(monkeypatch, tmp_path, capsys):
+    works_here(monkeypatch)
+    plant = ["--plant", "plants/ce150_velagic.toml"]  # with four experiments, where the other has nine
+    assert main(["experiments", *plant, "--seed", "7", "--repetitions", "1", "--out", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert len(told["coverage"]) == 27
+    assert len(told["coverage"]) == 10
     assert told["mean"] > 0.7
     assert len(json.loads((tmp_path / "repetitions.json").read_text())["repetitions"]) == 1
 

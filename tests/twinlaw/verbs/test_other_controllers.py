@@ -5,15 +5,20 @@ from pathlib import Path
 
 import pytest
 
+from sim.manoeuvres import hop
 from tests.rig.programming.test_flash import needs_stm32flash
 from tests.test_project import ROOT
 from twinlaw.command import main
+from twinlaw.workflows.chain import boards
 
 PLANT = str(ROOT / "plants" / "ce150.toml")
 
 
-def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(tmp_path: Path) -> None:
+def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # Truth: the host's own C over 750 steps; of all rows the fuzzy law takes longest, near half a second for its self-test alone.
+    monkeypatch.setattr(boards, "flight", hop)
     out, table = _built(tmp_path)
     assert main(["validate", "--plant", PLANT, "--steps", "300", *table, *out]) == 0
     validation = json.loads((tmp_path / "validation.json").read_text())

@@ -2,11 +2,24 @@
 
 import json
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from twinlaw.command import main
+from twinlaw.verbs import design, simulate
+from twinlaw.workflows.chain.designing import design_controller
+
+
+@pytest.fixture(scope="module", autouse=True)
+def designed_once():
+    """The controller of the one plant file here is designed for the first test that asks for it."""
+    with pytest.MonkeyPatch.context() as patch:
+        once = cache(design_controller)
+        for verb in (design, simulate):
+            patch.setattr(verb, "design_controller", once)
+        yield
 
 
 def test_design_tells_poles_as_designed_fitted_and_rounded_and_of_both_loops_coupled(

@@ -47,15 +47,15 @@ def check_rows(checks: Sequence[TimeCheck], outputs: Sequence[str]) -> list[tupl
     ]
 
 
-def frequency_page(found: FrequencyIdentification) -> Page:
-    """The whole page."""
+def frequency_page(found: FrequencyIdentification, plots: Mapping[str, str]) -> Page:
+    """The whole page, with its `pictures`."""
     estimates = found.result.estimates
     told = sum(entry.identified for entry in estimates)
     sections = [
         _parameters(found),
         _matrices(found),
-        _responses(found),
-        *(_check(found, check) for check in found.checks),
+        _responses(found, plots),
+        *(_check(found, check, plots) for check in found.checks),
     ]
     return Page(
         title=f"{found.result.plant.name}: identified in the frequency domain",
@@ -69,8 +69,16 @@ def frequency_page(found: FrequencyIdentification) -> Page:
 def pictures(found: FrequencyIdentification) -> Mapping[str, str]:
     """Figs. 5 and 6 of seed 002 as SVG texts by name: the responses of each output, each record checked on."""
     outputs = enumerate(found.fit.model.outputs)
-    responses = {f"fig-5-{name}": _bode(found, o) for o, name in outputs}
-    return responses | {f"fig-6-{check.name}": _history(found, check) for check in found.checks}
+    responses = {_response_name(name): _bode(found, o) for o, name in outputs}
+    return responses | {_check_name(check): _history(found, check) for check in found.checks}
+
+
+def _response_name(output: str) -> str:
+    return f"fig-5-{output}"
+
+
+def _check_name(check: TimeCheck) -> str:
+    return f"fig-6-{check.name}"
 
 
 def _parameters(found: FrequencyIdentification) -> Section:
@@ -101,7 +109,7 @@ def _matrix_rows(of: StateSpaces, name: str) -> list[tuple[str, ...]]:
     ]
 
 
-def _responses(found: FrequencyIdentification) -> Section:
+def _responses(found: FrequencyIdentification, plots: Mapping[str, str]) -> Section:
     fit = found.fit
     sentences = (
         "Conditioned frequency responses from windows of "
@@ -111,8 +119,8 @@ def _responses(found: FrequencyIdentification) -> Section:
         + ", ".join(f"{entry.J:.4g}" for entry in fit.searches)
         + f", before finite windows were corrected for; with that J = {fit.J:.4g}.",
     )
-    plots = tuple(_bode(found, o) for o in range(len(fit.model.outputs)))
-    return Section("Frequency responses (Fig. 5)", sentences, (Table(pair_rows(found.pairs), PAIR_HEADING),), plots)
+    shown = tuple(plots[_response_name(name)] for name in fit.model.outputs)
+    return Section("Frequency responses (Fig. 5)", sentences, (Table(pair_rows(found.pairs), PAIR_HEADING),), shown)
 
 
 def _bode(found: FrequencyIdentification, o: int) -> str:
@@ -155,7 +163,7 @@ def _coherence(found: FrequencyIdentification, o: int, i: int) -> Panel:
     return Panel("coherence", (Curve(responses.omega_rad_s, responses.coherence[:, o, i], "", GREY),), ((0.6, ""),))
 
 
-def _check(found: FrequencyIdentification, check: TimeCheck) -> Section:
+def _check(found: FrequencyIdentification, check: TimeCheck, plots: Mapping[str, str]) -> Section:
     """How a record that was not matched is predicted."""
     anew = "" if np.isinf(check.window_s) else f" It starts anew every {check.window_s:g} s, as the loop was closed."
     sentence = f"A record that was not matched: the identified model under its inputs; start and trim are fitted, nothing else.{anew}"
@@ -163,7 +171,7 @@ def _check(found: FrequencyIdentification, check: TimeCheck) -> Section:
         f"Verification in time: {check.name} (Fig. 6)",
         (sentence,),
         (Table(check_rows((check,), found.fit.model.outputs), CHECK_HEADING),),
-        (_history(found, check),),
+        (plots[_check_name(check)],),
     )
 
 

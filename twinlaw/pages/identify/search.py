@@ -15,12 +15,12 @@ COLOURS = (BLUE, ORANGE, GREEN, RED)
 Stages = Sequence[tuple[str, Estimate]]
 
 
-def search_sections(stages: Stages, truth: BoundPlant | None) -> list[Section]:
-    """The table of all stages that searched, and Fig. 6 where generations were counted; nothing where no stage did."""
+def search_sections(stages: Stages, truth: BoundPlant | None, evolution: str) -> list[Section]:
+    """The table of all stages that searched, and Fig. 6, their `evolution_plot`, where there is one; nothing where no stage did."""
     searched = [(title, stage) for title, stage in stages if stage.searched]
     if not searched:
         return []
-    return [_side_by_side(searched, _values(truth)), *_evolution(evolution_plot(stages))]
+    return [_side_by_side(searched, _values(truth)), *_evolution(evolution)]
 
 
 def _side_by_side(stages: Stages, truth: Mapping[str, float]) -> Section:

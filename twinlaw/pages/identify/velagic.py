@@ -48,12 +48,12 @@ def _angle(shown: Response, name: str, x: Array) -> Panel:
     )
 
 
-def figure_section(shown: Mapping[str, Response]) -> Section:
-    """The figures with what each prediction misses."""
+def figure_section(shown: Mapping[str, Response], plots: Mapping[str, str]) -> Section:
+    """The figures, `plots` of them, with what each prediction misses."""
     rows = [(f"Fig. {name}", words, f"{np.degrees(shown[name].rms_rad):.3f} deg") for name, words in SAID.items()]
     return Section(
         "Validation (Figs. 12 to 14 of seed 001)",
         ("The same voltages on the rig and on the identified plant. Levels that the paper's text lacks are ours.",),
         (Table(rows, ("figure", "what", "rms difference")),),
-        tuple(figure_plots(shown).values()),
+        tuple(plots.values()),
     )

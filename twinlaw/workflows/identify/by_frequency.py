@@ -66,8 +66,9 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
         )
     write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
     write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
-    page = frequency_page(found)
-    for name, picture in pictures(found).items():
+    plots = pictures(found)
+    page = frequency_page(found, plots)
+    for name, picture in plots.items():
         write_atomic(chosen.out / f"{name}.svg", picture)
     write_atomic(chosen.out / "report.html", page_text(page))
     _tell(chosen, found)

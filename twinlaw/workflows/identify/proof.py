@@ -15,12 +15,14 @@ from twinlaw.pages.page import Section
 
 def proven(result: Identification, truth: BoundPlant | None) -> tuple[list[Section], Mapping[str, str]]:
     """Sections of the report, and pictures (SVG text) by the number of the paper's figure."""
-    sections, evolution = search_sections(result.stages, truth), evolution_plot(result.stages)
+    evolution = evolution_plot(result.stages)
+    sections = search_sections(result.stages, truth, evolution)
     pictures = {"6": evolution} if evolution else {}
     if truth is None:
         return sections, pictures
     with console.stage("the real plant and the identified one"):
         if result.plant.model == "ce150_velagic":
             shown = responses(truth, bind(result.plant))
-            return [*sections, figure_section(shown)], pictures | figure_plots(shown)
+            plots = figure_plots(shown)
+            return [*sections, figure_section(shown, plots)], pictures | plots
         return [*sections, flight_section(compare_flights(bind(result.plant), truth))], pictures
