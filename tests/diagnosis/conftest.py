@@ -20,6 +20,7 @@ from tests.plants import stated_table
 Fly = Callable[..., RunLog]
 SECONDS = 30.0
 RIG = 7
+SPRUNG_SECONDS = 20.0
 # What many flights here have: a rig of one of them has all, the others at no size, so that one kernel flies them all.
 AT_NO_SIZE: dict[str, Mapping[str, float]] = {
     "azimuth.cable_spring": {},
@@ -91,7 +92,7 @@ def fly(plant: BoundPlant) -> Fly:
 @pytest.fixture(scope="session")
 def sprung(plant: BoundPlant, fly: Fly) -> Result:
     """What the diagnosis makes of a rig with a spring on its azimuth, from one flight with another held out."""
-    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    logs = [fly(seed, SPRING, SPRUNG_SECONDS, rig_seed=RIG) for seed in (11, 12)]
     return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 

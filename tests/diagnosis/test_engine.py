@@ -10,7 +10,7 @@ from diagnosis.result import Result
 from records.diagnosis import diagnosis_text
 from records.plant import plant_text
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import RIG, SPRING, Fly
+from tests.diagnosis.conftest import RIG, SPRING, SPRUNG_SECONDS, Fly
 
 
 def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) -> None:
@@ -43,7 +43,7 @@ def test_the_answer_is_a_valid_record_and_its_plant_binds(sprung: Result) -> Non
 
 @pytest.mark.soak  # in every suite tests/twinlaw/test_diagnosing_each.py compares files of another process
 def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung: Result) -> None:
-    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    logs = [fly(seed, SPRING, SPRUNG_SECONDS, rig_seed=RIG) for seed in (11, 12)]
     again = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
     assert diagnosis_text(again.diagnosis) == diagnosis_text(sprung.diagnosis)
 
@@ -54,6 +54,7 @@ def test_predictions_cover_the_hold_out(sprung: Result) -> None:
         assert np.isfinite(predicted.by[variant]).mean() > 0.9
 
 
+@pytest.mark.soak  # in every suite test_parameter_alone.py has another parameter
 def test_a_parameter_beyond_its_spread_is_named_and_no_effect(plant: BoundPlant, fly: Fly) -> None:
     # J_A 60 % up is 12 of its standard deviations.
     logs = [fly(seed, factors={"J_A": 1.6}) for seed in (21, 22)]
