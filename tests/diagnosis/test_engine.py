@@ -18,6 +18,12 @@ def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) 
     assert diagnosis.verdict == "no gap"
     assert diagnosis.found == ()
     assert (diagnosis.false_alarm_probability or 0.0) > 0.01
+    assert diagnosis.verdict_reason == "nothing_seen"
+    assert [entry.rule for entry in diagnosis.decisions][:4] == [
+        "largest_gain", "parameters_together", "parameter_furthest", "false_alarm"
+    ]  # fmt: skip
+    told = diagnosis.decisions[3]
+    assert (told.value, told.limit, told.outcome) == (diagnosis.false_alarm_probability, 0.01, "no gap")
 
 
 def test_a_spring_is_found_with_its_stiffness(sprung: Result) -> None:
@@ -51,7 +57,7 @@ def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung:
 def test_predictions_cover_the_hold_out(sprung: Result) -> None:
     (predicted,) = sprung.predicted
     for variant in ("nominal", "before", "after"):
-        assert np.isfinite(predicted.by[variant]).mean() > 0.9
+        assert np.isfinite(predicted.by[variant]).mean() > 1.0 - 2.1 / SPRUNG_SECONDS  # but for the first two seconds
 
 
 @pytest.mark.soak  # in every suite test_parameter_alone.py has another parameter

@@ -25,7 +25,7 @@ from tests.plants import stated_table
 V_C_RAD_S = 0.005
 LEVEL_N_M = 3e-4
 Z_0_RAD = 0.003
-SECONDS, WHOLE_S = 50.0, 104.0
+SECONDS, WHOLE_S = 40.0, 70.0
 GIVE = {"elevation.bristles": {"z_0": Z_0_RAD}, "azimuth.bristles": {"z_0": Z_0_RAD}}
 CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD_S}}
 
