@@ -11,7 +11,7 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
 from records.log import RunLog
 from records.plant import load_plant
-from sim.added_effects import with_effects
+from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
@@ -47,7 +47,7 @@ def fly(plant: BoundPlant) -> Fly:
     With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
     `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes.
     """
-    table = stated_table("ce150")
+    table, known = stated_table("ce150"), library(plant)
 
     def flown(
         seed: int,
@@ -70,9 +70,9 @@ def fly(plant: BoundPlant) -> Fly:
             reference = (
                 reference + jumps_rad * rng.choice([-1.0, 1.0], (len(t_s) // 5 + 1, 2)).repeat(5, axis=0)[: len(t_s)]
             )
-        rig = (
-            with_effects(plant, effects if effects.keys() - AT_NO_SIZE else AT_NO_SIZE | effects) if effects else plant
-        )
+        moving = {name for name in effects or () if known[name].on_equations}
+        shared = AT_NO_SIZE if moving and moving <= AT_NO_SIZE.keys() else {}
+        rig = with_effects(plant, {**shared, **effects}) if effects else plant
         p = rig.p.copy()
         own = len(plant.p)
         own_rng = rng if rig_seed is None else np.random.default_rng(rig_seed)
