@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from diagnosis.decide.holdout import Holdout, partly, worse
+from diagnosis.decide.holdout import Holdout, _floor, partly, worse
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
 from diagnosis.diagnose import Material, diagnose
@@ -101,8 +102,12 @@ def test_the_steps_of_a_sensor_are_not_refuted_by_predictions(plant: BoundPlant,
     holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
     assert worse(holdout, named("phi_sensor.quantization", 0.036)) == 0.0
     assert worse(holdout, named("tail_input.offset", 3.0)) > 1.5
-    # Nor are they told to be a part: what a step of 23 counts leaves of a prediction's error is that step's own.
-    assert partly(holdout, named("phi_sensor.quantization", 0.036), 0.0)[1] == ()
+    # Nor are they told to be a part: what they leave, a step over the root of 12, is not held against them.
+    first = named("phi_sensor.quantization", 0.036).fitted[0]
+    told = holdout.shrinkage(holdout.predicted(first))
+    left = _floor(case, first, told)
+    assert left["phi_rad"] == pytest.approx(np.hypot(told.rms_floor["phi_rad"], 0.036 / np.sqrt(12.0)))
+    assert left["psi_rad"] == pytest.approx(told.rms_floor["psi_rad"])
 
 
 @pytest.mark.parametrize(("there", "idle"), [(True, False), (False, True)])
