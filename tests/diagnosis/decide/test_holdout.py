@@ -51,6 +51,7 @@ def test_a_re_tune_that_predicts_better_is_written(plant: BoundPlant, fly: Fly) 
 
 
 SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.0, "h": 0.0}}
+ASLANT = {"azimuth.tilt": {"m": 0.02, "Phi_0": 1.0}}
 TILTED = {"azimuth.tilt": {"m": 0.002, "Phi_0": 1.0}}
 
 
@@ -128,6 +129,23 @@ def test_what_takes_nothing_of_the_hold_outs_error_is_seen(
     weighed = Weighed((FittedHypothesis(tuple(named), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
     after, notes, _ = partly(holdout, weighed, 0.0)
     assert (after.nameless, len(notes) == 1) == (idle, idle)
+
+
+def test_what_leaves_most_of_the_hold_outs_error_is_a_part(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: the rig that was fitted has a spring, that of the hold-out stands aslant besides, which pulls five times as much.
+    train, hold = (
+        make_case(effect_library(plant), [fly(seed, effects, rig_seed=53)])
+        for seed, effects in ((53, SPRING), (54, {**SPRING, **ASLANT}))
+    )
+    base = nominal_fit(train)
+    sprung = fit(train, base.hypothesis.with_effects(SPRING))
+    assert sprung is not None
+    weighed = Weighed((FittedHypothesis(tuple(SPRING), sprung, 1.0),), (0.9,), 0.1, 0.0, 1.0)
+    for case, leaves in ((train, False), (hold, True)):
+        holdout = Holdout(case, ["hold"], [None], FittedHypothesis((), base, 0.0))
+        after, notes, _ = partly(holdout, weighed, 1000.0)  # where forms see something, process noise is no excuse
+        assert [note.kind for note in notes] == leaves * ["something_else_missing"]
+        assert (after.unknown > 0.5) is leaves  # less than half of the error goes, or all of it
 
 
 def test_a_push_is_not_asked_what_it_takes_of_another_log(plant: BoundPlant, fly: Fly) -> None:
