@@ -88,6 +88,7 @@ def test_a_parameter_far_beyond_its_spread_is_found_with_its_place() -> None:
     assert retune(plain_linearisation().case, plain_linearisation().fit) is None
 
 
+@pytest.mark.soak  # in every suite test_cannot_tell.py asks the same of a hover, with filters that others use too
 def test_the_run_that_reveals_most_shows_more_than_a_rest() -> None:
     log = arm_log()
     still = replace(log, u=np.zeros_like(log.u), y=np.zeros_like(log.y))
