@@ -1,7 +1,7 @@
 """The law as data and switches: what a firmware may have run instead of the table's law, and the C that runs it."""
 
 from dataclasses import asdict, dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from codegen.law_constants import AxisConstants, law_constants
 from records.errors import BadInput
-from records.table import ControllerTable
+from records.table import AxisLaw, ControllerTable
 from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
@@ -142,8 +142,8 @@ class ReplayLaw:
         """Raises BadInput for a table that no law can be made from."""
         self.ffi, self._lib = _library(setup.arithmetic)
         self.number = number_type(setup.arithmetic)
-        self._law = self.ffi.new("replay_law *", _law_fields(setup))
-        self._channel = self.ffi.new("replay_channel *", asdict(setup.channel))
+        self._law = _law(_Numbers.of(setup))
+        self._channel = _channel(setup.arithmetic, setup.channel)
 
     def start(self, angles_rad: Array) -> Any:
         """A state at rest at the angles (2,)."""
@@ -208,7 +208,69 @@ def _library(arithmetic: str) -> tuple[Any, Any]:
     return load_shared(f"typedef {name} number; {_DECLARATIONS}", library)
 
 
-def _law_fields(setup: Setup) -> dict[str, Any]:
+@dataclass(frozen=True)
+class _Numbers:
+    """All of a setup that the C's law is made from; two tables of the same numbers are one here."""
+
+    elevation: AxisLaw
+    azimuth: AxisLaw
+    sample_period_s: float
+    psi_min_rad: float
+    psi_max_rad: float
+    arithmetic: str
+    schedule: int
+    windup: int
+    raw_feedforward: bool
+    prefilter_poles: int | None
+    prefilter_gains: Gains | None
+    overflow: Overflow
+
+    @classmethod
+    def of(cls, setup: Setup) -> "_Numbers":
+        table = setup.table
+        return cls(
+            table.elevation,
+            table.azimuth,
+            table.sample_period_s,
+            table.psi_min_rad,
+            table.psi_max_rad,
+            setup.arithmetic,
+            setup.schedule,
+            setup.windup,
+            setup.raw_feedforward,
+            setup.prefilter_poles,
+            setup.prefilter_gains,
+            setup.overflow,
+        )
+
+    @property
+    def table(self) -> ControllerTable:
+        """A table of these numbers, from nowhere."""
+        return ControllerTable(
+            plant="",
+            sample_period_s=self.sample_period_s,
+            psi_min_rad=self.psi_min_rad,
+            psi_max_rad=self.psi_max_rad,
+            elevation=self.elevation,
+            azimuth=self.azimuth,
+            origin={},
+        )
+
+
+# The C reads laws and channels only. A search pairs some hundred changes, so the same ones come back thousands of times.
+@lru_cache(maxsize=1024)
+def _law(numbers: _Numbers) -> Any:
+    ffi, _ = _library(numbers.arithmetic)
+    return ffi.new("replay_law *", _law_fields(numbers))
+
+
+@lru_cache(maxsize=1024)
+def _channel(arithmetic: str, channel: Channel) -> Any:
+    ffi, _ = _library(arithmetic)
+    return ffi.new("replay_channel *", asdict(channel))
+
+
+def _law_fields(setup: _Numbers) -> dict[str, Any]:
     number = np.float32 if setup.arithmetic == FLOAT32 else np.float64
     constants = law_constants(setup.table, number)
     gains = setup.prefilter_gains or (None, None)

@@ -114,10 +114,15 @@ def explain(flight: ReplayedLog, table: ControllerTable, others: Sequence[Contro
 
 def _exact(shop: Workshop, base: Setup, combined: Iterable[tuple[Variant, ...]]) -> list[Explanation]:
     """Those of the combinations that leave nothing unexplained."""
-    found = []
+    found: list[Explanation] = []
+    last: Variant | None = None
+    begun = base
     for changes in combined:
-        setup = base
-        for variant in changes:
+        if changes and changes[0] is not last:  # of pairs, the same comes first many times in a row
+            last = changes[0]
+            begun = last.change(base)
+        setup = begun if changes else base
+        for variant in changes[1:]:
             setup = variant.change(setup)
         try:
             trace = Follower(shop, setup).follow()

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import ControllerTable, Polynomial
+from records.table import AxisLaw, ControllerTable, Polynomial
 from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import AXES, Channel, Gains, Setup
@@ -279,16 +280,18 @@ def _to_bfloat16(value: float) -> float:
 
 
 def _round_table(setup: Setup, to: Round, extent: int) -> Setup:
-    for name in AXES:
-        axis = getattr(setup.table, name)
-        change: dict[str, object] = {
-            key: tuple(tuple(map(to, row)) for row in getattr(axis, key)) for key in ("q_V_rad", "p")
-        }
-        if extent >= 1:
-            change["a"] = tuple(map(to, axis.a))
-        if extent >= 2:
-            change["feedforward_V"] = tuple(map(to, axis.feedforward_V))
-        setup = setup.with_axis(name, **change)
+    axes: dict[str, Any] = {name: _round_axis(getattr(setup.table, name), to, extent) for name in AXES}
+    setup = replace(setup, table=replace(setup.table, **axes))
     if extent < 3:
         return setup
     return replace(setup, prefilter_gains=_gains(setup.table, lambda T, T_s: to(-math.expm1(-T_s / T))))
+
+
+@lru_cache(maxsize=512)  # a pair with a change that is none of the numbers rounds the table's own
+def _round_axis(axis: AxisLaw, to: Round, extent: int) -> AxisLaw:
+    change: dict[str, Any] = {key: tuple(tuple(map(to, row)) for row in getattr(axis, key)) for key in ("q_V_rad", "p")}
+    if extent >= 1:
+        change["a"] = tuple(map(to, axis.a))
+    if extent >= 2:
+        change["feedforward_V"] = tuple(map(to, axis.feedforward_V))
+    return replace(axis, **change)

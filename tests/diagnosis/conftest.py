@@ -11,7 +11,7 @@ from diagnosis.diagnose import Material, diagnose
 from diagnosis.result import Result
 from records.log import RunLog
 from records.plant import load_plant
-from sim.added_effects import with_effects
+from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
@@ -20,6 +20,7 @@ from tests.plants import stated_table
 Fly = Callable[..., RunLog]
 SECONDS = 30.0
 RIG = 7
+SPRUNG_SECONDS = 20.0
 # What many flights here have: a rig of one of them has all, the others at no size, so that one kernel flies them all.
 AT_NO_SIZE: dict[str, Mapping[str, float]] = {
     "azimuth.cable_spring": {},
@@ -47,7 +48,7 @@ def fly(plant: BoundPlant) -> Fly:
     `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes;
     axes that are `locked` are held.
     """
-    table = stated_table("ce150")
+    table, known = stated_table("ce150"), library(plant)
 
     def flown(
         seed: int,
@@ -71,9 +72,9 @@ def fly(plant: BoundPlant) -> Fly:
             reference = (
                 reference + jumps_rad * rng.choice([-1.0, 1.0], (len(t_s) // 5 + 1, 2)).repeat(5, axis=0)[: len(t_s)]
             )
-        rig = (
-            with_effects(plant, effects if effects.keys() - AT_NO_SIZE else AT_NO_SIZE | effects) if effects else plant
-        )
+        moving = {name for name in effects or () if known[name].on_equations}
+        shared = AT_NO_SIZE if moving and moving <= AT_NO_SIZE.keys() else {}
+        rig = with_effects(plant, {**shared, **effects}) if effects else plant
         p = rig.p.copy()
         own = len(plant.p)
         own_rng = rng if rig_seed is None else np.random.default_rng(rig_seed)
@@ -93,7 +94,7 @@ def fly(plant: BoundPlant) -> Fly:
 @pytest.fixture(scope="session")
 def sprung(plant: BoundPlant, fly: Fly) -> Result:
     """What the diagnosis makes of a rig with a spring on its azimuth, from one flight with another held out."""
-    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    logs = [fly(seed, SPRING, SPRUNG_SECONDS, rig_seed=RIG) for seed in (11, 12)]
     return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 

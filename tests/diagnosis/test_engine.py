@@ -10,7 +10,7 @@ from diagnosis.result import Result
 from records.diagnosis import diagnosis_text
 from records.plant import plant_text
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import RIG, SPRING, Fly
+from tests.diagnosis.conftest import RIG, SPRING, SPRUNG_SECONDS, Fly
 
 
 def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) -> None:
@@ -18,6 +18,12 @@ def test_a_flight_of_the_stated_plant_shows_no_gap(plant: BoundPlant, fly: Fly) 
     assert diagnosis.verdict == "no gap"
     assert diagnosis.found == ()
     assert (diagnosis.false_alarm_probability or 0.0) > 0.01
+    assert diagnosis.verdict_reason == "nothing_seen"
+    assert [entry.rule for entry in diagnosis.decisions][:4] == [
+        "largest_gain", "parameters_together", "parameter_furthest", "false_alarm"
+    ]  # fmt: skip
+    told = diagnosis.decisions[3]
+    assert (told.value, told.limit, told.outcome) == (diagnosis.false_alarm_probability, 0.01, "no gap")
 
 
 def test_a_spring_is_found_with_its_stiffness(sprung: Result) -> None:
@@ -43,7 +49,7 @@ def test_the_answer_is_a_valid_record_and_its_plant_binds(sprung: Result) -> Non
 
 @pytest.mark.soak  # in every suite tests/twinlaw/test_diagnosing_each.py compares files of another process
 def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung: Result) -> None:
-    logs = [fly(seed, SPRING, rig_seed=RIG) for seed in (11, 12)]
+    logs = [fly(seed, SPRING, SPRUNG_SECONDS, rig_seed=RIG) for seed in (11, 12)]
     again = diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
     assert diagnosis_text(again.diagnosis) == diagnosis_text(sprung.diagnosis)
 
@@ -51,9 +57,10 @@ def test_the_same_logs_give_the_same_answer(plant: BoundPlant, fly: Fly, sprung:
 def test_predictions_cover_the_hold_out(sprung: Result) -> None:
     (predicted,) = sprung.predicted
     for variant in ("nominal", "before", "after"):
-        assert np.isfinite(predicted.by[variant]).mean() > 0.9
+        assert np.isfinite(predicted.by[variant]).mean() > 1.0 - 2.1 / SPRUNG_SECONDS  # but for the first two seconds
 
 
+@pytest.mark.soak  # in every suite test_parameter_alone.py has another parameter
 def test_a_parameter_beyond_its_spread_is_named_and_no_effect(plant: BoundPlant, fly: Fly) -> None:
     # J_A 60 % up is 12 of its standard deviations.
     logs = [fly(seed, factors={"J_A": 1.6}) for seed in (21, 22)]

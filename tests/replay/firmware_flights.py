@@ -12,10 +12,10 @@ from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
 from sim.loop import Controller, fly
-from sim.manoeuvres import Leg, Manoeuvre, manoeuvre
+from sim.manoeuvres import Leg, Manoeuvre, flight, manoeuvre
 from tests.law_tables import ce150_table
 from tests.plants import bound
-from verification.host_law import HostLaw
+from verification.host_law import HostLaw, host_law
 
 Command = tuple[float, float]
 Inputs = tuple[float, float, float, float]
@@ -40,6 +40,25 @@ def lively(duration_s: float = 20.0) -> Manoeuvre:
 def flown(controller: Controller, table: ControllerTable | None = None, duration_s: float = 20.0) -> RunLog:
     """The lively flight, its log naming `table`."""
     return fly(plant(), controller, lively(duration_s), table_digest=(table or ce150_table()).digest)
+
+
+@cache
+def _kept(begun_s: float | None) -> RunLog:
+    if begun_s is None:
+        return flown(host_law(ce150_table()))
+    log = fly(plant(), host_law(ce150_table()), flight(plant()), table_digest=ce150_table().digest)
+    return rows_of(log, log.t_s > begun_s)
+
+
+def own() -> RunLog:
+    """The lively flight of the table's own law: flown once, a copy for each that asks."""
+    log = _kept(None)
+    return replace(log, u=log.u.copy(), y=log.y.copy())
+
+
+def default_flight(after_s: float = -1.0) -> RunLog:
+    """The default flight of the table's own law behind a time: holds that are longer than the law remembers."""
+    return _kept(after_s)
 
 
 class Wrapped:

@@ -9,10 +9,8 @@ import pytest
 from records.log import RunLog
 from records.table import ControllerTable
 from replay.firmware import FirmwareReplay, replay_firmware
-from sim.loop import fly
-from sim.manoeuvres import flight
 from tests.law_tables import ce150_table, changed_axis
-from tests.replay.firmware_flights import Wrapped, edited_law, flown, plant, rows_of, stale
+from tests.replay.firmware_flights import Wrapped, default_flight, edited_law, flown, own, rows_of, stale
 from tests.soak import sampled
 from verification.host_law import host_law
 
@@ -20,23 +18,19 @@ TABLE = ce150_table()
 TIGHT = changed_axis(changed_axis(TABLE, "elevation", u_min_V=4.8, u_max_V=6.2), "azimuth", u_min_V=1.6, u_max_V=2.3)
 
 
-def _own() -> RunLog:
-    return flown(host_law(TABLE))
-
-
 def _told(log: RunLog, table: ControllerTable = TABLE) -> FirmwareReplay:
     return replay_firmware(log, table)
 
 
 def _references(change: Callable[[dict[str, np.ndarray]], dict[str, np.ndarray]]) -> RunLog:
-    log = _own()
+    log = own()
     names = ("psi_ref_rad", "phi_ref_rad")
     return replace(log, extra={**log.extra, **change({name: log.extra[name] for name in names})})
 
 
 def _moved(samples: int) -> RunLog:
     """The references logged so many samples late, or early where they are less than none."""
-    rows = np.clip(np.arange(len(_own().t_s)) - samples, 0, None)
+    rows = np.clip(np.arange(len(own().t_s)) - samples, 0, None)
     return _references(lambda own: {name: values[np.minimum(rows, len(values) - 1)] for name, values in own.items()})
 
 
@@ -61,7 +55,7 @@ TAMPERED = [
 def test_columns_that_are_exchanged_turned_scaled_or_dead_are_named(
     tamper: Callable[[RunLog], RunLog], cause: str, words: str
 ) -> None:
-    found = _told(tamper(_own()))
+    found = _told(tamper(own()))
     assert (found.bit_exact, found.cause, found.incidents) == (False, cause, ())
     assert words in (found.sentence or "")
 
@@ -89,7 +83,7 @@ AGED = [
 
 @pytest.mark.parametrize(("samples", "axes", "words"), sampled(AGED, keep=AGED[1:]))
 def test_angles_logged_late_are_named_with_their_age(samples: int, axes: tuple[int, ...], words: str) -> None:
-    log = _own()
+    log = own()
     y = log.y.copy()
     y[samples:, axes] = log.y[:-samples, axes]
     y[:samples, axes] = log.y[0, axes]
@@ -99,7 +93,7 @@ def test_angles_logged_late_are_named_with_their_age(samples: int, axes: tuple[i
 
 
 def test_a_log_whose_references_were_rounded_is_told_so_and_gets_no_cause() -> None:
-    log = fly(plant(), host_law(TABLE), flight(plant()), table_digest=TABLE.digest)
+    log = default_flight()
     found = _told(replace(log, extra={name: np.round(values, 3) for name, values in log.extra.items()}))
     assert found.cause == "not_found"
     assert "holds its references with 3 decimals" in (found.sentence or "")
@@ -140,7 +134,7 @@ def test_other_coefficients_are_not_taken_for_a_log_that_begins_in_flight(factor
 
 
 def test_an_offset_is_named_and_a_log_that_begins_in_flight_is_its_alternative() -> None:
-    log = _own()
+    log = own()
     log.u[:, 0] += 0.1
     found = _told(log)
     assert (found.cause, found.alternatives) == ("output_offset", ("begins_in_flight",))
@@ -178,7 +172,7 @@ LACKING = [(numbers, rows) for numbers in (False, True) for rows in ("every othe
 
 @pytest.mark.parametrize(("has_numbers", "lacks"), sampled(LACKING, keep=LACKING[2:3]))
 def test_a_log_that_lacks_half_its_rows_says_so(has_numbers: bool, lacks: str) -> None:
-    log = _own()
+    log = own()
     log = replace(log, seq=np.arange(len(log.t_s)) if has_numbers else None)
     kept = np.arange(len(log.t_s)) % 2 == 0 if lacks == "every other" else (log.t_s < 5.0) | (log.t_s > 15.0)
     found = _told(rows_of(log, kept))
@@ -188,14 +182,14 @@ def test_a_log_that_lacks_half_its_rows_says_so(has_numbers: bool, lacks: str) -
 
 @pytest.mark.parametrize("every", sampled([1, 100], keep=[100]))
 def test_rows_that_stand_twice_are_told_from_a_law_that_was_not_run(every: int) -> None:
-    log = _own()
+    log = own()
     rows = np.sort(np.concatenate([np.arange(len(log.t_s)), np.arange(100, 2000, every)]))
     found = _told(replace(rows_of(log, rows), t_s=0.01 * np.arange(len(rows))))
     assert (found.bit_exact, found.cause, found.alternatives) == (False, "repeated_row", ("lost_sample",))
 
 
 def test_one_row_that_stands_twice_is_a_law_that_was_not_run_once() -> None:
-    log = _own()
+    log = own()
     rows = np.insert(np.arange(len(log.t_s)), 700, 700)
     found = _told(replace(rows_of(log, rows), t_s=0.01 * np.arange(len(rows))))
     assert (found.cause, found.alternatives) == ("lost_sample", ("repeated_row",))
@@ -203,10 +197,9 @@ def test_one_row_that_stands_twice_is_a_law_that_was_not_run_once() -> None:
 
 @pytest.mark.parametrize("factor", sampled([0.5, 0.99, 1.01, 1.1, 2.0, 1000.0], keep=[0.99, 1000.0]))
 def test_a_clock_that_runs_fast_or_slow_loses_no_samples(factor: float) -> None:
-    log = _own()
+    log = own()
     assert _told(replace(log, t_s=factor * log.t_s)).bit_exact
 
 
 def test_a_log_cut_in_flight_with_all_at_rest_is_told_by_its_time() -> None:
-    log = fly(plant(), host_law(TABLE), flight(plant()), table_digest=TABLE.digest)
-    assert _told(rows_of(log, log.t_s > 52.0)).cause == "begins_in_flight"
+    assert _told(default_flight(52.0)).cause == "begins_in_flight"

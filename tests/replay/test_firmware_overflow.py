@@ -8,7 +8,7 @@ import pytest
 from replay.firmware import FirmwareReplay, replay_firmware
 from sim.loop import Controller
 from tests.law_tables import ce150_table
-from tests.replay.firmware_flights import Command, Lossy, Wrapped, edited_law, flown, rows_of, stale
+from tests.replay.firmware_flights import Command, Lossy, Wrapped, edited_law, flown, own, rows_of, stale
 from tests.soak import sampled
 from verification.host_law import host_law
 
@@ -181,13 +181,13 @@ def test_what_lies_behind_a_law_in_fixed_point_is_named(controller: Callable[[Co
     [(5.3, "not_found"), pytest.param(8.0, "output_wraps", marks=pytest.mark.soak)],  # a range that integers have
 )
 def test_one_sample_that_is_off_proves_no_range_but_of_integers(off_V: float, cause: str) -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     log.u[int(np.argmax(log.u[:, 0])), 0] -= off_V
     assert replay_firmware(log, TABLE).cause == cause
 
 
 def test_differences_that_are_no_multiples_of_one_range_are_no_wrap() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     rows = log.u[:, 0] > 6.0
     log.u[rows, 0] -= np.random.default_rng(4).uniform(4.0, 12.0, int(rows.sum()))
     assert replay_firmware(log, TABLE).cause == "not_found"

@@ -20,7 +20,7 @@ from sim.loop import Controller, fly
 from sim.manoeuvres import flight
 from tests.controllers.rows import designed
 from tests.law_tables import ce150_table, changed_axis, dense_table
-from tests.replay.firmware_flights import Lossy, Wrapped, edited_law, flown, plant, rows_of, stale
+from tests.replay.firmware_flights import Lossy, Wrapped, default_flight, edited_law, flown, own, plant, rows_of, stale
 from tests.soak import sampled
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.host_law import HostLaw, host_law
@@ -214,13 +214,13 @@ def test_what_no_variant_explains_is_not_named(old: str, new: str) -> None:
 
 
 def test_random_outputs_are_not_explained_by_incidents() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     held = np.repeat(np.random.default_rng(5).normal(5.0, 1.0, (len(log.t_s) // 3 + 1, 2)), 3, axis=0)[: len(log.t_s)]
     assert replay_firmware(replace(log, u=held), TABLE).cause == "not_found"
 
 
 def test_the_digits_of_the_log_are_told_from_the_firmware() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     for rounded in (
         replace(log, u=np.round(log.u, 4)),
         replace(log, u=np.round(log.u, 4), y=np.round(log.y, 5)),
@@ -234,7 +234,7 @@ def test_the_digits_of_the_log_are_told_from_the_firmware() -> None:
 
 @pytest.mark.parametrize("numbered", sampled([False, True], keep=[True]))
 def test_missing_rows_are_recovered_where_the_log_allows_it(numbered: bool) -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     log = replace(log, seq=np.arange(len(log.t_s)) if numbered else None)
     kept = np.ones(len(log.t_s), bool)
     kept[[200, 500, 501, 1300]] = False
@@ -243,7 +243,7 @@ def test_missing_rows_are_recovered_where_the_log_allows_it(numbered: bool) -> N
 
 
 def test_of_five_rows_missing_in_a_row_nothing_is_recovered() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     kept = np.ones(len(log.t_s), bool)
     kept[800:805] = False
     assert replay_firmware(rows_of(log, kept), TABLE).cause == "missing_rows"
@@ -251,14 +251,14 @@ def test_of_five_rows_missing_in_a_row_nothing_is_recovered() -> None:
 
 @pytest.mark.soak
 def test_missing_numbers_are_recovered_where_the_log_allows_it() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     y = log.y.copy()
     y[[300, 900, 901], [0, 1, 1]] = np.nan
     assert replay_firmware(replace(log, y=y), TABLE).cause == "sample_not_logged"
 
 
 def test_a_log_of_another_table_is_refused_and_a_table_is_found_beside_the_log(tmp_path: Path) -> None:
-    log, path = flown(host_law(TABLE)), tmp_path / "run.csv"
+    log, path = own(), tmp_path / "run.csv"
     with pytest.raises(BadInput, match="which the log names"):
         replay_firmware(log, TIGHT)
     with pytest.raises(BadInput, match="a flight of table"):
@@ -276,7 +276,7 @@ def test_a_log_of_another_table_is_refused_and_a_table_is_found_beside_the_log(t
 def test_a_log_that_another_controller_flew_says_whose_table_lies_beside_it(tmp_path: Path) -> None:
     row, table = designed("fuzzy")
     write_atomic(tmp_path / "controller.json", row.text(table))
-    log = replace(flown(host_law(TABLE)), table_digest=table.digest)
+    log = replace(own(), table_digest=table.digest)
     found = replay_log(log, tmp_path / "run.csv")
     assert found is not None
     assert not found.replayed
@@ -284,7 +284,7 @@ def test_a_log_that_another_controller_flew_says_whose_table_lies_beside_it(tmp_
 
 
 def test_a_log_without_references_is_not_replayed() -> None:
-    log = flown(host_law(TABLE))
+    log = own()
     found = replay_firmware(replace(log, extra={}), TABLE)
     assert (found.replayed, found.bit_exact, found.cause) == (False, False, "not_replayable")
 
@@ -295,14 +295,17 @@ BEGUN = [(flew, begin_s) for flew in (TABLE, ce150_table(degree=2)) for begin_s 
 @pytest.mark.parametrize(("flew", "begin_s"), sampled(BEGUN, keep=[BEGUN[2], BEGUN[5]]))
 def test_a_log_that_begins_in_flight_is_told_from_another_firmware(flew: ControllerTable, begin_s: float) -> None:
     # References that move now and then do not matter: the filters forget how they began as well as if all rested.
-    log = fly(plant(), host_law(flew), flight(plant()), table_digest=TABLE.digest)
-    found = replay_firmware(rows_of(log, log.t_s > begin_s), TABLE)
+    if flew is TABLE:
+        log = default_flight(begin_s)
+    else:
+        log = fly(plant(), host_law(flew), flight(plant()), table_digest=TABLE.digest)
+        log = rows_of(log, log.t_s > begin_s)
+    found = replay_firmware(log, TABLE)
     assert (found.bit_exact, found.cause) == (False, "begins_in_flight" if flew is TABLE else "not_found")
 
 
 def test_a_log_too_short_to_tell_the_laws_state_says_that_its_beginning_may_be_missing() -> None:
-    log = fly(plant(), host_law(TABLE), flight(plant()), table_digest=TABLE.digest)
-    found = replay_firmware(rows_of(log, log.t_s > 100.0), TABLE)
+    found = replay_firmware(default_flight(100.0), TABLE)
     assert found.cause == "not_found"
     assert "from the first row on" in (found.sentence or "")
     assert "beginning" in (found.sentence or "")

@@ -15,7 +15,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
 
-SECONDS = 10.0
+SECONDS = 6.0
 EFFECTS = [
     {"azimuth.cable_spring": {"k": 0.01, "angle_0": 0.2, "h": 0.0}},
     {"azimuth.coulomb": {"b": 0.004}},

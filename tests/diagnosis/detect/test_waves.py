@@ -5,16 +5,17 @@ import pytest
 
 from diagnosis.detect.instants import disturbed_by
 from diagnosis.detect.linearisation import linearised
+from diagnosis.detect.score_tests import score_effects
 from diagnosis.detect.waves import likely_waves, wave_starts
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
+from diagnosis.search.fitting import Job, rough
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
-from tests.soak import sampled
 
 # Truth: 9 and 14 waves a turn, 5 rad/s by the log's clock.
 CYCLIC = {"phi_sensor.cyclic": {"amplitude": 0.003, "waves": 14.0, "phase": 0.7}}
@@ -63,7 +64,22 @@ def swung(log: RunLog, rate_rad_s: float) -> float:
     return float(max(shares))
 
 
-@pytest.mark.parametrize("truth", sampled([CYCLIC, PERIODIC], keep=[PERIODIC]))
+def test_a_sine_explains_more_than_a_springy_part(plant: BoundPlant, fly: Fly) -> None:
+    # Both are fitted from where their score tests begin.
+    case = make_case(effect_library(plant), [fly(63, PERIODIC, rig_seed=63)])
+    nominal = nominal_fit(case)
+    names = ("elevation.periodic_torque", "elevation.flexible_mode")
+    tests = {entry.effect: entry for entry in score_effects(case, linearised(case, nominal), names)}
+    sine, springy = (rough(case, Job(nominal, tests[name], False)) for name in names)
+    assert sine is not None
+    assert springy is None or sine.evidence > springy.evidence + 20.0
+    found = sine.fit.hypothesis.effects[names[0]]
+    assert found["rate"] == pytest.approx(5.0, rel=0.01)
+    assert abs(found["amplitude"]) == pytest.approx(0.001, rel=0.15)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("truth", [CYCLIC, PERIODIC])
 def test_a_sine_is_no_springy_part(plant: BoundPlant, fly: Fly, truth) -> None:
     # Both were told as a flexible mode before the library had sines.
     ((name, values),) = truth.items()

@@ -43,7 +43,7 @@ def test_folds_go_uphill_and_stay_within_their_bounds(top: float, reached: float
 def test_the_likeliest_of_some_hypotheses_has_the_filters_own_likelihood() -> None:
     linearisation = plain_linearisation()
     case, fitted = linearisation.case, linearisation.fit.hypothesis
-    worse = fitted.with_effects({"arm.cable_spring": {"k": 0.01, "angle_0": 0.0, "h": 0.0}})
+    worse = fitted.with_effects({"theta_sensor.delay": {"tau": 0.1, "jitter": 0.0}})
     best, value = likeliest(case, [worse, fitted])
     assert best is fitted
     assert value == likelihood_of(case, fitted) == likelihoods(case, [fitted])[0]

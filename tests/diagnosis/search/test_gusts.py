@@ -4,18 +4,18 @@ from dataclasses import replace
 
 import pytest
 
-from diagnosis.diagnose import Material, diagnose
+from diagnosis.diagnose import Material, _detected, _with_gusts, diagnose
 from diagnosis.explain.improved import improved_plant
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import effect_library
+from diagnosis.search.beam import Search
 from diagnosis.search.gusts import gust_sd, gusts
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
 from tests.diagnosis.conftest import Fly
-from tests.soak import SOAK
 
 # Truth: 1 mN m, a fortieth of what such an axis can be pushed with, forgotten in 0.7 s.
 GUST = {"elevation.gust": {"sigma": 1e-3, "T": 0.7}}
@@ -52,9 +52,21 @@ def test_an_axis_that_is_held_feels_no_gust(plant: BoundPlant, fly: Fly) -> None
     assert [entry.effects for entry in gusts(case, nominal)] == [("elevation.gust",)]
 
 
+def test_gusts_are_weighed_where_nothing_else_explains_the_logs(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: gusts on the elevation, and a search that found nothing.
+    seen = _detected(make_case(effect_library(plant), [fly(91, GUST, 20.0, rig_seed=90)]), None)
+    nothing = Search((seen.retuned,), seen.retuned, False, seen.linearisation, seen.score_tests)
+    found, _, weighed, rules = _with_gusts(seen, nothing, None)
+    assert found.fitted[0].effects == ("elevation.gust",)
+    assert weighed.fitted[0].effects == ("elevation.gust",)
+    told = {rule.rule: rule.outcome for rule in rules if rule.of != "azimuth.gust"}
+    assert (told["well_explained"], told["gust_explains"]) == ("gusts asked", "weighed")
+
+
+@pytest.mark.soak
 def test_a_restless_room_is_told_by_no_other_name(plant: BoundPlant, fly: Fly) -> None:
     # Before gusts were asked for, such logs were told as a springy arm beside a push, 0.80 together.
-    logs = [fly(seed, GUST, rig_seed=90) for seed in (91, 92)] if SOAK else [fly(91, GUST, 20.0, rig_seed=90)]
+    logs = [fly(seed, GUST, rig_seed=90) for seed in (91, 92)]
     result = diagnose(plant, Material(logs, [], [], [None] * len(logs)))
     assert result.diagnosis.verdict == "gap"
     named = {h.effect: h.probability for h in result.diagnosis.effects}
