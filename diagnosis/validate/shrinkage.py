@@ -73,13 +73,6 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     )
 
 
-def error(case: Case, predicted: Sequence[Predicted], variant: str) -> float:
-    """Mean square error of a model variant, each output in units of its floor."""
-    outputs = list(case.library.bound.model.outputs)
-    floor = np.array([case.flights[0].filter_input.single[case.library.outputs.index(name)] for name in outputs])
-    return float(np.nansum(_means(_squares(predicted, variant)) / floor))
-
-
 def _squares(predicted: Sequence[Predicted], variant: str) -> Array:
     """Mean square error by window and output; NaN for an output that a log does not hold; windows lacking another are left out."""
     found = []

@@ -356,7 +356,7 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
         "depends on psi and the direction in which psi moves"
     )
     assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
-    kept = Note("something_else_missing", "a.b", {"gone": 0.05, "gone_at_most": 0.09})
+    kept = Note("something_else_missing", "a.b", {"gain_nats": 0.1, "left_nats": 0.9})
     said = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
     assert plain_notes([kept, kept]) == [said]
     (plain,) = plain_notes([Note("contradiction", "b", {"gain_nats": 250.0, "moved": {"K_M": 4.2}})])
