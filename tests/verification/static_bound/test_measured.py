@@ -16,6 +16,7 @@ from verification.static_bound import static_bound
 
 Words = NDArray[np.uint32]
 SEED = 20
+CALLS = 4000 if SOAK else 1000
 
 
 def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
@@ -27,7 +28,7 @@ def nearly_cancelling(rng: np.random.Generator, pairs: Words) -> Words:
     return pairs
 
 
-# How far the bound may lie above the dearest of 4 000 inputs: paths that exclude each other beyond what sets of words can show.
+# How far the bound may lie above the dearest of 1 000 inputs: paths that exclude each other beyond what sets of words can show.
 LAW_CLOSENESS = 1.35
 MOST_CYCLES = 14_000  # in float32, whatever the bits
 CLOSENESS = {"sum": 1.2, "product": 1.2, "ratio": 1.2, "less": 1.1, "whole": 1.1, "as_float": 1.1}
@@ -38,7 +39,7 @@ def test_soft_float_never_costs_more_than_its_bound(function: str) -> None:
     elf = program().read_bytes()
     board, bound = EmulatedBoard(elf), static_bound(elf, function)
     rng = np.random.default_rng(SEED)
-    calls = [board.call(function, int(a), int(b)) for a, b in nearly_cancelling(rng, nasty_floats(rng, (4000, 2)))]
+    calls = [board.call(function, int(a), int(b)) for a, b in nearly_cancelling(rng, nasty_floats(rng, (CALLS, 2)))]
     dearest = max(calls, key=lambda call: call.cycles)
     assert dearest.cycles <= bound.cycles_bound <= CLOSENESS[function] * dearest.cycles
     assert max(call.stack_bytes for call in calls) == bound.stack_bytes
@@ -51,7 +52,7 @@ def test_the_passes_of_a_division_follow_from_its_code(function: str) -> None:
     elf = program().read_bytes()
     board, bound = EmulatedBoard(elf), static_bound(elf, function)
     rng = np.random.default_rng(SEED)
-    pairs = rng.integers(0, 2**32, (2000, 2), dtype=np.uint32) >> rng.integers(0, 32, (2000, 2)).astype(np.uint32)
+    pairs = rng.integers(0, 2**32, (CALLS, 2), dtype=np.uint32) >> rng.integers(0, 32, (CALLS, 2)).astype(np.uint32)
     dearest = max(board.call(function, int(a), int(b)).cycles for a, b in pairs)
     assert dearest <= bound.cycles_bound <= 1.2 * dearest
 
@@ -61,7 +62,7 @@ def test_one_step_of_the_law_never_costs_more_than_its_bound(degree: int) -> Non
     table = ce150_table(degree)
     elf = build_firmware(generate_law(table)).elf
     bound, law = static_bound(elf, "law_step"), TargetLaw(EmulatedBoard(elf))
-    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 10_000):
+    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 3_000):
         states = law.start(stimulus.angles) if stimulus.states is None else stimulus.states
         law.run(states, stimulus.inputs)
     assert bound.cycles_bound < MOST_CYCLES
