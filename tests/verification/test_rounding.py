@@ -27,7 +27,7 @@ from verification.affine import AffineArithmetic, half_ulp
 from verification.ranges import LawRanges, Motion, declared_ranges, share_within
 from verification.rounding import restricted_voltages, rounding_bound
 
-SAMPLES = 200_000 if SOAK else 50_000
+SAMPLES = 200_000 if SOAK else 20_000
 AXES = ("elevation", "azimuth")
 Lanes = NDArray[np.float32]
 
@@ -221,7 +221,7 @@ def _flown_states(table: ControllerTable) -> NDArray[np.uint32]:
     psi, psi_dot, thrust, phi, phi_dot, side = 0.0, 0.0, 5.6, 0.0, 0.0, 1.97
     state = twin.start(np.zeros((1, 2), dtype=np.uint32))
     states = []
-    for step in range(3000):
+    for step in range(3000 if SOAK else 1500):
         if step % 300 == 0:
             reference = (rng.uniform(-0.5, 0.5), rng.uniform(-1.0, 1.0))
         measured = np.round(np.array([psi, phi]) / table.elevation.resolution_rad) * table.elevation.resolution_rad
