@@ -1,8 +1,8 @@
 """Controller table -> C text of the law, its header and its self-test. Pure: the same table gives the same bytes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
 from typing import Any
 
 import jinja2
@@ -71,7 +71,20 @@ def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[st
     if arithmetic not in ARITHMETIC_CODES:
         known = " or ".join(ARITHMETIC_CODES)
         raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
-    context = shared_context(table, arithmetic) | _CONTEXTS[arithmetic](table)
+    return dict(_texts(_Named(table.digest, table), arithmetic))
+
+
+@dataclass(frozen=True)
+class _Named:
+    """A table that is known by its digest, which covers all of it."""
+
+    digest: str
+    table: ControllerTable = field(compare=False)
+
+
+@lru_cache(maxsize=16)  # the self-test's expected results are computed step by step, and several stages ask for one law
+def _texts(named: _Named, arithmetic: str) -> dict[str, str]:
+    context = shared_context(named.table, arithmetic) | _CONTEXTS[arithmetic](named.table)
     templates = _TEMPLATES[arithmetic]
     return {name: _environment().get_template(template).render(context) for name, template in templates.items()}
 

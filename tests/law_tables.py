@@ -19,10 +19,7 @@ Row = list[mpmath.mpf]
 def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> ControllerTable:
     """Like the CE150 of facts/ce150.md C4: an integrating elevation (dom2/int) and an azimuth without (eq4/q3)."""
     with mpmath.workdps(DIGITS):
-        elevation_poles = [mpmath.exp(SAMPLE_PERIOD_S * s) for s in (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0)]
-        azimuth_poles = [mpmath.exp(SAMPLE_PERIOD_S * -4.0)] * 6
-        elevation = [_placed(*_elevation_plant(psi), elevation_poles, integral=True) for psi in PSI_GRID_RAD]
-        azimuth = [_placed(*_azimuth_plant(psi), azimuth_poles, integral=False) for psi in PSI_GRID_RAD]
+        elevation, azimuth = _both_placed()
         return ControllerTable(
             plant="ce150",
             sample_period_s=SAMPLE_PERIOD_S,
@@ -32,6 +29,17 @@ def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> Con
             azimuth=_axis(azimuth, degree, (1.97, 0.0, -0.33), prefilter_time_constant_s, (-10.0, 10.0, 0.0), 2.27),
             origin={"made_for": "tests"},
         )
+
+
+@cache
+def _both_placed() -> tuple[list[tuple[Row, Row]], list[tuple[Row, Row]]]:
+    """Q and P of elevation and azimuth at each elevation of the grid."""
+    with mpmath.workdps(DIGITS):
+        elevation_poles = [mpmath.exp(SAMPLE_PERIOD_S * s) for s in (-3.0, -4.0, -7.0, -12.0, -15.0, -20.0)]
+        azimuth_poles = [mpmath.exp(SAMPLE_PERIOD_S * -4.0)] * 6
+        elevation = [_placed(*_elevation_plant(psi), elevation_poles, integral=True) for psi in PSI_GRID_RAD]
+        azimuth = [_placed(*_azimuth_plant(psi), azimuth_poles, integral=False) for psi in PSI_GRID_RAD]
+        return elevation, azimuth
 
 
 def _axis(
