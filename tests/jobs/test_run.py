@@ -18,7 +18,7 @@ from jobs.job import Done, Job
 from jobs.keep import Answers
 from jobs.run import run
 from tests.jobs import doing
-from tests.soak import SOAK
+from tests.soak import SOAK, sampled
 from tests.test_project import ROOT
 
 PATIENCE_S = 120.0  # only ends a test that has hung
@@ -131,8 +131,12 @@ def alive(worker: str) -> bool:
         return False
 
 
+# How it is ended, and whether its workers are told as well.
+ENDED = [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)]
+
+
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc to see processes")
-@pytest.mark.parametrize(("sign", "to_all"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)])
+@pytest.mark.parametrize(("sign", "to_all"), sampled(ENDED, keep=[ENDED[0], ENDED[2]]))
 def test_ended_in_the_middle_it_keeps_what_is_done_and_leaves_no_process(
     tmp_path: Path, sign: signal.Signals, to_all: bool
 ) -> None:
