@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 
 from jobs.code import code_digest
@@ -138,7 +138,9 @@ class _Shift:
             self.out.clear()
 
     def _renew(self) -> None:
-        self._stack.close()
+        """Another crew for one of which somebody has died: who is left of it is ended, as one that was just begun may wait for ever."""
+        with suppress(BrokenExecutor), self._stack.pop_all():
+            raise BrokenExecutor
         self._hands = None
 
     def _settle(self, place: _Place, outcome: Outcome) -> None:

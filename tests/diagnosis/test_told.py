@@ -119,13 +119,15 @@ def test_an_answer_without_a_gap_names_its_exit_and_keeps_notes_rules_and_chance
 
 def test_a_small_gap_that_nothing_explains_does_not_stand_and_keeps_its_chance() -> None:
     small = seen()
-    small = replace(small, detection=replace(small.detection, p=4e-13, largest=30.0))
+    small = replace(small, detection=replace(small.detection, p=4e-5, largest=30.0))
     after, stands = borne_out(small, Weighed((), (), 0.66, 0.34, 10.0))
     assert not stands
-    assert after.detection.p == 4e-13
+    assert after.detection.p == 4e-5
     assert after.decisions[-1].rule == "borne_out"
     assert (after.decisions[-1].value, after.decisions[-1].limit) == (0.34, 0.66)
     assert borne_out(small, Weighed((), (), 0.2, 0.8, 10.0))[1]
+    sure = replace(small, detection=replace(small.detection, p=4e-13))
+    assert borne_out(sure, Weighed((), (), 0.66, 0.34, 10.0))[1]
 
 
 ROUGH = {"arm.coulomb": {"b": 5e-4}}

@@ -11,6 +11,7 @@ from rig.programming.image import FIRMWARE_DIR, build_firmware, linker_script
 from tests.firmware.box import DIGEST, sample_words, stand_in_law, word
 from tests.firmware.desk import MODES, STATES, Desk
 from tests.law_tables import ce150_table
+from tests.soak import SOAK
 from toolchain.host import CText
 from toolchain.target import TARGET_FLAGS, build_image
 
@@ -202,7 +203,7 @@ def test_a_byte_that_comes_just_before_the_sleep_is_not_slept_over(stand_in):
     learning.board.run_until_symbol("TIM6_Handler", learning.board.time_s + 2 * TICK_S)
     learning.board.run_until_symbol("board_sleep", learning.board.time_s + TICK_S)
     sleep_s = learning.board.time_s
-    for cycles in range(-80, 100, 4):
+    for cycles in range(-80, 100, 4 if SOAK else 12):
         desk = Desk(stand_in)
         line = desk.put("IDENTIFY")
         desk.board.uart_write(line[:-1])
@@ -256,7 +257,7 @@ def test_a_start_that_hangs_is_tried_again_with_the_outputs_off():
     hanging = stand_in_law()
     hanging["law.c"] = hanging["law.c"].replace("law_state state;\n", "law_state state;\n    for (;;) {\n    }\n", 1)
     board = EmulatedBoard(build_firmware(hanging).elf)
-    board.run_until_s(5.0)
+    board.run_until_s(4.5)
     assert [reset.cause for reset in board.resets] == ["power", "watchdog", "watchdog"]
     assert board.resets[1].time_s == pytest.approx(2.0, rel=0.1)
     assert board.pwm().enabled is False

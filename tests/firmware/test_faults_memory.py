@@ -78,11 +78,11 @@ class Plane(Desk):
 
 
 def bits(first: int, last: int, seed: int) -> list[tuple[int, int]]:
-    """(byte, bit) of each bit of a range; in the suite one bit of every second byte."""
+    """(byte, bit) of each bit of a range; in the suite one bit of every fourth byte."""
     if SOAK:
         return [(byte, bit) for byte in range(first, last) for bit in range(8)]
     source = random.Random(seed)
-    return [(byte, source.randrange(8)) for byte in range(first, last, 2)]
+    return [(byte, source.randrange(8)) for byte in range(first, last, 4)]
 
 
 def test_every_bit_of_the_state_under_the_seal_turns_the_outputs_off_at_the_next_tick(stand_in):
@@ -143,7 +143,7 @@ def test_a_board_whose_seal_broke_is_reset_by_the_watchdog_and_says_so(stand_in)
     assert plane.drives
 
 
-@pytest.mark.parametrize("seed", range(20 if SOAK else 2))
+@pytest.mark.parametrize("seed", range(20 if SOAK else 1))
 def test_any_bit_of_ram_at_any_time_leaves_a_board_that_is_safe_without_its_host_and_can_be_taken_back(stand_in, seed):
     """The host falls silent as the bit flips, in the middle of a control step as often as not: nothing may keep flying."""
     plane, source = Plane(stand_in), random.Random(f"any {seed}")

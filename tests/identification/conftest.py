@@ -1,4 +1,4 @@
-"""The CE150, its controller and a flight; one rig drawn from what its file states, and the nine experiments on that rig."""
+"""The CE150, its controller and a flight; one rig drawn from what its file states and the nine experiments on it; one of the paper's."""
 
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from records.table import load_table
 from sim.bind import bind
 from sim.loop import fly_law
 from sim.manoeuvres import flight
+from tests.plants import bound as plant_of
 
 PLANTS = Path(__file__).parents[2] / "plants"
 SEED = 3
@@ -47,3 +48,9 @@ def experiments(truth):
 @pytest.fixture(scope="session")
 def stages(bound, experiments):
     return identify_staged(bound, list(experiments.values()))
+
+
+@pytest.fixture(scope="session")
+def main_motor():
+    """Experiment u1 of the paper's own set."""
+    return perform("main_motor", plant_of("ce150_velagic"), 1)

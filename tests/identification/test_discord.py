@@ -25,21 +25,33 @@ def other(bound):
     return off(bound, {"J_A": 1.2})
 
 
-def run_of(rig, seed, nominal):
-    """Thirty seconds of a flight of that rig, as a run of the nominal plant."""
+@pytest.fixture(scope="module")
+def run_of(bound):
+    """Thirty seconds of a flight of a rig, as a run of the nominal plant; each is flown once."""
+    flown = {}
+
+    def found(rig, seed):
+        if (id(rig), seed) not in flown:
+            flown[id(rig), seed] = _run_of(rig, seed, bound)
+        return flown[id(rig), seed]
+
+    return found
+
+
+def _run_of(rig, seed, nominal):
     work = task(rig, seed)
     log = replace(work.log, t_s=work.log.t_s[:3000], u=work.log.u[:3000], y=work.log.y[:3000])
     return log_run(nominal, log, f"log {seed}", 5.0, at_first=work.x0)
 
 
-def test_logs_of_one_rig_agree(bound):
-    found = estimate([run_of(bound, seed, bound) for seed in (1, 2, 3)], NAMES, ranges_of(bound, NAMES), NOTHING)
+def test_logs_of_one_rig_agree(bound, run_of):
+    found = estimate([run_of(bound, seed) for seed in (1, 2, 3)], NAMES, ranges_of(bound, NAMES), NOTHING)
     assert found.discords == ()
 
 
-def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other):
+def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other, run_of):
     """Two of one rig and one of the other: that one says 1.2 times the inertia, by at least five sd, and it alone is named."""
-    runs = [run_of(bound, 1, bound), run_of(other, 2, bound), run_of(bound, 3, bound)]
+    runs = [run_of(bound, 1), run_of(other, 2), run_of(bound, 3)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     first = found.discords[0]
     assert (first.run, first.name) == ("log 2", "J_A")
@@ -47,8 +59,8 @@ def test_the_log_of_another_rig_is_named_with_its_parameter(bound, other):
     assert any("log 2 contradicts the others in J_A" in note for note in stage_notes("three logs", found))
 
 
-def test_two_logs_that_contradict_each_other_are_told_once(bound, other):
-    runs = [run_of(bound, 1, bound), run_of(other, 2, bound)]
+def test_two_logs_that_contradict_each_other_are_told_once(bound, other, run_of):
+    runs = [run_of(bound, 1), run_of(other, 2)]
     found = estimate(runs, NAMES, ranges_of(bound, NAMES), NOTHING)
     assert [entry.name for entry in found.discords] == ["J_A"]
     assert any("log 1 contradicts log 2 in J_A" in note for note in stage_notes("two logs", found))

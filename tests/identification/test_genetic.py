@@ -108,10 +108,10 @@ def test_mutation_turns_a_tenth_of_the_bits():
 
 
 @pytest.fixture(scope="module")
-def problem():
+def problem(main_motor):
     """u1 of the paper's set with four free parameters."""
     plant, kind = plant_of("ce150_velagic"), kinds_of("ce150_velagic")["main_motor"]
-    run = kind.run(perform("main_motor", plant, 1), plant)
+    run = kind.run(main_motor, plant)
     names = ("a_1", "b_1", "B_psi", "I_inv")
     lower, upper = (np.array([kind.code[name][side] for name in names]) for side in (0, 1))
     start = np.array([plant.parameter(name) for name in names])
@@ -120,7 +120,7 @@ def problem():
 
 def test_a_population_at_once_predicts_what_each_does_alone(problem):
     rng = np.random.default_rng(5)
-    thetas = rng.uniform(problem.lower, problem.upper, (9, 4))
+    thetas = rng.uniform(problem.lower, problem.upper, (5, 4))
     run = problem.runs[0]
     alone = np.stack([predicted(run, problem.names, theta) for theta in thetas])
     np.testing.assert_allclose(predictions(run, problem.names, thetas), alone, atol=1e-9)
@@ -137,7 +137,7 @@ def test_what_is_left_at_the_truth_is_the_encoder_s_rounding(problem):
 @pytest.mark.parametrize("method", ["genetic", "evolution", "gradient"])
 def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start(monkeypatch, method):
     """Experiment 3 of seed 000: Psi_m has no bounds, and is 0 on this rig; every reading is a balance, not a motion."""
-    monkeypatch.setattr(methods, "evolve", partial(evolve, settings=Settings(generations=40)))
+    monkeypatch.setattr(methods, "evolve", partial(evolve, settings=Settings(generations=25)))
     plant = plant_of("ce150")
     stage = identify_stage(plant, perform("gravity", plant, 1), NOTHING, None, Search(method, 1))
     (found,) = stage.result.searched
@@ -147,7 +147,8 @@ def test_a_parameter_without_bounds_is_looked_for_within_five_sizes_of_its_start
     assert stage.belief.value("tau_gE") == pytest.approx(plant.parameter("tau_gE"), rel=3e-3)
 
 
-def test_a_better_string_is_told_at_once(problem):
+def test_a_better_string_is_told_at_once(monkeypatch, problem):
+    monkeypatch.setattr(methods, "evolve", partial(evolve, settings=Settings(generations=10)))
     told = []
     found = search(problem, [0, 1, 2, 3], Search("genetic", 2), lambda values: told.append(dict(values)))[0]
     assert told

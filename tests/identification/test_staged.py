@@ -153,6 +153,7 @@ def test_an_arm_without_its_weights_is_known_by_ratios_alone(bound, experiments)
 def test_the_controller_designed_from_the_result_flies_the_rig(bound, truth, stages):
     """V1 and V2: flown by the same controller, rig and identified plant stay within a degree of one another."""
     result = identification(bound.plant, [(stage.kind, stage.result) for stage in stages], stages[-1].belief)
-    compared = compare_flights(bind(result.plant), truth)
+    few = replace(result.plant, design={**result.plant.design, "operating_points": 17 if SOAK else 5})
+    compared = compare_flights(bind(few), truth)
     assert compared.rms["psi_rad"] < np.radians(0.5)
     assert compared.rms["phi_rad"] < np.radians(0.5)

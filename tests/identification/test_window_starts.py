@@ -9,6 +9,7 @@ from identification.runs.log_run import run_of
 from identification.runs.window_starts import crawling
 from identification.stages.logs import identify_logs
 from tests.identification.flights import cut
+from tests.soak import SOAK
 
 
 @pytest.fixture(scope="module")
@@ -78,10 +79,9 @@ def test_a_fit_over_one_long_window_begins_from_starts_that_were_fitted(bound, f
     """Three seconds at a time, J_E within 3 sd; with parameters and a rotor's guessed start let go at once it was 6.3 sd off from 60 s on.
 
     Whether all is explained, so that the log is taken whole, hangs on the last bits of the flight where the azimuth comes to rest: in
-    three of five it is.
+    most of five it is.
     """
-    found = [
-        identify_logs(bound, {"log": cut(flown, begin_s, 3.0)}, ("J_E",)) for begin_s in (58.0, 60.0, 60.5, 61.0, 62.0)
-    ]
-    assert sum(entry.runs[0].begins.size == 1 for entry in found) >= 3
+    begins_s = (58.0, 60.0, 60.5, 61.0, 62.0) if SOAK else (58.0, 60.0, 62.0)
+    found = [identify_logs(bound, {"log": cut(flown, begin_s, 3.0)}, ("J_E",)) for begin_s in begins_s]
+    assert sum(entry.runs[0].begins.size == 1 for entry in found) > len(begins_s) // 2
     assert all(np.all(errors_sd(bound, entry) < 3.0) for entry in found)

@@ -65,7 +65,7 @@ def test_a_library_that_was_cut_short_is_built_again(cache: Path, tmp_path: Path
 
 def test_a_library_that_calls_what_nobody_has_is_refused_when_it_is_built(cache: Path) -> None:
     source = CText("answer.c", "int nobody_has_this(void);\nint answer(void) { return nobody_has_this(); }\n")
-    with pytest.raises(BadInput, match="nobody_has_this"):
+    with pytest.raises(BadInput, match="undefined symbol: nobody_has_this"):
         build_shared("answer", [source])
     assert not list(cache.iterdir())
 
@@ -76,9 +76,35 @@ def test_c_calls_the_c_library_that_python_runs_with(cache: Path) -> None:
     assert library.answer(2.5) == math.exp(2.5) + math.tanh(2.5)
 
 
+# Division of 128 bits by 64 that does not fold: the compiler calls a routine of its runtime.
+LACKED = CText(
+    "part.c",
+    "unsigned long long part(unsigned long long x, unsigned long long y) { return (unsigned __int128)x * x / y / y; }\n",
+)
+
+
+def test_the_compilers_runtime_is_asked_for_what_a_processor_lacks(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second time without `-nostdlib`; a name that no runtime has is not asked for twice."""
+    asked: list[Sequence[str]] = []
+    compile_once = host.run_zig
+
+    def at_first_alone(arguments: Sequence[str], what: str) -> None:
+        asked.append(arguments)
+        if "-nostdlib" in arguments:
+            compile_once(arguments, what)
+        raise BadInput("the runtime", what, "its five seconds", "those of a soak", "see the next test")
+
+    monkeypatch.setattr(host, "run_zig", at_first_alone)
+    with pytest.raises(BadInput, match="its five seconds"):
+        build_shared("part", [LACKED])
+    assert ["-nostdlib" in arguments for arguments in asked] == [True, False]
+
+
+@pytest.mark.soak
 def test_what_a_processor_lacks_comes_from_the_compilers_runtime(cache: Path) -> None:
-    text = "unsigned long long third(unsigned long long x) { return (unsigned __int128)x * x / 3 / x; }\n"
-    library = load_shared(
-        "unsigned long long third(unsigned long long);", build_shared("third", [CText("third.c", text)])
-    )
-    assert library[1].third(2**63) == 2**63 // 3
+    """Zig's runtime is built for it, once in five seconds."""
+    declared = "unsigned long long part(unsigned long long, unsigned long long);"
+    x, y = 2**63 + 5, 2**33 + 1
+    assert load_shared(declared, build_shared("part", [LACKED]))[1].part(x, y) == x * x // y // y

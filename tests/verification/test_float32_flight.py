@@ -73,7 +73,7 @@ def test_the_reference_filter_arrives_at_its_target_and_stays() -> None:
     twin = Float32Twin(ce150_table())
     state = twin.law_reset(twin.lanes, starts_rad, starts_rad)
     for axis, numbers in ((state.elevation, twin.law.elevation), (state.azimuth, twin.law.azimuth)):
-        for _ in range(9000):
+        for _ in range(4500):
             axis = prefilter(numbers, twin.lanes, axis, targets_rad)
         assert np.array_equal(axis.reference_1_rad, targets_rad)
         assert np.array_equal(axis.reference_2_rad, targets_rad)

@@ -3,6 +3,7 @@
 import io
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import lru_cache
 
 from elftools.common.exceptions import ELFError
 from elftools.elf.elffile import ELFFile
@@ -66,6 +67,7 @@ class ElfImage:
         return self.functions[address]
 
 
+@lru_cache(maxsize=2)  # of an image many functions are asked about
 def load_elf(elf: bytes) -> ElfImage:
     """Read an ARM ELF image with a symbol table; raises BadInput for anything else."""
     try:

@@ -12,11 +12,13 @@ from identification.envelope.flights.flight import joined
 from identification.envelope.flights.shortcomings import poor, unused
 from identification.envelope.one_condition import Interpolated
 from identification.envelope.study import study
+from identification.envelope.truth import fly as flying
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
 from identification.envelope.truth.linear import linearised
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
+from tests.soak import SOAK
 
 ENDS = (Condition("HF", 6000, 70), Condition("HF", 6000, 90))
 BETWEEN = (Condition("HF", 6000, 80),)
@@ -24,7 +26,11 @@ BETWEEN = (Condition("HF", 6000, 80),)
 
 @pytest.fixture(scope="module")
 def flights():
-    return fly(drawn(11), plan(ENDS, BETWEEN), 11)
+    """Integrated in two steps a sample, in five in a soak: no test here asks for more digits than the noise leaves."""
+    with pytest.MonkeyPatch.context() as patch:
+        if not SOAK:
+            patch.setattr(flying, "STEP_s", 0.025)
+        return fly(drawn(11), plan(ENDS, BETWEEN), 11)
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from identification.frequency.flights.helicopter import sweep_flights
 from identification.frequency.flights.plant_sweep import closed_loop_sweeps
@@ -18,7 +19,7 @@ from identification.proof.monte_carlo_frequency import repetition
 from records.errors import BadInput
 from records.plant import load_plant
 from tests.plants import PLANTS, bound
-from tests.soak import SOAK
+from tests.soak import SOAK, sampled
 
 PSI_RAD = -0.15
 BAND_RAD_S = (0.4, 12.0)  # of the helicopter's sweeps of 70 s
@@ -116,21 +117,20 @@ def test_the_intervals_are_what_estimates_scatter_by(one_search):
     sweep, model, rng = design_sweep(0.8, 8.0, 0.05), Lag(), np.random.default_rng(4)
     t_s = 0.05 * np.arange(round(sweep.duration_s / 0.05))
     u = sweep_input(sweep, t_s, 1.0)[:, None]
-    clean = np.zeros(u.shape)
     keep = np.exp(-0.05 / 0.5)
-    for k in range(u.shape[0] - 1):
-        clean[k + 1] = keep * clean[k] + 2.0 * (1.0 - keep) * u[k]
+    clean = lfilter([0.0, 2.0 * (1.0 - keep)], [1.0, -keep], u, axis=0)
     values, sds = [], []
     for _ in range(count):
-        noise, white = np.zeros(u.shape), 0.1 * rng.standard_normal(u.shape)
-        for k in range(u.shape[0] - 1):
-            noise[k + 1] = 0.9 * noise[k] + white[k]
+        noise = lfilter([0.0, 1.0], [1.0, -0.9], 0.1 * rng.standard_normal(u.shape), axis=0)
         fit = match(model, [Record("lag", 0.05, u, clean + noise, u)], (0.8, 8.0))
         values.append(fit.theta)
         sds.append(fit.sd)
     scatter, stated = np.std(values, axis=0), np.mean(sds, axis=0)
     np.testing.assert_allclose(stated, scatter, rtol=0.3)
     assert np.all(np.abs(np.mean(values, axis=0) - model.start) < 3.0 * scatter / np.sqrt(count))
+
+
+INPUTS = ("inputs", (0.8, 0.8), 0.4, 4.0)
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +141,7 @@ def loop(table):
 
 @pytest.mark.parametrize(
     ("on", "amplitudes", "off_dB", "off_deg"),
-    [("inputs", (0.8, 0.8), 0.4, 4.0), ("references", (0.06, 0.15), 0.4, 4.0)],
+    sampled([INPUTS, ("references", (0.06, 0.15), 0.4, 4.0)], keep=[INPUTS]),
 )
 def test_the_ce150_in_its_loop_has_the_responses_of_its_linearisation(
     loop, one_search, on, amplitudes, off_dB, off_deg

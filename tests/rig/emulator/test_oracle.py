@@ -20,8 +20,8 @@ from tests.rig.emulator.thumb import (
 from tests.soak import SOAK, sampled
 
 FLASH, RAM = STM32G071.flash, STM32G071.ram
-# 220 800 instructions in a soak, 6 900 else; some 7 % are unaligned accesses.
-SHARDS, SLOTS, VISITS = range(4), 6900, 8 if SOAK else 1
+# 220 800 instructions in a soak, 3 000 else; some 7 % are unaligned accesses.
+SHARDS, SLOTS, VISITS = range(4), *((6900, 8) if SOAK else (3000, 1))
 FIRST = 0x10000  # the middle of flash, so that all branches stay inside
 STRIDE = 8
 SOFT = """
@@ -85,7 +85,7 @@ def test_random_instructions_leave_the_same_registers_flags_and_memory_as_unicor
         assert board.read_memory(RAM.start, RAM.size_bytes) == oracle.sram()
     assert compared >= 0.9 * SLOTS * VISITS
     assert set(executed) == {*CLASSES, *HIGH_CLASSES, *LONG_CLASSES}
-    assert min(executed.values()) > 12 * VISITS, executed
+    assert min(executed.values()) > SLOTS // 575 * VISITS, executed
 
 
 @pytest.mark.parametrize("name", ["scale", "divide", "product"])

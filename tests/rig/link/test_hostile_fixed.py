@@ -15,8 +15,8 @@ from verification.stimuli import Stimulus
 
 TABLE = ce150_table()
 STEPS = 20 if SOAK else 8
-EVERY_NTH = 1 if SOAK else 149  # byte of a session
-FRAMES = 1_000_000 if SOAK else 750
+EVERY_NTH = 1 if SOAK else 331  # byte of a session
+FRAMES = 1_000_000 if SOAK else 500
 LANE_STEPS = 250
 
 

@@ -7,7 +7,7 @@ import pytest
 from tests.rig.link.campaign import REFUSALS, Campaign, flown, told
 from tests.soak import SOAK
 
-FRAMES = 1_000_000 if SOAK else 20_000
+FRAMES = 1_000_000 if SOAK else 6_000
 
 
 @pytest.fixture(scope="module")

@@ -357,7 +357,10 @@ def test_words_stand_beside_what_is_short_or_has_no_meaning() -> None:
     )
     assert class_in_words("dead band of u_V on input") == "dead band of u_V on input"
     kept = Note("something_else_missing", "a.b", {"gain_nats": 0.1, "left_nats": 0.9})
-    said = "a.b takes 5 % of the hold-out's error away, 9 % at most: something else is missing"
+    said = (
+        "a.b makes predictions of the hold-out 1.1 times as good, yet they stay 2.5 times as far off as "
+        "the sensors and the noise would leave them: something else is missing"
+    )
     assert plain_notes([kept, kept]) == [said]
     (plain,) = plain_notes([Note("contradiction", "b", {"gain_nats": 250.0, "moved": {"K_M": 4.2}})])
     assert "b would be e^250 times likelier with numbers of its own (K_M +4.2," in plain

@@ -7,7 +7,7 @@ import pytest
 from records.errors import BadInput, VerificationFailed
 from rig.emulator.board import EmulatedBoard
 from tests.verification.static_bound.static_programs import INSTRUCTIONS, RETURN_CYCLES, instruction_name, program
-from verification.static_bound import LoopBound, exception_stack_bytes, static_bound, thumb_cycles
+from verification.static_bound import LoopBound, exception_stack_bytes, exploration, static_bound, thumb_cycles
 
 SCRATCH = 0x20000100
 
@@ -98,7 +98,10 @@ def test_a_frame_too_large_for_one_instruction_is_followed(elf: bytes) -> None:
         ("into_data", "run into data"),
     ],
 )
-def test_what_has_no_bound_is_refused_by_name_and_place(elf: bytes, function: str, said: str) -> None:
+def test_what_has_no_bound_is_refused_by_name_and_place(
+    elf: bytes, monkeypatch: pytest.MonkeyPatch, function: str, said: str
+) -> None:
+    monkeypatch.setattr(exploration, "MOST_PASSES", 256)  # a sixteenth: all of them take half a second
     with pytest.raises(VerificationFailed, match=said):
         static_bound(elf, function)
 

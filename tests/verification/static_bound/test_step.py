@@ -19,8 +19,8 @@ from verification.static_bound.thumb import CONDITIONS, Instruction, decode
 from verification.static_bound.words import MASK, Word
 
 CODE = 0x08000000
-PROGRAMS, LENGTH, SEED = 3000 if SOAK else 600, 4, 30
-EXAMPLES = 300 if SOAK else 60
+PROGRAMS, LENGTH, SEED = 3000 if SOAK else 300, 4, 30
+EXAMPLES = 300 if SOAK else 30
 NOTHING = ElfImage((), {}, {}, ())
 
 
