@@ -14,6 +14,7 @@ from records.table import ControllerTable
 from tests.design.flying import ELEVATION_DEG, Flight, fly, manoeuvre
 from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for, table_for
 from tests.design.trap_laws import CLAMPED, FEEDBACK, TOTAL, DirectLaw
+from tests.soak import sampled
 
 E4, E6, E8, E12 = (equal(pole) for pole in (-4.0, -6.0, -8.0, -12.0))
 AZIMUTH = (E4, "q3_zero")
@@ -100,7 +101,10 @@ def test_limited_voltage_fed_back_locks_the_elevation_into_bang_bang():
     assert observer.mean_error_deg(0) < 1.5
 
 
-@pytest.mark.parametrize(("azimuth", "locked_from_s"), [((E4, "q3_zero"), 62.0), ((E6, "q3_zero"), 20.0)])
+@pytest.mark.parametrize(
+    ("azimuth", "locked_from_s"),
+    sampled([((E4, "q3_zero"), 62.0), ((E6, "q3_zero"), 20.0)], keep=[((E6, "q3_zero"), 20.0)]),
+)
 def test_limited_voltage_fed_back_locks_the_azimuth_at_the_stop(azimuth, locked_from_s):
     made = table((E8, "q3_zero"), azimuth)
     trap, observer = flown(DirectLaw(made, CLAMPED)), flown(made)

@@ -21,10 +21,16 @@ from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settin
 from tests.plants import stated_table
 from tests.soak import sampled
 
+OWN = ((DOM2, "integral"), (AZ_DOM, "integral"))
+
+
+def designed(sets=OWN):
+    return _designed(sets)
+
 
 @cache
-def designed(elevation=(DOM2, "integral"), azimuth=(AZ_DOM, "integral")):
-    return design(helicopter(), settings_for(elevation, azimuth))
+def _designed(sets):
+    return design(helicopter(), settings_for(*sets))
 
 
 def slowest(axis, form, source, storage):
@@ -95,7 +101,7 @@ def test_worst_margins_are_those_of_the_worst_angle_each():
 
 def test_table_reads_back_with_its_digest_and_is_the_same_from_the_same_plant(tmp_path):
     table, _ = designed()
-    again, _ = design(helicopter(), settings_for())
+    again = make_table(helicopter(), settings_for(), design_points(helicopter(), settings_for()))
     path = tmp_path / "controller.json"
     path.write_text(table_text(table))
     assert load_table(path) == table == again
@@ -140,13 +146,13 @@ PUBLISHED = [
     *((wishes, (equal(-4.0), "q3_zero")) for wishes in USABLE),
     *(((DOM2, "integral"), azimuth) for azimuth in USABLE_AZIMUTH),
 ]
-# The fastest and the slowest equal poles, and the set that the other tests have designed anyway.
-KEPT = [PUBLISHED[4], PUBLISHED[12], PUBLISHED[17]]
+# The fastest equal poles, and the set that the other tests have designed anyway; the slowest have a test of their own.
+KEPT = [PUBLISHED[4], PUBLISHED[17]]
 
 
 @pytest.mark.parametrize(("elevation", "azimuth"), sampled(PUBLISHED, keep=KEPT))
 def test_every_published_set_passes_the_gate(elevation, azimuth):
-    _, report = designed(elevation, azimuth)
+    _, report = designed((elevation, azimuth))
     assert (report.elevation.free_degree, report.azimuth.free_degree) == (elevation[1], azimuth[1])
     assert report.elevation.after_rounding.stable
     assert report.azimuth.after_rounding.stable
@@ -187,6 +193,7 @@ def test_a_table_below_a_stated_margin_is_refused_with_angle_and_margin(limits, 
         check(report, replace(settings_for(), margins=limits))
 
 
+@pytest.mark.soak  # the loop that is made unstable above passes through the same gate
 def test_no_table_leaves_the_design_below_a_stated_margin():
     with pytest.raises(BadInput, match="sensitivity"):
         design(helicopter(), replace(settings_for(), margins=MarginLimits(1.5, 0.1, 0.01)))

@@ -20,6 +20,7 @@ from sim.kernel.sincos import sincos_header
 from sim.model import Model
 from sim.symbolic.switches import Line, levels, vanishing
 from tests.plants import bound
+from tests.soak import SOAK, sampled
 from toolchain.host import FAST_FLAGS, CText, build_shared, c_text, load_shared
 
 ARGUMENTS = "const double *p, double t_s, const double *x, const double *u, const double *sign, double *dx, double *A, double *D"
@@ -54,10 +55,12 @@ def carried(name: str) -> tuple[str, ...]:
             model = with_effects(plant, {name: {}}).model
             if (len(model.states), len(model.axes)) == size:
                 found.append(name)
-    return tuple(found)
+    # An effect of two axes has the same equations on both: one of each kind will do, but for a soak.
+    kinds = {name.partition(".")[2]: name for name in found}
+    return tuple(found if SOAK else kinds.values())
 
 
-@pytest.fixture(scope="module", params=["ce150", "aeroshield"])
+@pytest.fixture(scope="module", params=sampled(["ce150", "aeroshield"], keep=["ce150"]))
 def plant(request: pytest.FixtureRequest) -> BoundPlant:
     return bound(request.param)
 
@@ -74,8 +77,9 @@ def compiled(model: Model):
         CText("seen.c", SEEN),
     )
     headers = [c_text(C_DIR / name) for name in ("lane.h", "sincos.h")]
+    # Called a hundred times: what the compiler would need for faster code is more than that code could save.
     ffi, lib = load_shared(
-        f"{DECLARATION};", build_shared("switches", (*made, *headers), flags=("-O1", *FAST_FLAGS[1:]))
+        f"{DECLARATION};", build_shared("switches", (*made, *headers), flags=("-O0", *FAST_FLAGS[1:]))
     )
     states, parameters = len(model.states), len(model.parameter_symbols)
 

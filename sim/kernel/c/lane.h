@@ -52,7 +52,11 @@ static inline num lane_copysign(num a, num b) { return __builtin_elementwise_cop
 #define UNROLLED _Pragma("clang loop unroll(full)")
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 #ifndef MODEL_CODE /* how a plant's equations are compiled: inside their callers, or once for all where the compiler's time counts */
+#ifdef EQUATIONS_ONCE
+#define MODEL_CODE static __attribute__((noinline, unused))
+#else
 #define MODEL_CODE ALWAYS_INLINE
+#endif
 #endif
 
 static inline num lane_min(num a, num b) { return select(is_less(b, a), b, a); }

@@ -38,7 +38,7 @@ def test_a_growing_force_breaks_the_body_away_at_the_right_time(mechanism):
 def test_friction_turns_with_the_motion_without_sticking(mechanism, direction):
     """Thrown up a slope whose pull exceeds friction: slower on the way back, in closed form."""
     m, c, pull, v0 = 2.0, 0.5, 3.0, 1.1
-    t, x = run(mechanism(-direction * pull), [0.0, direction * v0], seconds=1.5)
+    t, x = run(mechanism(), [0.0, direction * v0], u=-direction * pull, seconds=1.5)
     turn_s = m * v0 / (pull + c)
     top = m * v0**2 / (pull + c) / 2
     up = v0 * t - (pull + c) / m * t**2 / 2
