@@ -19,7 +19,7 @@ from diagnosis.validate.score import Score
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
-from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.arm import arm, arm_case, arm_log
 from tests.diagnosis.conftest import Fly
 
 TWO_SD = 1.1  # times J_A, which its file states to 5 %
@@ -131,7 +131,7 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
 
 
 def test_steps_that_the_readings_lie_on_are_likelier_by_their_log() -> None:
-    step, coarse = 2.0 * np.pi / 4096.0, 0.02
+    (step,), coarse = arm().plant.sensors.values(), 0.02
     _, holdout = judged(arm_log({"theta_sensor.quantization": {"q": coarse}}, seed=37))
     told = holdout.score(supposing({"theta_sensor.quantization": {"q": coarse}}).fit.hypothesis)
     assert told.gain == pytest.approx(np.log(coarse / step), abs=0.05)
