@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 from identification.fit.belief import NOTHING
 from identification.fit.ranges import ranges_of
 from identification.fit.solve import solve
-from identification.proof.bench_slopes import Fitted, Flight, casadi_fit, jax_fit
+from identification.proof.bench_slopes import FitProblem, Fitted, casadi_fit, jax_fit
 from identification.runs.log_run import log_run
 from identification.runs.run import Run, coefficient_names
 from identification.stages.estimate import problem_of
@@ -149,14 +149,14 @@ def _lmfit(work: Task) -> Fitted | None:
     return fitted
 
 
-def _differentiated(prepare: Callable[[Flight], Fitted | None]) -> Callable[[Task], Fitted | None]:
+def _differentiated(prepare: Callable[[FitProblem], Fitted | None]) -> Callable[[Task], Fitted | None]:
     """A tool that brings its own simulation and slopes, compiled before the fit is timed."""
 
     def prepared(work: Task) -> Fitted | None:
         names = coefficient_names(work.bound.model)
         places = [names.index(name) for name in NAMES]
         start = work.truth + NEARER * (work.start - work.truth)
-        return prepare(Flight(work.bound, PERIOD_S, work.log.u, work.log.y, work.x0, places, start))
+        return prepare(FitProblem(work.bound, PERIOD_S, work.log.u, work.log.y, work.x0, places, start))
 
     return prepared
 

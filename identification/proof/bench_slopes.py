@@ -22,7 +22,7 @@ FAR, STEEP = 1e3, 1e6  # residuals and slopes of a run that leaves all bounds, a
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class FitProblem:
     """What is fitted: y (n, outputs) under u (n, inputs) held from row to row of `period_s`, from x0 (states,), all in SI.
 
     The coefficients `places` of p begin at `start`; all others are known.
@@ -57,7 +57,7 @@ Slopes = tuple[
 ]  # residuals (rows,) and their slopes (rows, k) by relative coefficients
 
 
-def jax_fit(flight: Flight) -> Fitted | None:
+def jax_fit(flight: FitProblem) -> Fitted | None:
     """A compiled scan over the samples and its forward-mode Jacobian; None where JAX is not installed."""
     jax = module("jax")
     if jax is None:
@@ -78,7 +78,7 @@ def jax_fit(flight: Flight) -> Fitted | None:
     return _fit(flight, (jax.jit(residual), jax.jit(jax.jacfwd(residual))))
 
 
-def casadi_fit(flight: Flight) -> Fitted | None:
+def casadi_fit(flight: FitProblem) -> Fitted | None:
     """The sample as a CasADi function, accumulated over the run, with its forward sensitivities, on CasADi's virtual machine.
 
     None where CasADi is not installed.
@@ -118,7 +118,7 @@ def casadi_fit(flight: Flight) -> Fitted | None:
     return _fit(flight, (residual, slopes))
 
 
-def _fit(flight: Flight, of: Slopes) -> Fitted:
+def _fit(flight: FitProblem, of: Slopes) -> Fitted:
     """SciPy's trust region on the tool's residuals and slopes, everything compiled before."""
     residual, slopes = of
     first = np.ones(len(flight.places))

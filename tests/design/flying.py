@@ -28,7 +28,7 @@ class PythonLaw(Protocol):
 
 
 @dataclass(frozen=True)
-class Flight:
+class Flown:
     """Samples: time, inputs (n, 2) in V, true angles and references (n, 2) in deg."""
 
     t_s: np.ndarray
@@ -93,7 +93,7 @@ def fly(
     reference_deg: np.ndarray,
     *,
     start_deg: float | None = -30.0,
-) -> Flight:
+) -> Flown:
     """Fly from rest at elevation start_deg, or from the lower stop with rotors at rest where that is None."""
     x0 = np.zeros(6) if start_deg is None else equilibrium(bound, math.radians(start_deg)).x0
     if start_deg is None:
@@ -102,7 +102,7 @@ def fly(
     runs = simulate(bound, t_s, x0, drive, reference=np.radians(reference_deg))
     assert runs.u is not None
     assert runs.x is not None
-    return Flight(t_s, runs.u, np.degrees(runs.x[:, [1, 4]]), reference_deg)
+    return Flown(t_s, runs.u, np.degrees(runs.x[:, [1, 4]]), reference_deg)
 
 
 _CALL = ctypes.CFUNCTYPE(

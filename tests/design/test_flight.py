@@ -11,7 +11,7 @@ import pytest
 from design.law import FloatLaw
 from design.settings import read_settings
 from records.table import ControllerTable
-from tests.design.flying import ELEVATION_DEG, Flight, fly, manoeuvre
+from tests.design.flying import ELEVATION_DEG, Flown, fly, manoeuvre
 from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for, table_for
 from tests.design.trap_laws import CLAMPED, FEEDBACK, TOTAL, DirectLaw
 from tests.soak import sampled
@@ -29,7 +29,7 @@ def table(elevation, azimuth=AZIMUTH, prefilter_s: float = 0.0) -> ControllerTab
     )
 
 
-def flown(law, duration_s: float = 95.0, rate_deg_s: float | None = None) -> Flight:
+def flown(law, duration_s: float = 95.0, rate_deg_s: float | None = None) -> Flown:
     return fly(helicopter(), law, *manoeuvre(duration_s, rate_deg_s))
 
 
