@@ -17,7 +17,7 @@ from sim.loop import fly
 from sim.manoeuvres import flight
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
-from twinlaw.workflows.chain.flying import Flown, tracked
+from twinlaw.workflows.chain.flying import ChainFlight, tracked
 from twinlaw.workflows.chain.verifying import equal_steps
 from verification.host_law import HostLaw
 from verification.stateless import Stateless
@@ -61,7 +61,7 @@ def validate_board(table: FlownTable, url: str, steps: int, arithmetic: str = "f
         )
 
 
-def fly_board(bound: BoundPlant, table: FlownTable, url: str, arithmetic: str = "float32") -> Flown:
+def fly_board(bound: BoundPlant, table: FlownTable, url: str, arithmetic: str = "float32") -> ChainFlight:
     """Fly the plant with the board at `url` in the loop, angles to the board and voltages back, one frame each per sample."""
     with (
         BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client,
@@ -70,4 +70,4 @@ def fly_board(bound: BoundPlant, table: FlownTable, url: str, arithmetic: str = 
         log = fly(bound, BoardController(client), flight(bound, table.sample_period_s), table_digest=table.digest)
         client.disarm()
         counters = client.counters()
-    return Flown(log, tracked(log), counters)
+    return ChainFlight(log, tracked(log), counters)

@@ -18,7 +18,7 @@ from verification.host_law import HostLaw
 
 
 @dataclass(frozen=True)
-class Flown:
+class ChainFlight:
     """A flight's log, how well it followed its references, and the counters of the board's line (none without a board)."""
 
     log: RunLog
@@ -26,7 +26,7 @@ class Flown:
     counters: Mapping[str, int]
 
 
-def fly_double(bound: BoundPlant, table: FlownTable) -> Flown:
+def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
     """Fly the plant under the table's law in double precision."""
     whole = flight(bound, table.sample_period_s)
     with stage("flying the law in double precision"):
@@ -34,15 +34,15 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> Flown:
             log = fly_law(bound, table, whole)
         else:
             log = fly(bound, loading.row_of(table).float_law(table), whole, table_digest=table.digest)
-    return Flown(log, tracked(log), {})
+    return ChainFlight(log, tracked(log), {})
 
 
-def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> Flown:
+def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlight:
     """Fly the plant under the table's generated law, compiled for this computer."""
     law = HostLaw(loading.generate(table, arithmetic), arithmetic)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
-    return Flown(log, tracked(log), {})
+    return ChainFlight(log, tracked(log), {})
 
 
 def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
