@@ -1,5 +1,6 @@
-"""Process noise: what drives each axis' speed at random, by maximum likelihood."""
+"""The noise of a hypothesis, by maximum likelihood: what drives each axis at random, and how long dry friction is in doubt at rest."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,38 +10,62 @@ from diagnosis.fit.profile_likelihood import Point, by_parabola
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 
-LEAST_NOISE, MOST_NOISE = -5.0, 1.5
+LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
+LEAST_DOUBT, MOST_DOUBT = -7.0, -1.0  # log10 s
 FIRST_STEP = 0.3
+DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells less of it
 MOST_STEPS = 12
 LITTLE_PROMISED = 0.1  # nats
 
+Changed = Callable[[Hypothesis, float], Hypothesis]
+
 
 def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
-    """The same with the process noise that the innovations show."""
+    """The same with the noise that the innovations show."""
     return _likeliest(case, hypothesis, likelihood_of(case, hypothesis), first)
 
 
 def process_noise_of(case: Case, found: Fit, first: float = FIRST_STEP) -> Hypothesis:
-    """What was fitted with the process noise that the innovations then show."""
+    """What was fitted with the noise that the innovations then show."""
     return _likeliest(case, found.hypothesis, found.log_likelihood, first)
 
 
 def _likeliest(case: Case, hypothesis: Hypothesis, value: float, first: float) -> Hypothesis:
-    """The likeliest process noise, axis after axis; `value` is the log likelihood as it is."""
+    """The likeliest noise, axis after axis; `value` is the log likelihood as it is."""
     for axis in range(len(hypothesis.process_noise)):
-        hypothesis, value = _along(case, hypothesis, value, axis, first)
+        start = Point(float(hypothesis.process_noise[axis]), hypothesis, value)
+        hypothesis, value = _along(case, start, _of_axis(axis), first)
+    if _rubs(case, hypothesis):
+        hypothesis, _ = _along(case, Point(hypothesis.rest_doubt, hypothesis, value), _of_rest, DOUBT_STEPS * first)
     return hypothesis
 
 
-def _along(case: Case, hypothesis: Hypothesis, value: float, axis: int, step: float) -> tuple[Hypothesis, float]:
-    """The likeliest noise of one axis, all others held."""
+def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
+    """Whether any axis has dry friction, stated or supposed."""
+    library = case.library
+    supposed = any(library.effects[name].holds_at_rest for name in hypothesis.effects)
+    return supposed or len(library.frictionless) < len(library.bound.model.axes)
 
-    def at(process_noise: float) -> Point:
-        changed = hypothesis.process_noise.copy()
-        changed[axis] = x = float(np.clip(process_noise, LEAST_NOISE, MOST_NOISE))
-        there = replace(hypothesis, process_noise=changed)
+
+def _of_axis(axis: int) -> Changed:
+    def changed(hypothesis: Hypothesis, x: float) -> Hypothesis:
+        process_noise = hypothesis.process_noise.copy()
+        process_noise[axis] = np.clip(x, LEAST_NOISE, MOST_NOISE)
+        return replace(hypothesis, process_noise=process_noise)
+
+    return changed
+
+
+def _of_rest(hypothesis: Hypothesis, x: float) -> Hypothesis:
+    return replace(hypothesis, rest_doubt=float(np.clip(x, LEAST_DOUBT, MOST_DOUBT)))
+
+
+def _along(case: Case, start: Point, changed: Changed, step: float) -> tuple[Hypothesis, float]:
+    """The likeliest of one noise, all others held."""
+
+    def at(x: float) -> Point:
+        there = changed(start.hypothesis, x)
         return Point(x, there, likelihood_of(case, there))
 
-    start = Point(float(hypothesis.process_noise[axis]), hypothesis, value)
     found = by_parabola(at, start, step, MOST_STEPS, LITTLE_PROMISED)
     return found.hypothesis, found.value

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from diagnosis.filter.filter_input import FilterInput
 from diagnosis.filter.kalman import Noise, Pass
 from diagnosis.hypothesis.case import Case, FilteredLog
-from diagnosis.hypothesis.initial_state import RUB_S
+from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
 from diagnosis.library.input_effects import commanded
 from diagnosis.library.sensor_effects import sensed
@@ -29,6 +29,7 @@ class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
     `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second.
 
+    `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis comes to rest or leaves it: noise as the others.
     `own`: what happens at another instant and by another size in each log has values by the log's number, and by ELSEWHERE those of all
     other logs; in `effects` it has those of the first in which it happens.
     """
@@ -37,6 +38,7 @@ class Hypothesis:
     effects: Mapping[str, Values]
     process_noise: Array
     own: Mapping[str, Mapping[int, Values]] = field(default_factory=dict)
+    rest_doubt: float = FIRST_REST_DOUBT
 
     def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
         """The same with other effects."""
@@ -118,7 +120,7 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothes
             place = compiled.states.index(state.name)
             q[place], p0[place] = state.noise(values)
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    return Noise(q, np.full(max(1, len(compiled.filter.axes)), RUB_S), p0, drive, flight.step_s)
+    return Noise(q, np.full(max(1, len(compiled.filter.axes)), 10.0**hypothesis.rest_doubt), p0, drive, flight.step_s)
 
 
 def start_under(compiled: CompiledFilter, flight: FilteredLog) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from diagnosis.library.effect_library import EffectLibrary
 Array = NDArray[np.float64]
 START_S = 0.1
 RUN_UP_S, LONGEST_STEP_S = 4.0, 0.01
-RUB_S = 0.02  # how long friction about rest is in doubt
+FIRST_REST_DOUBT = -1.7  # log10 s: how long friction about rest is in doubt, from where every fit of it starts
 
 
 def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[str, ...]) -> tuple[Array, Array]:
@@ -69,7 +69,7 @@ def _likelihood(
     """How well the plant without effects follows a filter input from a start, with the process noise of before any log was seen."""
     q, none = np.zeros(len(x0)), np.zeros(len(x0))
     q[list(library.velocities)] = 10.0 ** (2.0 * decisions.FIRST_PROCESS_NOISE)
-    rub = np.full(max(1, len(library.plain.filter.axes)), RUB_S)
+    rub = np.full(max(1, len(library.plain.filter.axes)), 10.0**FIRST_REST_DOUBT)
     noise = Noise(q, rub, p0, none, float(np.median(np.diff(filter_input.t_s))))
     run = library.plain.filter.run(
         filter_input, library.plain.p, x0, noise, range(filter_input.y.shape[1]), locked=locked
