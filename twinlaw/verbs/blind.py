@@ -3,7 +3,9 @@
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld, `--rig second` with another kind of rig;
 `twinlaw blind score DIR RESULTS` opens the seal and scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR
 RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind baseline NAME DIR RESULTS` answers them in a plain way,
-to be beaten. The generator shares no code with simulation or diagnosis. What was interrupted goes on where it was.
+to be beaten. `twinlaw blind calibrate --family NAME DIR RESULTS ... --out FILE.json` learns from answers to families of cases,
+kinds of rigs say, how probable a diagnosis should call its first name. The generator shares no code with simulation or
+diagnosis. What was interrupted goes on where it was.
 """
 
 import argparse
@@ -14,11 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import blind
+from blind.calibration.table import HEADING, law_text, law_told, rows
 from diagnosis.baselines import BASELINES
+from diagnosis.decide.calibration import FEATURES
 from jobs.job import Done
 from records.errors import BadInput
-from records.files import write_atomic
-from twinlaw.cli import options
+from records.files import demand_writable, write_atomic
+from twinlaw.cli import console, options
 from twinlaw.pages import plots
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.diagnose.baselines import plain_answers
@@ -27,8 +31,8 @@ from twinlaw.workflows.diagnose.questions import questions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds --rig; diagnose, baseline, score DIR RESULTS; --workers, --cluster; --json."""
-    verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score", required=True)
+    """make --seed --out --cases --kinds --rig; diagnose, baseline, score DIR RESULTS; calibrate --family --out; --workers; --json."""
+    verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score|calibrate", required=True)
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
@@ -59,9 +63,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
     )
     scorer.set_defaults(part=_score)
+    teacher = verbs.add_parser("calibrate", help="learn from answers how probable a first name should be called")
+    teacher.add_argument(
+        "--family",
+        type=Path,
+        nargs=3,
+        action="append",
+        required=True,
+        metavar=("NAME", "DIR", "RESULTS"),
+        help="cases of one kind and their answers; one for each family, several of one name are one",
+    )
+    teacher.add_argument("--out", type=Path, required=True, metavar="FILE.json", help="the law that was learned")
+    teacher.add_argument("--commit", default="", help="of the engine that answered, to be noted; default: not known")
+    teacher.set_defaults(part=_calibrate)
     for part in (maker, asker, plain):
         sweeping.workers(part)
-    for part in (maker, asker, plain, scorer):
+    for part in (maker, asker, plain, scorer, teacher):
         part.add_argument("--json", action="store_true", help="print JSON instead of text, and nothing besides")
 
 
@@ -119,4 +136,18 @@ def _score(chosen: argparse.Namespace) -> int:
         bins = [(entry.stated, entry.right, entry.count) for entry in result.bins]
         write_atomic(chosen.reliability, plots.reliability(bins))
     print(blind.to_json(result) if chosen.json else blind.markdown(result))
+    return 0
+
+
+def _calibrate(chosen: argparse.Namespace) -> int:
+    options.demand_ending(chosen.out, ".json")
+    demand_writable(chosen.out)
+    folders: dict[str, list[tuple[Path, Path]]] = {}
+    for name, cases, results in chosen.family:
+        folders.setdefault(str(name), []).append((cases, results))
+    found = blind.calibrate([blind.family(name, paths, FEATURES) for name, paths in folders.items()])
+    text = law_text(found, FEATURES, chosen.commit)
+    write_atomic(chosen.out, text)
+    table = console.table(rows(found), HEADING)
+    print(text.rstrip() if chosen.json else f"{table}\n\n{law_told(found, FEATURES)}\n{chosen.out}")
     return 0
