@@ -85,7 +85,7 @@ def small_case(folder: Path) -> None:
 def test_a_small_case_is_answered_once_for_each_value_and_kept(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """No blind spot is small enough for a limit of next to nothing: the verdict becomes "cannot tell" or stays, but is told."""
+    """Six seconds hide some effects from every diagnosis: with next to none allowed it cannot tell."""
     small_case(tmp_path / "cases")
     out = tmp_path / "out"
     words = ["blind", "sensitivity", str(tmp_path / "cases"), str(out), "--workers", "1", "--constant", "BLIND_SHARE"]
