@@ -94,7 +94,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_factor,
         default=FACTORS,
         metavar="X",
-        help="each constant times each; default: 0.7 1.4",
+        help=f"each constant times each; default: {' '.join(map(str, FACTORS))}",
     )
     shaker.set_defaults(part=_sensitivity)
     for part in (maker, asker, plain, shaker):
@@ -189,8 +189,9 @@ def _sensitivity(chosen: argparse.Namespace) -> int:
     asked, crew = questions(Path(), _folders(chosen.cases), ()), sweeping.crew_of(chosen)
     trials, untried = sensitivity.trials_of(chosen.constant, chosen.factors)
     before = sensitivity.unchanged_answers(asked, chosen.out, crew)
-    status = sweeping.failures([(entry.name, entry.failure) for entry in before])
     found = sensitivity.tried(trials, asked, chosen.cases, chosen.out, crew)
+    failed = [(f"{sensitivity.UNCHANGED}/{entry.name}", entry.failure) for entry in before]
+    status = sweeping.failures([*failed, *(end for entry in found for end in entry.failures)])
     if chosen.json:
         print(
             json.dumps({"cases": len(asked), "changes": sensitivity.facts(found), "untried": dict(untried)}, indent=1)

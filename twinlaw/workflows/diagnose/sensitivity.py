@@ -48,10 +48,11 @@ class Trial:
 
 @dataclass(frozen=True)
 class Found:
-    """What a trial changed."""
+    """What a trial changed, and the cases that it left without an answer, each with the sentence why."""
 
     trial: Trial
     change: Change
+    failures: tuple[tuple[str, str | None], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,9 @@ def tried(trials: Sequence[Trial], asked: Sequence[Question], cases: Path, out: 
             for entry in asked
         )
         title = f"{place} of {len(trials)}, {trial.constant} x {trial.factor:g}"
-        for _ in swept(title, jobs, len(asked), crew, Folders(out / trial.folder, ANSWER)):
-            pass
-        found.append(Found(trial, change(cases, out / UNCHANGED, out / trial.folder)))
+        ends = list(swept(title, jobs, len(asked), crew, Folders(out / trial.folder, ANSWER)))
+        failed = tuple((f"{trial.folder}/{end.name}", end.failure) for end in ends if end.failure is not None)
+        found.append(Found(trial, change(cases, out / UNCHANGED, out / trial.folder), failed))
     sizes: dict[str, tuple[int, float]] = {}
     for entry in found:
         sizes[entry.trial.constant] = max(entry.change.size, sizes.get(entry.trial.constant, (0, 0.0)))
