@@ -1,9 +1,24 @@
-"""The sealed benchmark: rigs of several kinds with hidden effects, each kind with its own simulation, and the scorer."""
+"""The sealed benchmark: rigs of several kinds with hidden effects, each kind with its own simulation, the scorer, and what
+its scores teach of probabilities."""
 
+from blind.calibration.calibrate import calibrate
+from blind.calibration.examples import family
 from blind.cases.make import make
 from blind.cases.mix import KINDS
 from blind.rigs.table import FIRST, RIGS
 from blind.scoring.score import Score, score, score_all
 from blind.scoring.table import markdown, to_json
 
-__all__ = ["FIRST", "KINDS", "RIGS", "Score", "make", "markdown", "score", "score_all", "to_json"]
+__all__ = [
+    "FIRST",
+    "KINDS",
+    "RIGS",
+    "Score",
+    "calibrate",
+    "family",
+    "make",
+    "markdown",
+    "score",
+    "score_all",
+    "to_json",
+]

@@ -5,8 +5,10 @@ What only bounds an iteration, spaces a grid or scales a number stands where it 
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 from records.deciding import Count, Counts, Decides, Limit, Limits
+from records.errors import BadInput
 from records.reasons import Decision
 
 DEVELOPMENT = "development cases of the sealed generator, seeds 21 and 22"
@@ -357,6 +359,37 @@ IMITATED = Limit(0.995, "share of a signature", "that the plant's own parameters
 def table() -> Iterator[tuple[str, Decides]]:
     """Name and constant of each, in the order of the rooms."""
     return ((name, value) for name, value in globals().items() if isinstance(value, Decides))
+
+
+def scaled(constant: Decides, factor: float) -> Decides:
+    """The same constant, times `factor`: each of several numbers, whole ones rounded."""
+    told = (constant.unit, constant.reason, constant.data)
+    if isinstance(constant, Count):
+        return Count(round(constant * factor), *told)
+    if isinstance(constant, Counts):
+        return Counts(tuple(round(value * factor) for value in constant), *told)
+    if isinstance(constant, Limits):
+        return Limits(tuple(value * factor for value in constant), *told)
+    if isinstance(constant, Limit):
+        return Limit(constant * factor, *told)
+    raise TypeError(f"no constant that decides: {type(constant).__name__}")
+
+
+@contextmanager
+def changed(name: str, factor: float) -> Iterator[None]:
+    """The body decides with one constant times `factor`, all threads of this process do; raises BadInput where there is none of that name.
+
+    What has read it before, a default argument say, keeps the old value.
+    """
+    before = dict(table()).get(name)
+    if before is None:
+        remedy = "take a name of diagnosis/decisions.py"
+        raise BadInput("constant", "diagnosis.decisions", name, "one that decides something", remedy)
+    globals()[name] = scaled(before, factor)
+    try:
+        yield
+    finally:
+        globals()[name] = before
 
 
 def decided(rule: str, of: str, value: float, limit: Limit | Count, outcome: str) -> Decision:

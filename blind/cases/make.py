@@ -74,7 +74,7 @@ def make(
             for file, content in made["files"].items():
                 write_atomic(work / order.name / file, content)
             truths[order.name] = truth_from_json(made["truth"])
-        public, opened = seal(truths, {name: _salt(seed, name) for name in truths})
+        public, opened = seal(truths, {name: salt_of(seed, name) for name in truths})
         write_atomic(work / TRUTH_FILE, opened)
         write_atomic(work / CASES_FILE, public)
         if out.exists():
@@ -99,7 +99,8 @@ def make_case(order: Order) -> Made:
     return {"files": dict(files), "truth": truth_to_json(truth)}
 
 
-def _salt(seed: int, name: str) -> str:
+def salt_of(seed: int, name: str) -> str:
+    """What is hashed with the truth of a case."""
     return hashlib.sha256(f"salt of {name}, seed {seed}".encode()).hexdigest()[:32]
 
 

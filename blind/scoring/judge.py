@@ -40,7 +40,7 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
     if isinstance(answer, Unreadable):
         return Judgement(case, truth, shrinkage, detected=truth.kind == "nominal", failure=answer.reason)
     true = frozenset(effect.name for effect in truth.effects)
-    ranks = [place for place, entry in enumerate(answer.ranked, 1) if _means(entry.names, truth)]
+    ranks = [place for place, entry in enumerate(answer.ranked, 1) if means(entry.names, truth)]
     top = answer.ranked[0] if answer.ranked else None
     return Judgement(
         case=case,
@@ -50,7 +50,7 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         place_right=_first_place(answer) in _right_places(truth),
         side_right=_side(_first_place(answer)) in {_side(place) for place in _right_places(truth)},
         rank=ranks[0] if ranks else None,
-        found_right=_means(answer.found, truth),
+        found_right=means(answer.found, truth),
         set_hit=_set_hit(true, answer),
         all_named=true <= answer.found,
         class_right=_class_right(truth, answer),
@@ -70,7 +70,7 @@ def _fits(name: str, effect: TrueEffect) -> bool:
     return not effect.known and place in effect.places and any(word in what for word in effect.keywords)
 
 
-def _means(names: Names, truth: Truth) -> bool:
+def means(names: Names, truth: Truth) -> bool:
     """Whether a set of names says exactly the true effects."""
     return (
         len(names) == len(truth.effects) > 0
@@ -125,7 +125,7 @@ def _parameter_errors(truth: Truth, ranked: Sequence[RankedAnswer]) -> tuple[flo
     """Relative errors of a single effect's main parameters, from the entry that names it, whatever its rank."""
     if len(truth.effects) != 1:
         return ()
-    named = [entry for entry in ranked if _means(entry.names, truth)]
+    named = [entry for entry in ranked if means(entry.names, truth)]
     if not named:
         return ()
     errors = []
@@ -143,4 +143,4 @@ def _stated_probability(truth: Truth, answer: Answer, top: RankedAnswer | None) 
     """Top probability and whether that answer is right; "unknown" is right for an effect that the table does not hold."""
     if top is None or answer.unknown_probability > top.probability:
         return answer.unknown_probability, truth.kind == "outside"
-    return top.probability, _means(top.names, truth)
+    return top.probability, means(top.names, truth)

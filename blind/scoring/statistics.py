@@ -1,4 +1,4 @@
-"""The two statistics of the score: an exact interval for a share, and how far stated probabilities are from what happened."""
+"""The statistics of a score: an exact interval for a share, how far stated probabilities are from what happened, and how far by chance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -43,3 +43,15 @@ def calibration_error(bins: Sequence[Bin]) -> float:
     """Expected calibration error: sum over bins of share of cases times |stated - right|."""
     total = sum(entry.count for entry in bins)
     return sum(entry.count * abs(entry.stated - entry.right) for entry in bins) / total if total else 0.0
+
+
+def honest_error(stated: Sequence[float], seed: int, bins: int = 10, draws: int = 1000) -> tuple[float, float]:
+    """(median, 95th percentile) of the calibration error that so many answers have by chance where each is right exactly as often as
+    `stated`; by `draws` simulations from `seed`. (0, 0) without answers."""
+    p = np.asarray(stated, float)
+    if not len(p):
+        return 0.0, 0.0
+    place = np.digitize(p, np.linspace(0.0, 1.0, bins + 1)[1:-1])
+    right = np.random.default_rng(seed).random((draws, len(p))) < p
+    errors = np.abs((p - right) @ np.eye(bins)[place]).sum(axis=1) / len(p)
+    return float(np.median(errors)), float(np.percentile(errors, 95.0))

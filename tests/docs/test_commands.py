@@ -35,6 +35,8 @@ NOT_TRIED = {
     r"twinlaw identify .*--search genetic": "takes ten seconds; tests/twinlaw/verbs/test_identify_genetic.py",
     r"twinlaw sweep .*--repetitions": "tests/twinlaw/verbs/test_frequency.py with one repetition",
     r"twinlaw blind make --rig second": "tests/blind/test_second_make.py",
+    r"twinlaw blind calibrate": "needs answers to many cases; tests/blind/test_calibrate.py has some made up",
+    r"twinlaw blind sensitivity": "takes minutes; tests/twinlaw/workflows/test_sensitivity.py with a case of six seconds",
     r"twinlaw experiments --plant .*velagic.*--repetitions": "the repetitions of docs/identification.md with another plant",
     r"pip |dask |twinlaw .*--cluster": "needs other computers; tests/jobs/test_cluster.py has some on this one",
 }

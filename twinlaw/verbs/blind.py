@@ -3,32 +3,42 @@
 `twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld, `--rig second` with another kind of rig;
 `twinlaw blind score DIR RESULTS` opens the seal and scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR
 RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind baseline NAME DIR RESULTS` answers them in a plain way,
-to be beaten. The generator shares no code with simulation or diagnosis. What was interrupted goes on where it was.
+to be beaten. `twinlaw blind calibrate --family NAME DIR RESULTS ... --out FILE.json` learns from answers to families of cases,
+kinds of rigs say, how probable a diagnosis should call its first name. `twinlaw blind sensitivity DIR OUT` tells what changes
+with each constant of diagnosis/decisions.py a little other, most sensitive first. The generator shares no code with simulation
+or diagnosis. What was interrupted goes on where it was.
 """
 
 import argparse
 import json
+import math
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import blind
+from blind.calibration.table import HEADING, law_text, law_told, rows
 from diagnosis.baselines import BASELINES
+from diagnosis.decide.calibration import FEATURES
 from jobs.job import Done
 from records.errors import BadInput
-from records.files import write_atomic
-from twinlaw.cli import options
+from records.files import demand_writable, write_atomic
+from twinlaw.cli import console, options
 from twinlaw.pages import plots
 from twinlaw.workflows import sweeping
+from twinlaw.workflows.diagnose import sensitivity
 from twinlaw.workflows.diagnose.baselines import plain_answers
 from twinlaw.workflows.diagnose.each import Answered, answers
 from twinlaw.workflows.diagnose.questions import questions
+from twinlaw.workflows.diagnose.sensitivity import FACTORS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds --rig; diagnose, baseline, score DIR RESULTS; --workers, --cluster; --json."""
-    verbs = parser.add_subparsers(title="what to do", metavar="make|diagnose|baseline|score", required=True)
+    """make --seed --out --cases --kinds --rig; diagnose, baseline, score, sensitivity DIR RESULTS; calibrate; --workers; --json."""
+    verbs = parser.add_subparsers(
+        title="what to do", metavar="make|diagnose|baseline|score|calibrate|sensitivity", required=True
+    )
     maker = verbs.add_parser("make", help="write cases and seal what is hidden in them")
     maker.add_argument("--seed", type=int, required=True)
     maker.add_argument("--out", type=Path, required=True, metavar="DIR")
@@ -59,9 +69,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reliability", type=Path, metavar="FILE.svg", help="also draw stated against true probabilities"
     )
     scorer.set_defaults(part=_score)
-    for part in (maker, asker, plain):
+    teacher = verbs.add_parser("calibrate", help="learn from answers how probable a first name should be called")
+    teacher.add_argument(
+        "--family",
+        type=Path,
+        nargs=3,
+        action="append",
+        required=True,
+        metavar=("NAME", "DIR", "RESULTS"),
+        help="cases of one kind and their answers; one for each family, several of one name are one",
+    )
+    teacher.add_argument("--out", type=Path, required=True, metavar="FILE.json", help="the law that was learned")
+    teacher.add_argument("--commit", default="", help="of the engine that answered, to be noted; default: not known")
+    teacher.set_defaults(part=_calibrate)
+    shaker = verbs.add_parser("sensitivity", help="diagnose all cases again with each constant a little other")
+    shaker.add_argument("cases", type=Path, metavar="DIR")
+    shaker.add_argument("out", type=Path, metavar="OUT", help="folder for a folder of answers for each change")
+    shaker.add_argument(
+        "--constant", nargs="+", default=[], metavar="NAME", help="of diagnosis/decisions.py; default: all, one by one"
+    )
+    shaker.add_argument(
+        "--factors",
+        nargs="+",
+        type=_factor,
+        default=FACTORS,
+        metavar="X",
+        help=f"each constant times each; default: {' '.join(map(str, FACTORS))}",
+    )
+    shaker.set_defaults(part=_sensitivity)
+    for part in (maker, asker, plain, shaker):
         sweeping.workers(part)
-    for part in (maker, asker, plain, scorer):
+    for part in (maker, asker, plain, scorer, teacher, shaker):
         part.add_argument("--json", action="store_true", help="print JSON instead of text, and nothing besides")
 
 
@@ -120,3 +158,47 @@ def _score(chosen: argparse.Namespace) -> int:
         write_atomic(chosen.reliability, plots.reliability(bins))
     print(blind.to_json(result) if chosen.json else blind.markdown(result))
     return 0
+
+
+def _calibrate(chosen: argparse.Namespace) -> int:
+    options.demand_ending(chosen.out, ".json")
+    demand_writable(chosen.out)
+    folders: dict[str, list[tuple[Path, Path]]] = {}
+    for name, cases, results in chosen.family:
+        folders.setdefault(str(name), []).append((cases, results))
+    found = blind.calibrate([blind.family(name, paths, FEATURES) for name, paths in folders.items()])
+    text = law_text(found, FEATURES, chosen.commit)
+    write_atomic(chosen.out, text)
+    table = console.table(rows(found), HEADING)
+    print(text.rstrip() if chosen.json else f"{table}\n\n{law_told(found, FEATURES)}\n{chosen.out}")
+    return 0
+
+
+def _factor(text: str) -> float:
+    """What a constant is multiplied by, as the type of an option."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf or value == 1.0:
+        raise argparse.ArgumentTypeError(f"got {text[:30]!r}, expected a positive number other than 1")
+    return value
+
+
+def _sensitivity(chosen: argparse.Namespace) -> int:
+    asked, crew = questions(Path(), _folders(chosen.cases), ()), sweeping.crew_of(chosen)
+    trials, untried = sensitivity.trials_of(chosen.constant, chosen.factors)
+    before = sensitivity.unchanged_answers(asked, chosen.out, crew)
+    found = sensitivity.tried(trials, asked, chosen.cases, chosen.out, crew)
+    failed = [(f"{sensitivity.UNCHANGED}/{entry.name}", entry.failure) for entry in before]
+    status = sweeping.failures([*failed, *(end for entry in found for end in entry.failures)])
+    if chosen.json:
+        print(
+            json.dumps({"cases": len(asked), "changes": sensitivity.facts(found), "untried": dict(untried)}, indent=1)
+        )
+        return status
+    lines = [f"{chosen.out}  {len(asked)} cases, {len(trials)} changes; what they change:", ""]
+    lines += [console.table(sensitivity.rows(found), sensitivity.HEADING)] if found else ["nothing tried"]
+    lines += ["", *(f"{name} not tried: {reason}" for name, reason in untried.items())] if untried else []
+    print("\n".join(lines))
+    return status

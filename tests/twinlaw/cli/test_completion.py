@@ -72,7 +72,7 @@ def test_another_shell_is_refused_in_one_line(capsys: pytest.CaptureFixture[str]
 ASKED = [
     ("twinlaw di", {"diagnose"}),
     ("twinlaw b", {"build", "bench", "blind"}),
-    ("twinlaw blind ", {"make", "diagnose", "baseline", "score"}),
+    ("twinlaw blind ", {"make", "diagnose", "baseline", "score", "calibrate", "sensitivity"}),
     ("twinlaw completion ", set(SHELLS)),
     ("twinlaw run --arithmetic ", {"float32", "fixed"}),
     ("twinlaw run --pl", {"--plant"}),
