@@ -88,6 +88,9 @@ REST_SHARES = Limits(
 JUDGED_START_S = Limit(3.0, "s", "so long readings tell which start it was")
 
 # Priors of numbers (fit)
+WORTH_STRAIGHT = Limit(
+    10.0, "nats", "an input goes straight between rows only where that is so much likelier than that it was held"
+)
 GRID_SD = Limit(
     3e-4, "share of the step", "a range of a thousand counts holds a coarse grid's step to a count", DEVELOPMENT
 )

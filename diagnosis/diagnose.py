@@ -20,6 +20,7 @@ from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
+from diagnosis.fit.between_rows import between_rows
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
@@ -91,6 +92,11 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
 def _detected(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and score the library beside it."""
     nominal = nominal_fit(case)
+    straight, between = between_rows(case, nominal.hypothesis)
+    if straight is not case:
+        case, nominal = straight, nominal_fit(straight)
+    if checked is not None:
+        checked = between_rows(checked, nominal.hypothesis)[0]
     case = with_usual(case, nominal.hypothesis)
     linearisation = linearised(case, nominal)
     case, lossy = with_losses(case, linearisation)
@@ -98,7 +104,7 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     score_tests = score_effects(case, linearisation, case.library.candidates)
     retuned = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
     detection = detect(case, linearisation, score_tests, lossy)
-    rules = (*detection.decisions, _false_alarm("logs", detection.p))
+    rules = (*between, *detection.decisions, _false_alarm("logs", detection.p))
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
 
 
