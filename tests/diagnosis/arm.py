@@ -26,13 +26,15 @@ def arm() -> BoundPlant:
 
 
 def arm_log(
-    effects: Mapping[str, Mapping[str, float]] | None = None, seed: int = 1, seconds: float = SECONDS
+    effects: Mapping[str, Mapping[str, float]] | None = None, seed: int = 1, seconds: float = SECONDS, rows: int = 1
 ) -> RunLog:
-    """A run in open loop under five sines of the input; nothing but the encoder and a little torque noise disturbs it."""
+    """A run in open loop under five sines of the input, held for so many rows each; nothing but the encoder and a little torque noise
+    disturbs it."""
     rng = np.random.default_rng(seed)
     t_s = PERIOD_S * np.arange(round(seconds / PERIOD_S))
     rates, phases = rng.uniform(0.5, 6.0, 5), rng.uniform(0.0, 2.0 * np.pi, 5)
     u = 1.8 + 0.28 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)
+    u = np.repeat(u[::rows], rows)[: len(t_s)]
     rig = with_effects(arm(), effects) if effects else arm()
     process = np.zeros(len(rig.model.states))
     process[1] = 0.01

@@ -25,9 +25,7 @@ def rows(log: RunLog, chosen: slice) -> RunLog:
     """Some rows of a log, as a log of its own that begins at 0."""
     t_s = log.t_s[chosen]
     step = chosen.step or 1
-    return replace(
-        log, t_s=t_s - t_s[0], u=log.u[chosen], y=log.y[chosen], sample_period_s=step * log.sample_period_s
-    )
+    return replace(log, t_s=t_s - t_s[0], u=log.u[chosen], y=log.y[chosen], sample_period_s=step * log.sample_period_s)
 
 
 def in_two(logs: Logs) -> Logs:
@@ -37,7 +35,7 @@ def in_two(logs: Logs) -> Logs:
 
 
 def thinned(logs: Logs) -> Logs:
-    """Every second row left out."""
+    """Every second row left out, at which no command changed: else commands would be lost with the rows."""
     return [rows(log, slice(None, None, 2)) for log in logs]
 
 
@@ -77,7 +75,7 @@ def plainly() -> Callable[[str], tuple[Logs, Result]]:
 
     def asked(rig: str) -> tuple[Logs, Result]:
         if rig not in kept:
-            logs = [arm_log(RIGS[rig], seed=seed) for seed in (71, 72)]
+            logs = [arm_log(RIGS[rig], seed=seed, rows=2) for seed in (71, 72)]
             kept[rig] = logs, answered(logs)
         return kept[rig]
 
@@ -89,6 +87,8 @@ def same(one: Result, other: Result) -> None:
     assert first.verdict == second.verdict
     if first.effects:
         assert second.effects
+        if second.effects[0].effect in first.effects[0].ambiguous_with:
+            return  # which the first answer said that it is hardly told from
         assert first.effects[0].effect == second.effects[0].effect
         assert first.effects[0].probability == pytest.approx(second.effects[0].probability, abs=0.1)
 
@@ -106,7 +106,7 @@ def test_what_is_no_other_question_has_no_other_answer(
 @pytest.mark.parametrize("rig", sampled(RIGS, keep=["rubs"]))
 def test_a_hold_out_of_the_same_rig_changes_no_verdict(plainly: Callable[[str], tuple[Logs, Result]], rig: str) -> None:
     logs, before = plainly(rig)
-    after = answered(logs, [arm_log(RIGS[rig], seed=73)])
+    after = answered(logs, [arm_log(RIGS[rig], seed=73, rows=2)])
     assert before.diagnosis.verdict == after.diagnosis.verdict
     assert [e.effect for e in before.diagnosis.effects[:1]] == [e.effect for e in after.diagnosis.effects[:1]]
 
