@@ -20,7 +20,7 @@ from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
-from diagnosis.fit.between_rows import between_rows
+from diagnosis.fit.between_rows import between_rows, straight
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
@@ -92,11 +92,10 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
 def _detected(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and score the library beside it."""
     nominal = nominal_fit(case)
-    straight, between = between_rows(case, nominal.hypothesis)
-    if straight is not case:
-        case, nominal = straight, nominal_fit(straight)
-    if checked is not None:
-        checked = between_rows(checked, nominal.hypothesis)[0]
+    held = case
+    case, nominal, between = between_rows(case, nominal)
+    if checked is not None and case is not held:
+        checked = straight(checked)
     case = with_usual(case, nominal.hypothesis)
     linearisation = linearised(case, nominal)
     case, lossy = with_losses(case, linearisation)

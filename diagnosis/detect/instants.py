@@ -64,12 +64,12 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, floa
     return found
 
 
-def _peaks(power: Array, most: int = decisions.MOST_INSTANTS) -> list[int]:
+def _peaks(power: Array) -> list[int]:
     order: list[int] = []
     for index in np.argsort(-power).tolist():
         if all(abs(index - other) > 2 for other in order):
             order.append(index)
-        if len(order) == most:
+        if len(order) == decisions.MOST_INSTANTS:
             break
     return order
 

@@ -36,8 +36,9 @@ def tail_of(largest: Array) -> Tail:
     return Tail(float(np.mean(largest)) - 0.5772 * scale, scale)
 
 
-def replicas(linearisation: Linearisation, count: int = decisions.REPLICAS) -> Array:
-    """Whitened innovations (rows, count) of flights without gap, coefficients drawn from their spread."""
+def replicas(linearisation: Linearisation) -> Array:
+    """Whitened innovations (rows, REPLICAS) of flights without gap, coefficients drawn from their spread."""
+    count = int(decisions.REPLICAS)
     rng = np.random.default_rng(REPLICA_SEED)
     flights = range(len(linearisation.filter_inputs))
     parts = thread_map(

@@ -1,4 +1,4 @@
-"""What an input did between two rows of a log: held as it was logged, or went straight to the next; whichever the logs find likelier.
+"""What inputs did between two rows of a log: held as they were logged, or went straight to the next; whichever the logs find likelier.
 
 A controller that wrote the log holds its command to the next row. A log with fewer rows than commands, or of an input that somebody else
 sampled, shows the ends of a way: to hold it puts it half a row late, which looks like a delay.
@@ -7,36 +7,48 @@ sampled, shows the ends of a way: to hold it puts it half a row late, which look
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decisions import held_against
-from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.decisions import decided
+from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, FilteredLog
-from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
 
+SMOOTH = 1.0  # rms second over rms first differences: 1.4 where each command is drawn anew, little where they are points of a way
 
-def between_rows(case: Case, hypothesis: Hypothesis) -> tuple[Case, tuple[Decision, ...]]:
-    """The case with each log's inputs straight between rows where that makes it likelier under a hypothesis by WORTH_STRAIGHT nats, and a
-    record for each log in which the two differ."""
-    flights, rules = [], []
-    for flight in case.flights:
-        other = _straight(flight)
-        gain = likelihood_of(case.with_flights([other]), hypothesis) - likelihood_of(
-            case.with_flights([flight]), hypothesis
-        )
-        better = gain > decisions.WORTH_STRAIGHT
-        flights.append(other if better else flight)
-        outcome = "straight" if better else "held"
-        rules.append(
-            held_against("between_rows", f"log {flight.number + 1}", gain, decisions.WORTH_STRAIGHT, "nats", outcome)
-        )
-    straight = any(rule.outcome == "straight" for rule in rules)
-    return (case.with_flights(flights) if straight else case), tuple(rules) if straight else ()
+
+def between_rows(case: Case, held: Fit) -> tuple[Case, Fit, tuple[Decision, ...]]:
+    """The case and its nominal fit with smooth inputs straight between rows, where that fits better than they were `held`, and the record
+    of that; the same, and none, where no input is smooth."""
+    other = straight(case)
+    if other is case:
+        return case, held, ()
+    found = nominal_fit(other)
+    gain = found.log_posterior - held.log_posterior
+    better = gain > decisions.WORTH_STRAIGHT
+    rule = decided("between_rows", "inputs", gain, decisions.WORTH_STRAIGHT, "straight" if better else "held")
+    return (other, found, (rule,)) if better else (case, held, (rule,))
+
+
+def straight(case: Case) -> Case:
+    """The case with smooth inputs straight between rows; itself where none is smooth."""
+    flights = [_straight(flight) for flight in case.flights]
+    same = all(one is other for one, other in zip(flights, case.flights, strict=True))
+    return case if same else case.with_flights(flights)
 
 
 def _straight(flight: FilteredLog) -> FilteredLog:
-    """The log with the mean of each input and the next for what was held: a straight way to second order in the step."""
+    """The log with the mean of a smooth input and the next for what was held: a straight way to second order in the step."""
     u = flight.filter_input.u
+    smooth = np.array([_is_smooth(column) for column in u.T], dtype=bool)
+    if not smooth.any():
+        return flight
     mean = 0.5 * (u + np.concatenate([u[1:], u[-1:]]))
-    return replace(flight, filter_input=replace(flight.filter_input, u=mean))
+    return replace(flight, filter_input=replace(flight.filter_input, u=np.where(smooth, mean, u)))
+
+
+def _is_smooth(u: NDArray[np.float64]) -> bool:
+    first, second = np.diff(u), np.diff(u, 2)
+    return bool(first.any() and np.mean(second**2) < SMOOTH**2 * np.mean(first**2))
