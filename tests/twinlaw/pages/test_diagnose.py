@@ -152,10 +152,12 @@ def test_the_page_needs_no_network_and_no_script(whole_page: str) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({}, "The rig has what the plant file lacks: cable spring of the azimuth (93.0 % sure)"),
+        ({}, "The rig has what the plant file lacks: cable spring of the azimuth with k = "),
+        ({}, "(93.0 % sure)"),
+        ({"unknown": Unknown(0.07)}, "Next comes an effect that has no name here (7.0 %)"),
         (
             {"effects": (replace(GAP.effects[0], probability=0.4),)},
-            "lacks: most likely cable spring of the azimuth (40.0 % sure)",
+            "lacks: most likely cable spring of the azimuth with k = ",
         ),
         ({"verdict": "no gap"}, "explains these logs"),
         ({"verdict": "cannot tell"}, "too little motion"),

@@ -1,12 +1,16 @@
 """The verdict of a diagnosis in words for a reader who knows nothing but the rig."""
 
-from records.diagnosis import Diagnosis
+from collections.abc import Sequence
+
+from records.diagnosis import Diagnosis, Hypothesis
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import listed, percent, words
+from twinlaw.pages.diagnose.words import listed, percent, plain_unit, words
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
+LEAST_TOLD = 0.01  # share of the error below which its going is not told
+WORTH_A_THOUGHT = 0.05  # from which the next best is told
 MOVED = "moved_parameter"  # kind of note
 
 
@@ -25,17 +29,41 @@ def _plant_sentence(diagnosis: Diagnosis) -> str:
         return "These logs hold too little motion to tell whether the plant file lacks anything."
     if not diagnosis.found:
         return _nothing_added(diagnosis)
-    names = " and ".join(words(name) for name in diagnosis.found)
-    named = [h.probability for h in diagnosis.effects if set(h.effect.split(" + ")) == set(diagnosis.found)]
-    sure = f" ({percent(named[0])} sure)" if named else ""
-    likely = "most likely " if named and named[0] < LIKELY else ""
+    chosen = [h for h in diagnosis.effects if set(h.effect.split(" + ")) == set(diagnosis.found)]
+    sizes = _sizes(chosen[0]) if chosen else {}
+    names = " and ".join(words(name) + sizes.get(name, "") for name in diagnosis.found)
+    sure = f" ({percent(chosen[0].probability)} sure)" if chosen else ""
+    likely = "most likely " if chosen and chosen[0].probability < LIKELY else ""
     gone = diagnosis.shrinkage.fraction if diagnosis.shrinkage else None
     gain = (
         ""
-        if gone is None
+        if gone is None or gone < LEAST_TOLD
         else f", and with it in the model {percent(gone)} of the removable error on the hold-out logs is gone"
     )
-    return f"The rig has what the plant file lacks: {likely}{names}{sure}{gain}."
+    return f"The rig has what the plant file lacks: {likely}{names}{sure}{gain}.{_rival(diagnosis, chosen)}"
+
+
+def _sizes(hypothesis: Hypothesis) -> dict[str, str]:
+    """The first number of each effect, which is its size, with its unit."""
+    found: dict[str, str] = {}
+    several = " + " in hypothesis.effect
+    for symbol, entry in hypothesis.parameters.items():
+        name = symbol.rpartition(".")[0] if several else hypothesis.effect
+        told = f"{symbol.rpartition('.')[2]} = {entry.value:.3g} {plain_unit(entry.unit)}".rstrip()
+        found.setdefault(name, f" with {told}")
+    return found
+
+
+def _rival(diagnosis: Diagnosis, chosen: Sequence[Hypothesis]) -> str:
+    """The next best explanation, where it is worth a thought, and the run that would tell it from what was found."""
+    others = [(h.probability, words(h.effect)) for h in diagnosis.effects if h not in chosen]
+    others.append((diagnosis.unknown.probability, "an effect that has no name here"))
+    probability, name = max(others)
+    if probability < WORTH_A_THOUGHT:
+        return ""
+    run = diagnosis.next_experiment or {}
+    tells = f"; to tell them apart, {run['instruction']}" if run.get("separates") and "instruction" in run else ""
+    return f" Next comes {name} ({percent(probability)}){tells}."
 
 
 def _nothing_added(diagnosis: Diagnosis) -> str:
