@@ -45,7 +45,7 @@ def as_expected(bench: Bench, injected: Sequence[Injected], records: Sequence[Re
     """Whether the training runs came out about as severe as the trials: one hit on a stop can make an effect look huge."""
     if not injected:
         return True
-    found = severity(bench.nominal, records, 1, coarse_rad(injected))
+    found = severity(bench.nominal, records, 1, coarse_rad(injected, len(bench.columns.outputs)))
     expected = float(np.sqrt(sum(entry.trial_severity**2 for entry in injected)))
     return found <= 4.0 * expected and (found >= 0.25 * expected or attempt >= CONTENT_FROM)
 
@@ -57,4 +57,5 @@ def _tried(bench: Bench, effect: Effect, m: float, shape: Shape, seed: int) -> I
     record = fly_with_shadows(bench, [entry], inputs)
     if not within_range(record):
         return None
-    return replace(entry, trial_severity=severity(bench.nominal, [record], 1, coarse_rad([entry])))
+    coarse = coarse_rad([entry], len(bench.columns.outputs))
+    return replace(entry, trial_severity=severity(bench.nominal, [record], 1, coarse))
