@@ -81,7 +81,7 @@ class RealLab:
         """The case's log of that number; the trial for None."""
         style = self.styles[-1 if run is None else run]
         settle = round(SETTLE_S / style.period_s)
-        t_s = np.arange(settle + style.rows) * style.period_s
+        t_s = np.asarray(np.arange(settle + style.rows) * style.period_s, float)
         axes = len(self.plant.axes)
         asked = np.zeros((len(t_s), 2))
         for i in range(axes):
@@ -147,7 +147,7 @@ def draw_bench(plant: RealPlant, given: Rig, plan: Plan, rng: Generator) -> Benc
         speed_noise_rad_s=float(10.0 ** rng.uniform(-0.5, 0.5)),
         speed_step_rad_s=float(rng.choice([0.01, 0.1, 1.0])),
     )
-    columns = Columns(plant.name, plant.name.replace("_", " "), plant.inputs, plant.outputs, plant.speeds)
+    columns = Columns(plant.name, plant.rig, plant.inputs, plant.outputs, plant.speeds)
     return Bench(known, true, lab, TRAINING, logging, changes, columns)
 
 
@@ -179,9 +179,7 @@ def _draw_held(plant: RealPlant, rng: Generator) -> list[tuple[bool, bool]]:
     ]
 
 
-def _draw_style(
-    plant: RealPlant, periods_s: Sequence[float], locked: tuple[bool, bool], rng: Generator
-) -> LogStyle:
+def _draw_style(plant: RealPlant, periods_s: Sequence[float], locked: tuple[bool, bool], rng: Generator) -> LogStyle:
     period_s = float(rng.choice(periods_s))
     length_s = round(min(float(rng.uniform(*RUN_LENGTHS_S)), MOST_ROWS * period_s), 2)
     closed = bool(rng.random() < operators.CLOSED_SHARE[plant.name])
@@ -239,5 +237,3 @@ def _lost(loss: Loss, rng: Generator, rows: int, settle: int) -> NDArray[np.uint
         lost[row : row + burst] = 1
         row += burst
     return lost
-
-

@@ -57,12 +57,16 @@ class Asked:
         return smoothed(self.wishes[:, i], self.period_s, time_s)
 
 
-def opened(plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator) -> Orders:
+def opened(
+    plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator
+) -> Orders:
     """Commands made beforehand, about a trim that the operator found on the rig itself."""
     return OPEN[plant.name](true, Asked(wishes, t_s, locked), rng)
 
 
-def closed(plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator) -> Orders:
+def closed(
+    plant: RealPlant, nominal: Rig, true: Rig, wishes: Array, locked: Held, t_s: Array, rng: Generator
+) -> Orders:
     """References, and a controller that knows the rig as it is stated."""
     return CLOSED[plant.name](nominal, Asked(wishes, t_s, locked), rng)
 
@@ -86,9 +90,7 @@ def _ce150_open(rig: Rig, asked: Asked, rng: Generator) -> Orders:
 def _ce150_closed(rig: Rig, asked: Asked, rng: Generator) -> Orders:
     """A PID for each axis; what the rig needs at rest is fed forward from a table."""
     times_s, middle = rng.uniform(0.15, 0.4, 2), rng.uniform(-0.15, 0.1)
-    reference = np.column_stack(
-        [middle + 0.4 * asked.smooth(0, times_s[0]), 1.1 * asked.smooth(1, times_s[1])]
-    )
+    reference = np.column_stack([middle + 0.4 * asked.smooth(0, times_s[0]), 1.1 * asked.smooth(1, times_s[1])])
     for i in range(2):
         if asked.locked[i]:
             reference[:, i] = reference[0, i]
@@ -96,7 +98,9 @@ def _ce150_closed(rig: Rig, asked: Asked, rng: Generator) -> Orders:
     table = np.array([rest(rig, float(psi), FASTEST_RAD_S)[0] for psi in grid])
     base_V = np.column_stack([np.interp(reference[:, 0], grid, table[:, i]) for i in range(2)])
     if rng.random() < 0.4:
-        base_V += np.array([0.3, 0.8]) * np.clip(lfilter([1.0], [1.0, -0.8], rng.standard_normal(base_V.shape), axis=0), -3.0, 3.0)
+        base_V += np.array([0.3, 0.8]) * np.clip(
+            lfilter([1.0], [1.0, -0.8], rng.standard_normal(base_V.shape), axis=0), -3.0, 3.0
+        )
     b = rng.uniform(0.8, 1.1, (2, 1))
     gain = CE150_GAINS * np.hstack([b**2, b**3, b])
     speeds = rest(rig, float(reference[0, 0]), FASTEST_RAD_S)[1]
@@ -141,7 +145,9 @@ def _emps_closed(rig: Rig, asked: Asked, rng: Generator) -> Orders:
     gain = np.array([[stiff, 0.0, 1.6 * stiff / bandwidth], [0.0, 0.0, 0.0]])
     nothing = np.zeros_like(q)
     reference = np.column_stack([q, nothing])
-    return Orders(gain, 2.0 * asked.period_s, reference, np.zeros_like(reference), np.array([q[0], 0.0, 0.0, 0.0, 0.0, 0.0]))
+    return Orders(
+        gain, 2.0 * asked.period_s, reference, np.zeros_like(reference), np.array([q[0], 0.0, 0.0, 0.0, 0.0, 0.0])
+    )
 
 
 Operator = Callable[[Rig, Asked, Generator], Orders]

@@ -20,7 +20,8 @@ LEAST_SHARE = 0.05  # of a stated value: what is positive stays so
 
 @dataclass(frozen=True)
 class RealPlant:
-    """A plant: names of its axes, inputs, outputs and drives (`rotors`) with the columns of their speeds; what is usual on it.
+    """A plant: its model's name and what people call it, names of its axes, inputs, outputs and drives (`rotors`) with the columns of
+    their speeds; what is usual on it.
 
     By axis: torque (N m; N), inertia (kg m^2; kg), rate (rad/s; m/s) and angle (rad; m) that a run reaches; by input: its size in V.
     `limits`: parameters of the least and the largest command, None for the largest negated; `stops`: of the stops.
@@ -28,6 +29,7 @@ class RealPlant:
     """
 
     name: str
+    rig: str
     axes: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -94,6 +96,7 @@ def _resolution(entry: Mapping[str, Any]) -> float:
 
 CE150 = RealPlant(
     name="ce150",
+    rig="CE150",
     axes=("elevation", "azimuth"),
     inputs=("u_M_V", "u_T_V"),
     outputs=("psi_rad", "phi_rad"),
@@ -112,6 +115,7 @@ CE150 = RealPlant(
 )
 AEROSHIELD = RealPlant(
     name="aeroshield",
+    rig="AeroShield",
     axes=("arm",),
     inputs=("u_V",),
     outputs=("theta_rad",),
@@ -128,6 +132,7 @@ AEROSHIELD = RealPlant(
 )
 EMPS = RealPlant(
     name="emps",
+    rig="EMPS",
     axes=("carriage",),
     inputs=("u_V",),
     outputs=("q_m",),

@@ -77,7 +77,7 @@ def declarations() -> str:
 @cache
 def _opened() -> tuple[Any, Any]:
     text = declarations()
-    sources = [CText("simulation.h", text), *(FOLDER / name for name in SOURCES)]
+    sources: list[Path | CText] = [CText("simulation.h", text), *(FOLDER / name for name in SOURCES)]
     return load_shared(text, build_shared("blind_real", sources, flags=FLAGS))
 
 
