@@ -98,7 +98,7 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
             term=own.dead_band(i), drawn={"dead_bend": Uniform(0.05, 0.25)},
         ),
         known(
-            f"{at}.saturation", f"limit of {u}", Size("limit_V", 0.6 * size, over), formulas.saturation, i,
+            f"{at}.saturation", f"limit of {u}", Size("limit_V", p.busy * size, over), formulas.saturation, i,
             term=own.soft_limit(i), start=own.limit_start, drawn={"limit_power": Uniform(8.0, 20.0)}, bounds=(0.6, 8.0),
         ),
         known(

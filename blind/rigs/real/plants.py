@@ -24,6 +24,7 @@ class RealPlant:
     their speeds; what is usual on it.
 
     By axis: torque (N m; N), inertia (kg m^2; kg), rate (rad/s; m/s) and angle (rad; m) that a run reaches; by input: its size in V.
+    `busy`: the share of it that flights come to.
     `limits`: parameters of the least and the largest command, None for the largest negated; `stops`: of the stops.
     `hides`: by axis the parameter that dry friction is, if it has one. `gravity`: the axis that gravity turns.
     """
@@ -45,6 +46,7 @@ class RealPlant:
     stops: tuple[str, ...] = ()
     hides: tuple[str, ...] = ()
     gravity: str = ""
+    busy: float = 0.6
 
     @property
     def path(self) -> Path:
@@ -145,6 +147,7 @@ EMPS = RealPlant(
     reach=(0.1,),
     input_V=(10.0,),
     limits=((None, "u_max"),),
+    busy=0.25,
 )
 PLANTS = (CE150, AEROSHIELD, EMPS)
 
