@@ -139,9 +139,7 @@ def test_names_of_known_effects_are_the_librarys(plant: RealPlant) -> None:
 def test_the_c_reads_every_field_that_a_row_sets_and_no_other() -> None:
     text = "".join((FOLDER / source).read_text() for source in SOURCES)
     fields = {name for e in ALL if e.size.field for name in (e.size.field, *e.drawn, *e.fixed)}
-    assert set(re.findall(r"\bfx->(\w+)|effects\.(\w+)", text)) and fields == {
-        a or b for a, b in re.findall(r"\bfx->(\w+)|effects\.(\w+)", text)
-    }
+    assert fields == {a or b for a, b in re.findall(r"\bfx->(\w+)|effects\.(\w+)", text)}
 
 
 def test_colours_are_stable_and_of_size_one() -> None:
