@@ -44,7 +44,7 @@ def truth_of(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Se
         hold=_hold(bench, train, hold, slopes),
         excited=plan.excited,
         rotor_speeds=plan.rotor_speeds,
-        defects=("jitter",) if bench.lab.jitter else (),
+        defects=(*(("jitter",) if bench.lab.jitter else ()), *bench.faults),
     )
 
 

@@ -71,7 +71,8 @@ class Logging:
 class Bench:
     """The rig as stated, the rig as it is (without effects), where it flies, its training runs, how they are logged.
 
-    `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given.
+    `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given; `faults`: what is odd
+    about its logs, in words.
     """
 
     nominal: Rig
@@ -81,6 +82,7 @@ class Bench:
     logging: Logging
     restated: Mapping[tuple[str, str], str]
     columns: Columns = Columns()
+    faults: tuple[str, ...] = ()
 
     @property
     def gravity_Nm(self) -> float:

@@ -29,7 +29,8 @@ CONVERTER_STEPS = 2**16  # of a command over its range
 # By law: the width of the arc tangent in shares of a usual rate, of the bristles in shares of a usual angle.
 WIDTHS = {ARC_TANGENT: (2e-3, 1e-2), DAHL: (3e-4, 4e-3), LUGRE: (3e-4, 4e-3)}
 # RMS of a disturbance as a share of what the spectrum's own rig left of its accelerations: from a quiet room to a poor rig.
-PUSH_SCALE = (0.003, 0.06)
+PUSH_SCALE = (0.002, 0.03)
+CORNERS_HZ = (60.0, 300.0)  # of a filter that somebody put on the angles and forgot: at most 2.7 ms late
 MISREAD_COUNTS = (0.1, 0.5)  # RMS of each, noise without and with a colour
 
 
@@ -148,7 +149,22 @@ def draw_bench(plant: RealPlant, given: Rig, plan: Plan, rng: Generator) -> Benc
         speed_step_rad_s=float(rng.choice([0.01, 0.1, 1.0])),
     )
     columns = Columns(plant.name, plant.rig, plant.inputs, plant.outputs, plant.speeds)
-    return Bench(known, true, lab, TRAINING, logging, changes, columns)
+    return Bench(known, true, lab, TRAINING, logging, changes, columns, _faults(lab))
+
+
+def _faults(lab: RealLab) -> tuple[str, ...]:
+    """What is odd about the logs, in words, with sizes where they matter."""
+    logs = lab.styles[:-1]
+    drift = max(abs(log.clock - 1.0) for log in logs)
+    found = {
+        "gaps": any(log.gaps for log in logs),
+        f"clock drift {drift:.1e}": drift > 0.0,
+        f"angles filtered {1e3 * lab.body.filter_s[0]:.2f} ms": lab.body.filter_s[0] > 0.0,
+        "16-bit commands": any(log.coarse for log in logs),
+        "open loop": not all(log.closed for log in logs),
+        "held axis": any(any(log.locked) for log in logs),
+    }
+    return tuple(name for name, there in found.items() if there)
 
 
 def _absent(given: Rig, rng: Generator) -> set[str]:
@@ -199,8 +215,8 @@ def _draw_body(plant: RealPlant, rng: Generator) -> Body:
     for i in range(len(plant.axes)):
         usual = plant.rate[i] if law == ARC_TANGENT else plant.reach[i]
         widths[i] = usual * float(10.0 ** rng.uniform(*np.log10(WIDTHS[law])))
-    if rng.random() < 0.3:  # an angle that somebody filtered and forgot: a corner of 30 to 120 Hz
-        filters = [float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(np.log10(30.0), np.log10(120.0))))] * 2
+    if rng.random() < 0.3:
+        filters = [float(1.0 / (2.0 * np.pi * 10.0 ** rng.uniform(*np.log10(CORNERS_HZ))))] * 2
     return Body(law, (widths[0], widths[1]), (filters[0], filters[1]))
 
 
