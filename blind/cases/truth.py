@@ -19,15 +19,17 @@ from blind.cases.severity import (
 )
 from blind.effects.visited import Visited
 from blind.rigs.bench import Bench, Plan
+from blind.simulation.ce150 import Rig
 from blind.simulation.record import Record
 from blind.simulation.rest import rotor_thrust
 
 Array = NDArray[np.float64]
+LOST_RAD = 1e3  # no rig turns so far within a second
 
 
 def truth_of(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Sequence[Record]) -> Truth:
     """The truth of a case; the last of its records is the hold-out run."""
-    rig, train, hold = bench.nominal, records[:-1], records[-1]
+    rig, train = bench.nominal, records[:-1]
     outputs, coarse = bench.columns.outputs, coarse_rad(injected, len(bench.columns.outputs))
     own = [coarse_rad([entry], len(outputs)) for entry in injected]
     slopes = [sensitivity(bench.lab, rig, record) for record in train]
@@ -41,7 +43,7 @@ def truth_of(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Se
         severity=severity(rig, train, 1, coarse) if injected else 0.0,
         severity_left=severity_left(rig, train, slopes, 1, coarse) if injected else 0.0,
         floor_rad=_by_output(floor_rad(rig, train), outputs),
-        hold=_hold(bench, train, hold, slopes),
+        hold=_hold(bench, records, slopes),
         excited=plan.excited,
         rotor_speeds=plan.rotor_speeds,
         defects=(*(("jitter",) if bench.lab.jitter else ()), *bench.faults),
@@ -63,23 +65,38 @@ def _described(entry: Injected, size: float, left: float, visited: Visited) -> T
     )
 
 
-def _hold(bench: Bench, train: Sequence[Record], hold: Record, slopes: Sequence[Array]) -> Hold:
-    """What predictions of the hold-out run leave; the re-tune is fitted on the training runs, re-linearised at its own answer."""
-    floor = floor_rad(bench.nominal, train)
-    predict, names = bench.lab.predict, bench.columns.outputs
-    stated = predict(bench.nominal, hold, PREDICTION_STEP_S)
-    rig, total = bench.nominal, np.zeros(len(slopes[0]))
-    for _ in range(3):
-        gaps = [(record.y_rad - predict(rig, record, PREDICTION_STEP_S))[:: record.thin] for record in train]
-        linear = [gap + np.tensordot(total, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
-        total = retune(linear, slopes, floor)
-        rig = moved_rig(bench.nominal, total)
+def _hold(bench: Bench, records: Sequence[Record], slopes: Sequence[Array]) -> Hold:
+    """What predictions of the hold-out run leave; the re-tune is fitted on the training runs."""
+    hold, names = records[-1], bench.columns.outputs
+    stated = bench.lab.predict(bench.nominal, hold, PREDICTION_STEP_S)
+    retuned = bench.lab.predict(_retuned(bench, records[:-1], slopes), hold, PREDICTION_STEP_S)
     return Hold(
         rms_sensor=_by_output(rms(hold.y_rad - hold.exact_rad), names),
         rms_true=_by_output(rms(hold.y_rad - hold.shadow[:, 0]), names),
         rms_nominal=_by_output(rms(hold.y_rad - stated), names),
-        rms_retuned=_by_output(rms(hold.y_rad - predict(rig, hold, PREDICTION_STEP_S)), names),
+        rms_retuned=_by_output(rms(hold.y_rad - (stated if _lost([retuned]) else retuned)), names),
     )
+
+
+def _retuned(bench: Bench, train: Sequence[Record], slopes: Sequence[Array]) -> Rig:
+    """Re-linearised at its own answer; a step of many spreads that leads to a rig which no longer flies is taken back."""
+    floor = floor_rad(bench.nominal, train)
+    before = rig = bench.nominal
+    total = np.zeros(len(slopes[0]))
+    for _ in range(3):
+        predicted = [bench.lab.predict(rig, record, PREDICTION_STEP_S) for record in train]
+        if _lost(predicted):
+            return before
+        gaps = [(record.y_rad - run)[:: record.thin] for record, run in zip(train, predicted, strict=True)]
+        linear = [gap + np.tensordot(total, slope, axes=1) for gap, slope in zip(gaps, slopes, strict=True)]
+        total = retune(linear, slopes, floor)
+        before, rig = rig, moved_rig(bench.nominal, total)
+    return rig
+
+
+def _lost(predicted: Sequence[Array]) -> bool:
+    """Whether a prediction left every range."""
+    return not all(np.all(np.abs(run) < LOST_RAD) for run in predicted)
 
 
 def _by_output(values: Array, names: Sequence[str]) -> dict[str, float]:

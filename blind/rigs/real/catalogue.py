@@ -122,7 +122,7 @@ def _inputs(p: RealPlant, i: int) -> tuple[Effect, ...]:
 
 
 def _drives(p: RealPlant, i: int) -> tuple[Effect, ...]:
-    """Motors with what they turn; of a static one the thrust may be other than proportional."""
+    """Motors with what they turn; where thrust is stated as proportional it may be another power."""
     at, u, size = p.rotors[i], p.inputs[i], p.input_V[i]
     warm = known(
         f"{at}.warmup", f"gain(t) of {u}", Size("warm", 0.05), formulas.warm_up, i,
@@ -134,6 +134,8 @@ def _drives(p: RealPlant, i: int) -> tuple[Effect, ...]:
             term=own.rounded_dry(i),
         )  # fmt: skip
         return warm, dry
+    if p.name == "quanser_aero":
+        return (warm,)
     square = known(
         f"{at}.quadratic_thrust", f"thrust({u})", Size("power", 0.15), own.quadratic_thrust, i,
         fixed={"power_V": size}, bounds=(0.02, 6.0),

@@ -15,12 +15,13 @@ from blind.simulation.rest import rest
 
 Array = NDArray[np.float64]
 Held = tuple[bool, bool]
-CLOSED_SHARE = {"ce150": 0.6, "aeroshield": 0.3, "emps": 0.7}  # of the logs
+CLOSED_SHARE = {"ce150": 0.6, "aeroshield": 0.3, "emps": 0.7, "quanser_aero": 0.5}  # of the logs
 FASTEST_RAD_S = 1500.0
 WASHOUT_S = 2.0  # after which a command that an axis only integrates is taken back
 # Angle, integral and rate gains in V/rad, V/(rad s), V s/rad.
 CE150_GAINS = np.array([[3.8, 2.3, 2.0], [3.0, 0.8, 1.5]])
 AEROSHIELD_GAINS = np.array([2.5, 8.0, 0.25])
+AERO_GAINS = np.array([[20.0, 6.0, 15.0], [15.0, 3.0, 14.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +151,47 @@ def _emps_closed(rig: Rig, asked: Asked, rng: Generator) -> Orders:
     )
 
 
+def _aero_trim(rig: Rig, pitch: Array) -> tuple[Array, float]:
+    """(main voltage that holds a pitch, tail voltage in one of it that leaves the yaw alone)."""
+    tail = float(np.sqrt(rig.value("Kmp") / rig.value("Ktp")))
+    lift = rig.value("dt") * rig.value("K_omega") ** 2 * (rig.value("Kmt") + rig.value("Ktt") * tail**2)
+    weight = rig.value("dx") * rig.value("g") * rig.value("me")
+    return np.asarray(np.sqrt(weight * np.sin(np.maximum(pitch, 0.02)) / lift)), tail
+
+
+def _aero_open(rig: Rig, asked: Asked, rng: Generator) -> Orders:
+    """The tail follows the main rotor so that the yaw stands, and what is asked of it comes besides."""
+    pitch = float(rng.uniform(0.25, 0.4))
+    trim_V, tail = _aero_trim(rig, np.array([pitch]))
+    main = trim_V[0] + rng.uniform(0.5, 1.5) * asked.wishes[:, 0]
+    base_V = np.column_stack([main, tail * main + rng.uniform(1.5, 3.5) * asked.washed(1)])
+    return _free(base_V, np.array([pitch, 0.0, float(rng.uniform(-0.5, 0.5)), 0.0, 0.0, 0.0]))
+
+
+def _aero_closed(rig: Rig, asked: Asked, rng: Generator) -> Orders:
+    times_s = rng.uniform(0.7, 1.4, 2)  # both rotors push one way only, and not far
+    reference = np.column_stack(
+        [rng.uniform(0.3, 0.4) + 0.15 * asked.smooth(0, times_s[0]), 0.6 * asked.smooth(1, times_s[1])]
+    )
+    for i in range(2):
+        if asked.locked[i]:
+            reference[:, i] = reference[0, i]
+    main, tail = _aero_trim(rig, reference[:, 0])
+    start = np.array([reference[0, 0], 0.0, reference[0, 1], 0.0, 0.0, 0.0])
+    base_V = np.column_stack([main, tail * main])
+    return Orders(AERO_GAINS * rng.uniform(0.7, 1.2, (2, 3)), 0.05, reference, base_V, start)
+
+
 Operator = Callable[[Rig, Asked, Generator], Orders]
-OPEN: Mapping[str, Operator] = {"ce150": _ce150_open, "aeroshield": _aeroshield_open, "emps": _emps_open}
-CLOSED: Mapping[str, Operator] = {"ce150": _ce150_closed, "aeroshield": _aeroshield_closed, "emps": _emps_closed}
+OPEN: Mapping[str, Operator] = {
+    "ce150": _ce150_open,
+    "aeroshield": _aeroshield_open,
+    "emps": _emps_open,
+    "quanser_aero": _aero_open,
+}
+CLOSED: Mapping[str, Operator] = {
+    "ce150": _ce150_closed,
+    "aeroshield": _aeroshield_closed,
+    "emps": _emps_closed,
+    "quanser_aero": _aero_closed,
+}

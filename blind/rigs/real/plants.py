@@ -149,7 +149,24 @@ EMPS = RealPlant(
     limits=((None, "u_max"),),
     busy=0.25,
 )
-PLANTS = (CE150, AEROSHIELD, EMPS)
+QUANSER_AERO = RealPlant(
+    name="quanser_aero",
+    rig="Quanser Aero",
+    axes=("pitch", "yaw"),
+    inputs=("u_M_V", "u_T_V"),
+    outputs=("theta_rad", "psi_rad"),
+    drives=("main_input", "tail_input"),
+    rotors=("main_rotor", "tail_rotor"),
+    speeds=(),
+    torque=(0.015, 0.015),
+    inertia=(0.018, 0.018),
+    rate=(0.3, 0.5),
+    reach=(0.2, 0.35),
+    input_V=(24.0, 24.0),
+    limits=((None, "u_max"), (None, "u_max")),
+    gravity="pitch",
+)
+PLANTS = (CE150, AEROSHIELD, EMPS, QUANSER_AERO)
 
 
 def draw_stated(
