@@ -72,7 +72,7 @@ class Bench:
     """The rig as stated, the rig as it is (without effects), where it flies, its training runs, how they are logged.
 
     `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given; `faults`: what is odd
-    about its logs, in words.
+    about its logs, in words; `each_shows`: whether every one of several effects has to show in the logs as it did in its trial.
     """
 
     nominal: Rig
@@ -83,6 +83,7 @@ class Bench:
     restated: Mapping[tuple[str, str], str]
     columns: Columns = Columns()
     faults: tuple[str, ...] = ()
+    each_shows: bool = False
 
     @property
     def gravity_Nm(self) -> float:

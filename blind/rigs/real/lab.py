@@ -149,7 +149,7 @@ def draw_bench(plant: RealPlant, given: Rig, plan: Plan, rng: Generator) -> Benc
         speed_step_rad_s=float(rng.choice([0.01, 0.1, 1.0])),
     )
     columns = Columns(plant.name, plant.rig, plant.inputs, plant.outputs, plant.speeds)
-    return Bench(known, true, lab, TRAINING, logging, changes, columns, _faults(lab))
+    return Bench(known, true, lab, TRAINING, logging, changes, columns, _faults(lab), each_shows=True)
 
 
 def _faults(lab: RealLab) -> tuple[str, ...]:
