@@ -17,10 +17,12 @@ from blind.effects.visited import Visited
 from blind.rigs.bench import Plan
 from blind.rigs.real import lab as real_lab
 from blind.rigs.real.catalogue import ALL, CATALOGUES
+from blind.rigs.real.derive import SOURCES as SOURCES_OF
+from blind.rigs.real.derive import autoregression, push, reading
 from blind.rigs.real.lab import Errors, LogStyle, RealLab, draw_bench
 from blind.rigs.real.plants import PLANTS, RealPlant
 from blind.rigs.real.simulation import ARC_TANGENT, DAHL, FOLDER, LUGRE, SOURCES, Body
-from blind.rigs.real.spectra import spectra
+from blind.rigs.real.spectra import Spectrum, spectra
 from blind.simulation.record import Loss, Model, Record
 from records.log import load_log
 from records.plant import load_plant
@@ -28,6 +30,7 @@ from sim.bind import bind
 from sim.columns import log_columns
 from sim.plants import MODELS
 from sim.simulate import simulate
+from tests.recorded import dataset_folder
 from tests.soak import SOAK
 
 FREE, SEED = (False, False), 4
@@ -149,6 +152,22 @@ def test_colours_are_stable_and_of_size_one() -> None:
             assert np.sqrt(np.mean(spectrum.drawn(np.random.default_rng(0), 4000, 0.001) ** 2)) == pytest.approx(1.0)
 
 
+def test_an_autoregression_is_found_again() -> None:
+    coefficients = (0.6, -0.4, 0.2, 0.1)
+    spectrum = Spectrum("", 0.01, 1.0, coefficients)
+    found = autoregression(spectrum.drawn(np.random.default_rng(1), 20_000, 0.01))
+    assert found == pytest.approx(coefficients, abs=0.03)
+
+
+def test_the_numbers_of_the_table_are_those_of_the_recording() -> None:
+    measured = SOURCES_OF["aeroshield"][1](dataset_folder("aeroshield") / "ident_data.txt")
+    for kind, find in (("reading", reading), ("push", push)):
+        known = next(spectrum for spectrum in spectra()[kind] if spectrum.name == "aeroshield")
+        left, share = find(measured)
+        assert autoregression(left) == pytest.approx(known.coefficients, abs=1e-4)
+        assert share == pytest.approx(known.share, rel=0.01)
+
+
 @OF_A_PLANT
 def test_spreads_are_two_per_cent_and_more_and_conventions_stay(plant: RealPlant) -> None:
     given = plant.read(plant.path.read_text(), plant.name)
@@ -167,8 +186,8 @@ def test_spreads_are_two_per_cent_and_more_and_conventions_stay(plant: RealPlant
 def shorten(patch: pytest.MonkeyPatch) -> None:
     """None of the effects that the seed gives begins later than these runs end."""
     if not SOAK:
-        patch.setattr(real_lab, "TRIAL_S", 5.0)
-        patch.setattr(real_lab, "RUN_LENGTHS_S", (6.0, 9.0))
+        patch.setattr(real_lab, "TRIAL_S", 4.0)
+        patch.setattr(real_lab, "RUN_LENGTHS_S", (4.0, 6.0))
         patch.setattr(real_lab, "PERIODS_S", (0.02, 0.01))
         patch.setattr(real_lab, "HOLD_PERIODS_S", (0.02, 0.01))
 
