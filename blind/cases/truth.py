@@ -45,7 +45,7 @@ def truth_of(bench: Bench, plan: Plan, injected: Sequence[Injected], records: Se
         floor_rad=_by_output(floor_rad(rig, train), outputs),
         hold=_hold(bench, records, slopes),
         excited=plan.excited,
-        rotor_speeds=plan.rotor_speeds,
+        rotor_speeds=plan.rotor_speeds and bool(bench.columns.speeds),
         defects=(*(("jitter",) if bench.lab.jitter else ()), *bench.faults),
     )
 
