@@ -9,7 +9,7 @@ from blind.cases.injection import fly_with_shadows, loss, within_range
 from blind.cases.sealed import Truth
 from blind.cases.sizing import CONTENT_FROM, as_expected, sized
 from blind.cases.truth import truth_of
-from blind.rigs.bench import Logging, Plan, RigKind
+from blind.rigs.bench import Columns, Logging, Plan, RigKind
 from blind.simulation.ce150 import Rig
 from blind.simulation.record import Record
 
@@ -19,10 +19,12 @@ LIVELY_FROM = 2  # attempts after which what no quiet run shows is flown excited
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Runs (training, hold-out last), how they are logged, what the plant file states otherwise, and the truth."""
+    """Runs (training, hold-out last), how they are logged, what their columns are called, what the plant file states otherwise, and
+    the truth."""
 
     records: tuple[Record, ...]
     logging: Logging
+    columns: Columns
     restated: Mapping[tuple[str, str], str]
     truth: Truth
 
@@ -56,4 +58,4 @@ def _attempt(kind: RigKind, nominal: Rig, plan: Plan, seed: Sequence[int], attem
     records = tuple(fly_with_shadows(bench, injected, run) for run in inputs)
     if not all(within_range(record) for record in records) or not as_expected(bench, injected, records[:-1], attempt):
         return None
-    return Case(records, bench.logging, bench.restated, truth_of(bench, plan, injected, records))
+    return Case(records, bench.logging, bench.columns, bench.restated, truth_of(bench, plan, injected, records))

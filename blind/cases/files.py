@@ -16,13 +16,13 @@ Array = NDArray[np.float64]
 NUMBER_WORDS = {2: "two", 3: "three", 4: "four"}
 
 SIDECAR = """schema = "run-log/1"
-plant = "ce150"
+plant = "{plant}"
 sample_period_s = {period_s}
-loop = "closed"
-locked = []
+loop = "{loop}"
+locked = [{locked}]
 """
 
-README = """{name}: {count} runs of {length_s:g} s of one CE150, plant.toml what is known of it.
+README = """{name}: {count} runs of {length} s of one {rig}, plant.toml what is known of it.
 
     twinlaw diagnose --plant plant.toml --holdout hold-1.csv --out RESULTS/{name} {training}
 
@@ -56,30 +56,39 @@ def case_files(name: str, case: Case, plant_text: str, defects: Defects, rng: Ge
     """Content of the case's files by name; the last of its runs is the hold-out."""
     runs = [*(f"train-{number + 1}" for number in range(len(case.records) - 1)), "hold-1"]
     training = " ".join(f"{run}.csv" for run in runs[:-1])
-    length_s = case.logging.length_s
+    rig, length = case.columns.rig, _length(case)
     files = {
-        "README.md": README.format(name=name, count=NUMBER_WORDS[len(runs)], length_s=length_s, training=training),
+        "README.md": README.format(name=name, count=NUMBER_WORDS[len(runs)], length=length, rig=rig, training=training),
         "plant.toml": restated(plant_text, case.restated),
     }
     for run, record in zip(runs, case.records, strict=True):
-        files[f"{run}.csv"] = _csv(record, case.truth.rotor_speeds, case.logging, defects, rng)
-        files[f"{run}.toml"] = SIDECAR.format(period_s=case.logging.period_s)
+        files[f"{run}.csv"] = _csv(record, case, defects, rng)
+        locked = ", ".join(f'"{axis}"' for axis in record.locked)
+        files[f"{run}.toml"] = SIDECAR.format(
+            plant=case.columns.plant, period_s=record.period_s, loop=record.loop, locked=locked
+        )
     return files
 
 
-def _csv(record: Record, speeds: bool, logging: Logging, defects: Defects, rng: Generator) -> str:
-    n = len(record.t_s)
+def _length(case: Case) -> str:
+    """What the note says of the runs' lengths, s."""
+    lengths = [round(len(record.t_s) * record.period_s) for record in case.records]
+    return f"{case.logging.length_s:g}" if len(set(lengths)) == 1 else f"{min(lengths)} to {max(lengths)}"
+
+
+def _csv(record: Record, case: Case, defects: Defects, rng: Generator) -> str:
+    n, logging, names = len(record.t_s), case.logging, case.columns
     y = record.y_rad.copy()
     if defects.not_a_number:
-        y[rng.integers(1, n, 12), rng.integers(0, 2, 12)] = np.nan
-    columns: dict[str, Array] = {"t_s": np.round(record.t_s - record.t_s[0] + logging.start_s, 6)}
-    columns |= {"u_M_V": record.u_V[:, 0], "u_T_V": record.u_V[:, 1], "psi_rad": y[:, 0], "phi_rad": y[:, 1]}
-    if speeds:
-        noisy = _logged_speeds(record.apparent[:, 4:], logging, rng)
-        columns |= {"omega_M_rad_s": noisy[:, 0], "omega_T_rad_s": noisy[:, 1]}
-    reference = np.round(record.reference, 7)
-    columns |= {"psi_ref_rad": reference[:, 0], "phi_ref_rad": reference[:, 1]}
-    kept = np.ones(n, bool)
+        y[rng.integers(1, n, 12), rng.integers(0, y.shape[1], 12)] = np.nan
+    t_s = (record.t_s - record.t_s[0]) * record.clock
+    columns: dict[str, Array] = {"t_s": np.round(t_s + logging.start_s, 6)}
+    columns |= dict(zip((*names.inputs, *names.outputs), (*record.u_V.T, *y.T), strict=True))
+    if case.truth.rotor_speeds and names.speeds:
+        columns |= dict(zip(names.speeds, _logged_speeds(record.apparent[:, 4:], logging, rng).T, strict=True))
+    if record.loop == "closed":
+        columns |= dict(zip(map(_reference_of, names.outputs), np.round(record.reference, 7).T, strict=True))
+    kept = np.ones(n, bool) if record.kept is None else record.kept.copy()
     if defects.missing_rows:
         kept[rng.integers(1, n, 10)] = False
     cells = [map(repr, column[kept].tolist()) for column in columns.values()]
@@ -87,6 +96,12 @@ def _csv(record: Record, speeds: bool, logging: Logging, defects: Defects, rng: 
         cells.insert(0, map(str, np.flatnonzero(kept).tolist()))
     header = ",".join([*(["seq"] if defects.sequence else []), *columns])
     return "\n".join([header, *map(",".join, zip(*cells, strict=True))]) + "\n"
+
+
+def _reference_of(output: str) -> str:
+    """psi_rad: psi_ref_rad."""
+    name, _, unit = output.rpartition("_")
+    return f"{name}_ref_{unit}"
 
 
 def _logged_speeds(omega: Array, logging: Logging, rng: Generator) -> Array:

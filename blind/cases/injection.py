@@ -2,18 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from blind.effects.effect import Effect, Shape
 from blind.rigs.bench import Bench
-from blind.simulation.flight import RunInputs
 from blind.simulation.record import Loss, Model, Record
 
 Array = NDArray[np.float64]
 STOP_SHARE = 0.1  # of a run's time at most on an elevation stop
 ALL = -1  # every effect left out
+COARSE = ("count_rad", "count")  # fields of the rigs
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Injected:
     trial_severity: float
 
 
-def fly_with_shadows(bench: Bench, injected: Sequence[Injected], inputs: RunInputs) -> Record:
+def fly_with_shadows(bench: Bench, injected: Sequence[Injected], inputs: Any) -> Record:
     """A run; shadows: the rig itself, without any effect, then without each effect where there are several."""
     whole = _model(bench, injected)
     single = range(len(injected)) if len(injected) > 1 else ()
@@ -59,7 +60,8 @@ def loss(injected: Sequence[Injected]) -> Loss:
     return Loss(share, max((entry.shape.get("burst_frames", 1.0) for entry in injected), default=1.0))
 
 
-def coarse_rad(injected: Sequence[Injected]) -> Array:
-    """Encoder steps that the effects bring, by output (2,) in rad."""
+def coarse_rad(injected: Sequence[Injected], outputs: int = 2) -> Array:
+    """Encoder steps that the effects bring, by output (outputs,) in rad; in m on a carriage."""
     settings = [entry.effect.settings(entry.m, entry.shape) for entry in injected]
-    return np.array([sum(s.get(("count_rad", axis), 0.0) for s in settings) for axis in range(2)])
+    steps = [sum(s.get((name, axis), 0.0) for s in settings for name in COARSE) for axis in range(outputs)]
+    return np.array(steps)

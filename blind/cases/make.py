@@ -14,17 +14,19 @@ from blind.cases.case import build_case
 from blind.cases.files import case_files, draw_defects
 from blind.cases.mix import KINDS, plans
 from blind.cases.sealed import CASES_FILE, TRUTH_FILE, seal, truth_from_json, truth_to_json
-from blind.rigs.table import FIRST, kind_of_rig
-from blind.simulation.ce150 import load_rig, read_rig
+from blind.rigs.bench import Plan, RigKind
+from blind.rigs.table import FIRST, kinds_of_rig
+from blind.simulation.ce150 import load_rig
 from records.errors import BadInput
 from records.files import write_atomic
-
-PLANT = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"
 
 
 @dataclass(frozen=True)
 class Order:
-    """All that one case depends on: which of a benchmark's cases it is, the text of the plant file, the kind of rig."""
+    """All that one case depends on: which of a benchmark's cases it is, the text of the plant file, the kind of rig.
+
+    `plants`: which of the rig's plants the benchmark's cases are dealt round to.
+    """
 
     seed: int
     index: int
@@ -32,6 +34,7 @@ class Order:
     kinds: tuple[str, ...]
     plant: str
     rig: str
+    plants: tuple[int, ...] = (0,)
 
     @property
     def name(self) -> str:
@@ -48,25 +51,26 @@ def make(
     out: Path,
     cases: int = 60,
     kinds: Sequence[str] = KINDS,
-    plant: Path = PLANT,
+    plant: Path | None = None,
     each: Each = map,
     rig: str = FIRST,
 ) -> Path:
     """Write `cases` cases of some kinds with one kind of rig into the folder `out`, the same bytes for the same seed; returns cases.json.
 
-    `each` makes the cases, in their order, as `map` does.
+    `each` makes the cases, in their order, as `map` does. `plant`: the file to start from, that of the rig's own plants if None.
 
     Layout: case-XXXX/ (plant.toml, train-1 and so on and hold-1 as .csv and .toml, README.md), cases.json with a commitment to each
     truth, sealed/truth.json. An earlier benchmark in `out` is replaced, as a whole and only when the new one is complete.
-    Raises BadInput for a plant that is no CE150, an unknown kind or rig, a negative seed, an `out` that holds something else.
+    Raises BadInput for a plant that the rig is not, an unknown kind or rig, a negative seed, an `out` that holds something else.
     """
     if seed < 0:
         raise BadInput("seed", "--seed", str(seed), "a number from 0 up", "choose another seed")
-    _, text = load_rig(plant)
+    texts = _plant_texts(kinds_of_rig(rig), plant)
+    asked = [Order(seed, index, cases, tuple(kinds), "", rig, tuple(texts)) for index in range(1, max(cases, 1) + 1)]
     # Refuses what cannot be dealt before anything is flown.
-    plans(cases, kinds, kind_of_rig(rig).catalogue, np.random.default_rng([seed, 0]))
+    _dealt(asked[0])
     check_replaceable(out)
-    orders = [Order(seed, index, cases, tuple(kinds), text, rig) for index in range(1, cases + 1)]
+    orders = [replace(order, plant=texts[_plant_of(order)]) for order in asked]
     work = _work_folder(out)
     try:
         truths = {}
@@ -89,14 +93,40 @@ def make(
 def make_case(order: Order) -> Made:
     """One case, without company: its files, and its truth."""
     seed = (order.seed, order.index)
-    kind = kind_of_rig(order.rig)
-    plan = plans(order.cases, order.kinds, kind.catalogue, np.random.default_rng([order.seed, 0]))[order.index - 1]
-    case = build_case(kind, read_rig(order.plant, order.name), plan, (*seed, 1))
+    kind, plan = _dealt(order)
+    case = build_case(kind, kind.read(order.plant, order.name), plan, (*seed, 1))
     rng = np.random.default_rng([*seed, 2])
     defects = draw_defects(rng)
     files = case_files(order.name, case, order.plant, defects, rng)
     truth = replace(case.truth, defects=(*case.truth.defects, *defects.names))
     return {"files": dict(files), "truth": truth_to_json(truth)}
+
+
+def _plant_of(order: Order) -> int:
+    """Which of the rig's plants a case is of."""
+    return order.plants[(order.index - 1) % len(order.plants)]
+
+
+def _dealt(order: Order) -> tuple[RigKind, Plan]:
+    """The kind of rig and the plan of a case: each plant's cases are dealt as if they were alone."""
+    turn, count = (order.index - 1) % len(order.plants), len(order.plants)
+    kind = kinds_of_rig(order.rig)[order.plants[turn]]
+    own = len(range(turn, order.cases, count)) if order.cases > 0 else order.cases
+    seed = [order.seed, 0] if count == 1 else [order.seed, 0, turn]
+    dealt = plans(own, order.kinds, kind.catalogue, np.random.default_rng(seed))
+    return kind, dealt[(order.index - 1) // count]
+
+
+def _plant_texts(family: Sequence[RigKind], plant: Path | None) -> dict[int, str]:
+    """Plant files by number of the rig's plant: all of its own, or the one that is given; raises BadInput where that is none of them."""
+    if plant is None:
+        return {number: load_rig(kind.plant, kind.read)[1] for number, kind in enumerate(family)}
+    for number, kind in enumerate(family):
+        try:
+            return {number: load_rig(plant, kind.read)[1]}
+        except BadInput as error:
+            refused = error
+    raise refused
 
 
 def salt_of(seed: int, name: str) -> str:

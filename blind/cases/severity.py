@@ -71,6 +71,6 @@ def moved_rig(rig: Rig, steps: Array) -> Rig:
     values = {name: value.copy() for name, value in rig.values.items()}
     for (name, index, sd), step in zip(uncertain(rig), steps, strict=True):
         values[name][index] += sd * step
-    for name in DRY_FRICTION:
+    for name in values.keys() & set(DRY_FRICTION):
         values[name] = np.maximum(values[name], 0.0)
     return rig.with_values(values)

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
 from blind.effects.effect import Catalogue, Effect
-from blind.simulation.ce150 import DRY_FRICTION, Rig
-from blind.simulation.flight import RunInputs
+from blind.simulation.ce150 import DRY_FRICTION, Rig, read_rig
 from blind.simulation.record import Loss, Model, Record
 
 Array = NDArray[np.float64]
@@ -28,21 +28,32 @@ class Plan:
 
 
 class Lab(Protocol):
-    """Where one drawn rig flies: its simulation, its controller, its manoeuvres."""
+    """Where one drawn rig flies: its simulation, its controller, its manoeuvres; what it gives as inputs it takes to fly."""
 
     @property
     def jitter(self) -> bool:
         """Whether the rows come at irregular times."""
 
-    def inputs(self, rng: Generator, loss: Loss, run: int | None) -> RunInputs:
+    def inputs(self, rng: Generator, loss: Loss, run: int | None) -> Any:
         """What the run of that number from 0 is given; a short trial for None."""
 
-    def fly(self, model: Model, shadows: Sequence[Model], inputs: RunInputs) -> Record:
+    def fly(self, model: Model, shadows: Sequence[Model], inputs: Any) -> Record:
         """One closed-loop run; each shadow runs freely for a second at a time."""
 
     def predict(self, rig: Rig, record: Record, step_s: float) -> Array:
         """Free runs of an effect-free rig on a record's commands, anew from its apparent state each second; angles (n,
         2) in rad."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What a plant and the columns of its logs are called: inputs, outputs, speeds where they are logged; what people call the rig."""
+
+    plant: str = "ce150"
+    rig: str = "CE150"
+    inputs: tuple[str, ...] = ("u_M_V", "u_T_V")
+    outputs: tuple[str, ...] = ("psi_rad", "phi_rad")
+    speeds: tuple[str, ...] = ("omega_M_rad_s", "omega_T_rad_s")
 
 
 @dataclass(frozen=True)
@@ -60,7 +71,8 @@ class Logging:
 class Bench:
     """The rig as stated, the rig as it is (without effects), where it flies, its training runs, how they are logged.
 
-    `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given.
+    `restated`: (table, key) -> value, what this case's plant file states otherwise than the one that was given; `faults`: what is odd
+    about its logs, in words; `each_shows`: whether every one of several effects has to show in the logs as it did in its trial.
     """
 
     nominal: Rig
@@ -69,14 +81,29 @@ class Bench:
     training: int
     logging: Logging
     restated: Mapping[tuple[str, str], str]
+    columns: Columns = Columns()
+    faults: tuple[str, ...] = ()
+    each_shows: bool = False
+
+    @property
+    def gravity_Nm(self) -> float:
+        """Gravity's moment about the arm's bearing; 0 where the plant file has none of that name."""
+        if {"m", "l", "g"} <= self.true.values.keys():
+            return self.true.value("m") * self.true.value("l") * self.true.value("g")
+        return self.true.value("tau_gE") if "tau_gE" in self.true.values else 0.0
+
+
+CE150_FILE = Path(__file__).resolve().parents[2] / "plants" / "ce150.toml"
 
 
 @dataclass(frozen=True)
 class RigKind:
-    """What cases of one kind are made of."""
+    """What cases of one kind on one plant are made of; `plant`: its plant file as it is given, read by `read` (text, where)."""
 
     catalogue: Catalogue
     draw_bench: Callable[[Rig, Plan, Generator], Bench]
+    plant: Path = CE150_FILE
+    read: Callable[[str, str], Rig] = read_rig
 
 
 def denied_parameters(plan: Plan, rng: Generator) -> list[str]:

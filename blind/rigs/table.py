@@ -1,15 +1,17 @@
-"""The kinds of rig that a benchmark can be made of, by name."""
+"""The kinds of rig that a benchmark can be made of, by name; a name with several plants deals its cases round them."""
 
-from blind.rigs import first, second
+from collections.abc import Mapping
+
+from blind.rigs import first, real, second
 from blind.rigs.bench import RigKind
 from records.errors import BadInput
 
 FIRST = "first"
-RIGS = {FIRST: first.KIND, "second": second.KIND}
+RIGS: Mapping[str, tuple[RigKind, ...]] = {FIRST: (first.KIND,), "second": (second.KIND,), "real": real.KINDS}
 
 
-def kind_of_rig(name: str) -> RigKind:
-    """The kind called `name`; raises BadInput for one that is not there."""
+def kinds_of_rig(name: str) -> tuple[RigKind, ...]:
+    """The kinds called `name`, one for each of its plants; raises BadInput for one that is not there."""
     if name not in RIGS:
         raise BadInput("kind of rig", "--rig", repr(name), f"one of {', '.join(RIGS)}", "choose one of these")
     return RIGS[name]

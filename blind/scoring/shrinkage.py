@@ -1,7 +1,7 @@
 """How far a diagnosis shrank the hold-out gap, as a share of what the true model reaches."""
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,6 @@ from blind.cases.sealed import Hold
 from blind.scoring.results import Answer
 
 Array = NDArray[np.float64]
-OUTPUTS = ("psi_rad", "phi_rad")
 # Below this share of the floor's energy nothing is left to remove, and the ratio would be noise over noise.
 REMOVABLE = 0.5
 COVERED = 0.5
@@ -23,40 +22,49 @@ def relative_shrinkage(hold: Hold, answer: Answer, log: Path, prediction: Path) 
     `prediction` is scored against the case's own log; where it is missing the diagnosis' stated RMS count. None where the re-tuned
     plant leaves less than half the floor's energy to remove; 0 where nothing usable was predicted.
     """
-    bars = _scored_rms(log, prediction) or _stated_rms(answer)
+    names = tuple(hold.rms_true)
+    bars = _scored_rms(log, prediction, names) or _stated_rms(answer, names)
     if bars is None:
         return 0.0
     before, after = bars
-    scale = {name: hold.rms_true[name] ** 2 for name in OUTPUTS}
-    removable = sum(before[name] ** 2 / scale[name] - 1.0 for name in OUTPUTS)
+    scale = {name: hold.rms_true[name] ** 2 for name in names}
+    removable = sum(before[name] ** 2 / scale[name] - 1.0 for name in names)
     if removable < REMOVABLE:
         return None
-    removed = sum((before[name] ** 2 - after[name] ** 2) / scale[name] for name in OUTPUTS)
+    removed = sum((before[name] ** 2 - after[name] ** 2) / scale[name] for name in names)
     return float(np.clip(removed / removable, -1.0, 1.05))
 
 
-def _stated_rms(answer: Answer) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
+def _stated_rms(answer: Answer, names: Sequence[str]) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
     bars = (answer.rms_before, answer.rms_after)
-    return bars if all(isinstance(bar.get(name), float | int) for bar in bars for name in OUTPUTS) else None
+    return bars if all(isinstance(bar.get(name), float | int) for bar in bars for name in names) else None
 
 
-def _scored_rms(log: Path, prediction: Path) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
+def _scored_rms(
+    log: Path, prediction: Path, outputs: Sequence[str]
+) -> tuple[Mapping[str, float], Mapping[str, float]] | None:
     measured, predicted = _columns(log), _columns(prediction)
-    names = [f"{output[:-4]}_{bar}_rad" for output in OUTPUTS for bar in ("before", "after")]
+    names = [_predicted(output, bar) for output in outputs for bar in ("before", "after")]
     if predicted is None or measured is None or any(name not in predicted for name in ("t_s", *names)):
         return None
     rows = np.searchsorted(measured["t_s"], predicted["t_s"] - 1e-4)
     rows = np.minimum(rows, len(measured["t_s"]) - 1)
     same = np.abs(measured["t_s"][rows] - predicted["t_s"]) < 1e-3
     bars: tuple[dict[str, float], dict[str, float]] = ({}, {})
-    for output in OUTPUTS:
+    for output in outputs:
         for bar, kind in zip(bars, ("before", "after"), strict=True):
-            error = (predicted[f"{output[:-4]}_{kind}_rad"] - measured[output][rows])[same]
+            error = (predicted[_predicted(output, kind)] - measured[output][rows])[same]
             error = error[np.isfinite(error)]
             if len(error) < COVERED * len(measured["t_s"]):
                 return None
             bar[output] = float(np.sqrt(np.mean(error**2)))
     return bars
+
+
+def _predicted(output: str, bar: str) -> str:
+    """The column of a prediction, psi_rad: psi_before_rad."""
+    name, _, unit = output.rpartition("_")
+    return f"{name}_{bar}_{unit}"
 
 
 def _columns(path: Path) -> dict[str, Array] | None:

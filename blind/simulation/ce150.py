@@ -1,7 +1,7 @@
 """The CE150 as this benchmark knows it: numbers read from a plant file, drawn within their stated spread."""
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -48,7 +48,7 @@ class Rig:
 
     values: Mapping[str, Array]
     sds: Mapping[str, Array]
-    resolution_rad: tuple[float, float]
+    resolution_rad: tuple[float, ...]
 
     def value(self, name: str) -> float:
         """A parameter that is one number."""
@@ -92,11 +92,11 @@ def read_rig(text: str, where: str) -> Rig:
     )
 
 
-def load_rig(path: Path) -> tuple[Rig, str]:
-    """The rig of a plant file and the file's text; raises BadInput."""
+def load_rig(path: Path, read: Callable[[str, str], Rig] = read_rig) -> tuple[Rig, str]:
+    """The rig of a plant file, by `read` from (text, where), and the file's text; raises BadInput."""
     try:
         text = path.read_text(encoding="utf-8")
-        return read_rig(text, str(path)), text
+        return read(text, str(path)), text
     except OSError as error:
         raise BadInput("plant file", str(path), error.strerror or "", "a readable file", "check the path") from error
     except tomllib.TOMLDecodeError as error:

@@ -74,7 +74,7 @@ def fly(
         models, ffi.new("rig_t *", nominal.fields()), control, ffi.new("inputs_t *", inputs.fields(ffi)),
         pointer(ffi, start), count, models + 1, mode, round(1.0 / control.period_s), out,
     )  # fmt: skip
-    log = {name: array[inputs.settle :] for name, array in arrays.items()}
+    log: dict[str, Any] = {name: array[inputs.settle :] for name, array in arrays.items()}
     return Record(
         **log,
         reference=inputs.reference[inputs.settle :],

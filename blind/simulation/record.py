@@ -39,7 +39,8 @@ class Record:
     """What a run gives from time 0 on, n rows: times, commands (n, 2) V, counted and exact angles (n, 2) rad, apparent
     state (n, 6): psi psi' phi phi' omega_M omega_T; each shadow's angles (n, shadows, 2).
 
-    `stop_share` of the time on an elevation stop.
+    `stop_share` of the time on an elevation stop. How it is logged: the loop, the axes that were held, which rows were kept (None: all),
+    how many seconds the logger's clock counts in a true one. Where an axis is a carriage its angle is a length in m.
     """
 
     t_s: Array
@@ -52,6 +53,10 @@ class Record:
     stop_share: float
     failed: bool
     period_s: float
+    loop: str = "closed"
+    locked: tuple[str, ...] = ()
+    kept: NDArray[np.bool_] | None = None
+    clock: float = 1.0
 
     @property
     def window_rows(self) -> int:

@@ -92,7 +92,7 @@ def test_a_case_comes_out_the_same_when_it_is_made_again(second_folder: Path) ->
 
 
 def test_an_unknown_kind_of_rig_is_refused_and_nothing_stays_behind(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match=r"--rig.*'third'.*first, second"):
+    with pytest.raises(BadInput, match=r"--rig.*'third'.*first, second, real"):
         make(1, tmp_path / "x", 5, rig="third")
     assert not list(tmp_path.iterdir())
 
@@ -102,9 +102,9 @@ def test_the_command_line_hands_on_which_kind_of_rig_is_asked_for(
 ) -> None:
     words = ["blind", "make", "--seed", "2", "--workers", "1", "--out", str(tmp_path / "x")]
     assert main([*words, "--rig", "third"]) == 2
-    assert "first, second" in capsys.readouterr().err
+    assert "first, second, real" in capsys.readouterr().err
     asked = []
     monkeypatch.setattr(blind, "make", lambda *_, rig, **__: asked.append(rig))
-    for given in ([], ["--rig", "first"], ["--rig", "second"]):
+    for given in ([], ["--rig", "first"], ["--rig", "second"], ["--rig", "real"]):
         assert main([*words, *given]) == 0
-    assert asked == ["first", "first", "second"]
+    assert asked == ["first", "first", "second", "real"]

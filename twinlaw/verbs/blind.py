@@ -1,6 +1,6 @@
 """Make sealed cases for a diagnosis, or score what it said of them.
 
-`twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld, `--rig second` with another kind of rig;
+`twinlaw blind make --seed S --out DIR` writes cases whose effects are withheld, `--rig second` or `--rig real` with another kind of rig;
 `twinlaw blind score DIR RESULTS` opens the seal and scores RESULTS/case-XXXX/diagnosis.json. `twinlaw blind diagnose DIR
 RESULTS` diagnoses all cases that have no answer yet, `twinlaw blind baseline NAME DIR RESULTS` answers them in a plain way,
 to be beaten. `twinlaw blind calibrate --family NAME DIR RESULTS ... --out FILE.json` learns from answers to families of cases,
@@ -35,7 +35,7 @@ from twinlaw.workflows.diagnose.sensitivity import FACTORS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """make --seed --out --cases --kinds --rig; diagnose, baseline, score, sensitivity DIR RESULTS; calibrate; --workers; --json."""
+    """make --seed --out --cases --kinds --rig --plant; diagnose, baseline, score, sensitivity DIR RESULTS; calibrate; --workers; --json."""
     verbs = parser.add_subparsers(
         title="what to do", metavar="make|diagnose|baseline|score|calibrate|sensitivity", required=True
     )
@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     maker.add_argument("--cases", type=options.count, default=60, help="default: %(default)s")
     maker.add_argument("--kinds", default=",".join(blind.KINDS), help="default: %(default)s")
     maker.add_argument("--rig", default=blind.FIRST, help=f"kind of rig: {', '.join(blind.RIGS)}; default: %(default)s")
+    maker.add_argument("--plant", type=Path, metavar="PLANT.toml", help="start from this file, not from the rig's own")
     maker.set_defaults(part=_make)
     asker = verbs.add_parser(
         "diagnose", help="diagnose all cases that RESULTS does not answer yet, side by side, with the time of each"
@@ -111,7 +112,8 @@ def run(chosen: argparse.Namespace) -> int:
 def _make(chosen: argparse.Namespace) -> int:
     kept = chosen.out.parent / f".{chosen.out.name}.unfinished"
     each = sweeping.each("flown", sweeping.crew_of(chosen), kept, lambda order: order.name)
-    path = blind.make(chosen.seed, chosen.out, chosen.cases, tuple(chosen.kinds.split(",")), each=each, rig=chosen.rig)
+    kinds = tuple(chosen.kinds.split(","))
+    path = blind.make(chosen.seed, chosen.out, chosen.cases, kinds, chosen.plant, each=each, rig=chosen.rig)
     shutil.rmtree(kept, ignore_errors=True)
     print(json.dumps({"cases": str(path)}) if chosen.json else f"{path}  {chosen.cases} cases, seed {chosen.seed}")
     return 0

@@ -1,0 +1,256 @@
+"""The real rigs: without effects they are the project's plants, their logs are as people make them, a truth says what flew."""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from blind import make
+from blind.cases.make import Order, make_case
+from blind.cases.sealed import open_seal, truth_to_json
+from blind.effects.effect import Effect
+from blind.effects.visited import Visited
+from blind.rigs.bench import Plan
+from blind.rigs.real import lab as real_lab
+from blind.rigs.real.catalogue import ALL, CATALOGUES
+from blind.rigs.real.derive import SOURCES as SOURCES_OF
+from blind.rigs.real.derive import autoregression, push, reading
+from blind.rigs.real.lab import Errors, LogStyle, RealLab, draw_bench
+from blind.rigs.real.plants import PLANTS, RealPlant
+from blind.rigs.real.simulation import ARC_TANGENT, DAHL, FOLDER, LUGRE, SOURCES, Body
+from blind.rigs.real.spectra import Spectrum, spectra
+from blind.simulation.record import Loss, Model, Record
+from records.log import load_log
+from records.plant import load_plant
+from sim.bind import bind
+from sim.columns import log_columns
+from sim.plants import MODELS
+from sim.simulate import simulate
+from tests.recorded import dataset_folder
+from tests.soak import SOAK
+
+FREE, SEED = (False, False), 4
+NOMINAL = Plan("nominal", (), (), True, False)
+# Times at which an effect begins.
+EVENTS = ("pulse_start_s", "weight_time_s", "chip_time_s", "jump_time_s")
+OF_A_PLANT = pytest.mark.parametrize("plant", PLANTS, ids=[plant.name for plant in PLANTS])
+
+
+def lab_of(
+    plant: RealPlant, seconds: float, law: int, *, closed: bool = True, locked: tuple[bool, bool] = FREE
+) -> RealLab:
+    """The plant as it is stated in still air, read without error."""
+    given = plant.read(plant.path.read_text(), plant.name)
+    style = LogStyle(0.01, seconds, closed, locked)
+    nothing = (0.0,) * len(plant.axes)
+    errors = Errors(spectra()["push"][:2], nothing, spectra()["reading"][:2], nothing, nothing)
+    width = [1e-3 * size for size in (plant.rate if law == ARC_TANGENT else plant.reach)]
+    return RealLab(plant, given, given, Body(law, (width[0], width[-1])), errors, (style,) * 4, 0.8)
+
+
+def flown(lab: RealLab, settings: Mapping[tuple[str, int], float], *, placed: bool = False, seed: int = 3) -> Record:
+    """Shadow 0 has the settings, shadow 1 has not."""
+    model = Model(lab.nominal, settings)
+    return lab.fly(
+        model, [model, Model(lab.nominal, {}, placed=placed)], lab.inputs(np.random.default_rng(seed), Loss(), 0)
+    )
+
+
+@OF_A_PLANT
+def test_without_effects_it_is_the_projects_plant(plant: RealPlant) -> None:
+    """Free 1 s runs from the same states: bristles in the bearings against located friction, within a hundredth of what it reaches."""
+    record = flown(lab_of(plant, 6.0, DAHL), {})
+    bound = bind(load_plant(plant.path))
+    columns = ["psi_rad", "psi_dot_rad_s", "phi_rad", "phi_dot_rad_s", "omega_M_rad_s", "omega_T_rad_s"]
+    states = [str(state) for state in bound.model.states]
+    order = [columns.index(name) for name in states] if plant.name == "ce150" else list(range(len(states)))
+    for first in range(0, len(record.t_s), 100):
+        rows = slice(first, first + 100)
+        start = record.apparent[first][order]
+        run = simulate(bound, record.t_s[rows], start, record.u_V[rows], resolution=[0.0] * len(plant.axes), substeps=4)
+        assert np.abs(run.y - record.exact_rad[rows]).max() < 0.01 * max(plant.reach)
+    assert np.ptp(record.exact_rad, axis=0).min() > 0.2 * min(plant.reach)
+
+
+@OF_A_PLANT
+@pytest.mark.parametrize("law", [ARC_TANGENT, DAHL, LUGRE])
+def test_in_still_air_a_rig_repeats_itself_exactly_and_its_coarse_prediction_nearly(plant: RealPlant, law: int) -> None:
+    lab = lab_of(plant, 4.0, law, closed=law == DAHL)
+    record = flown(lab, {("sensor_delay_s", 0): 0.02, ("lag_s", 0): 0.03})
+    np.testing.assert_array_equal(record.shadow[:, 0], record.exact_rad)
+    plain = flown(lab, {})
+    assert np.abs(lab.predict(lab.nominal, plain, 2e-3) - plain.exact_rad).max() < 0.01 * max(plant.reach)
+
+
+def test_an_axis_that_is_held_stands_while_its_readings_tip_to_and_fro() -> None:
+    plant = PLANTS[0]
+    lab = lab_of(plant, 4.0, DAHL, closed=False, locked=(False, True))
+    record = flown(replace(lab, errors=replace(lab.errors, white_counts=(0.3, 0.3))), {})
+    counts = record.y_rad[:, 1] / lab.nominal.resolution_rad[1]
+    assert record.locked == ("azimuth",)
+    assert np.ptp(record.apparent[:, 2]) == 0.0
+    assert 1.0 <= np.ptp(np.round(counts)) <= 3.0
+    assert np.ptp(record.exact_rad[:, 0]) > 0.02
+
+
+def large(effect: Effect) -> dict[tuple[str, int], float]:
+    """Settings of an effect at eight times its size (within bounds) that begins early."""
+    shape = effect.draw(np.random.default_rng(1))
+    early = {key: 0.5 if key in EVENTS else value for key, value in shape.items()}
+    return dict(effect.settings(float(np.clip(8.0, *effect.bounds)), early))
+
+
+@OF_A_PLANT
+def test_every_effect_is_felt(plant: RealPlant) -> None:
+    """Beside a run without effects, free predictions with each differ by more than a three-thousandth of what the axis reaches."""
+    effects = [e for e in CATALOGUES[plant.name].all if e.size.field and not e.name.endswith("sensor.quantization")]
+    lab = lab_of(plant, 4.0, DAHL)
+    plain = Model(lab.nominal, {})
+    shadows = [plain, *(Model(lab.nominal, large(effect), placed=effect.sensor) for effect in effects)]
+    record = lab.fly(plain, shadows, lab.inputs(np.random.default_rng(4), Loss(), 0))
+    moved = (np.abs(record.shadow[:, 1:] - record.shadow[:, :1]) / np.array(plant.reach)).max(axis=(0, 2))
+    assert not [effect.name for effect, most in zip(effects, moved, strict=True) if most < 3e-4]
+
+
+@OF_A_PLANT
+def test_every_library_effect_has_finite_parameters_in_the_librarys_formula(plant: RealPlant) -> None:
+    record = flown(lab_of(plant, 6.0, DAHL), {})
+    u = np.column_stack([record.u_V, np.zeros(len(record.u_V))])[:, :2]
+    visited = Visited(3.0 * record.t_s, *record.apparent.T, *u.T, 0.04, lambda w: 1e-7 * w * np.abs(w), 100.0)
+    catalogue = CATALOGUES[plant.name]
+    for effect in (*catalogue.known, *catalogue.timing):
+        found = effect.equivalent(1.0, effect.draw(np.random.default_rng(2)), visited)
+        assert any(entry.main for entry in found.values()), effect.name
+        assert all(np.isfinite(entry.value) and entry.scale > 0.0 for entry in found.values()), effect.name
+
+
+@OF_A_PLANT
+def test_names_of_known_effects_are_the_librarys(plant: RealPlant) -> None:
+    catalogue = CATALOGUES[plant.name]
+    page = Path("docs/effects.md").read_text().split(f"## {plant.name}: ")[1].split("\n## ")[0]
+    library = set(re.findall(r"^\| `([\w.]+)`", page, re.MULTILINE))
+    names = [effect.name for effect in catalogue.all]
+    assert len(set(names)) == len(names)
+    assert {effect.name for effect in (*catalogue.known, *catalogue.timing)} <= library
+    assert {twin for effect in catalogue.all for twin in effect.twins} <= library
+
+
+def test_the_c_reads_every_field_that_a_row_sets_and_no_other() -> None:
+    text = "".join((FOLDER / source).read_text() for source in SOURCES)
+    fields = {name for e in ALL if e.size.field for name in (e.size.field, *e.drawn, *e.fixed)}
+    assert fields == {a or b for a, b in re.findall(r"\bfx->(\w+)|effects\.(\w+)", text)}
+
+
+def test_colours_are_stable_and_of_size_one() -> None:
+    for kind in spectra().values():
+        for spectrum in kind:
+            assert np.abs(np.roots([1.0, *(-a for a in spectrum.coefficients)])).max() < 1.0
+            assert np.sqrt(np.mean(spectrum.drawn(np.random.default_rng(0), 4000, 0.001) ** 2)) == pytest.approx(1.0)
+
+
+def test_an_autoregression_is_found_again() -> None:
+    coefficients = (0.6, -0.4, 0.2, 0.1)
+    spectrum = Spectrum("", 0.01, 1.0, coefficients)
+    found = autoregression(spectrum.drawn(np.random.default_rng(1), 20_000, 0.01))
+    assert found == pytest.approx(coefficients, abs=0.03)
+
+
+def test_the_numbers_of_the_table_are_those_of_the_recording() -> None:
+    measured = SOURCES_OF["aeroshield"][1](dataset_folder("aeroshield") / "ident_data.txt")
+    for kind, find in (("reading", reading), ("push", push)):
+        known = next(spectrum for spectrum in spectra()[kind] if spectrum.name == "aeroshield")
+        left, share = find(measured)
+        assert autoregression(left) == pytest.approx(known.coefficients, abs=1e-4)
+        assert share == pytest.approx(known.share, rel=0.01)
+
+
+@OF_A_PLANT
+def test_spreads_are_two_per_cent_and_more_and_conventions_stay(plant: RealPlant) -> None:
+    given = plant.read(plant.path.read_text(), plant.name)
+    for seed in range(8):
+        bench = draw_bench(plant, given, NOMINAL, np.random.default_rng(seed))
+        for name, values in bench.nominal.values.items():
+            shares = bench.nominal.sds[name][values != 0.0] / np.abs(values[values != 0.0])
+            assert np.all((shares == 0.0) | ((shares > 0.0199) & (shares < 0.1501)))
+            assert np.all(np.abs(bench.true.values[name] - values) <= 2.51 * bench.nominal.sds[name])
+        logs = bench.lab.styles[:-1]  # type: ignore[attr-defined]
+        assert all(log.rows <= real_lab.MOST_ROWS for log in logs)
+        assert logs[-1].length_s >= 20.0
+        assert not any(all(log.locked[i] for log in logs[:-1]) for i in range(2))
+
+
+def shorten(patch: pytest.MonkeyPatch) -> None:
+    """None of the effects that the seed gives begins later than these runs end."""
+    if not SOAK:
+        patch.setattr(real_lab, "TRIAL_S", 4.0)
+        patch.setattr(real_lab, "RUN_LENGTHS_S", (4.0, 6.0))
+        patch.setattr(real_lab, "PERIODS_S", (0.02, 0.01))
+        patch.setattr(real_lab, "HOLD_PERIODS_S", (0.02, 0.01))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two cases of each plant."""
+    out = tmp_path_factory.mktemp("real") / "cases"
+    with pytest.MonkeyPatch.context() as patch:
+        shorten(patch)
+        make(SEED, out, 2 * len(PLANTS), ("nominal", "single"), rig="real")
+    return out
+
+
+def test_every_case_is_logs_and_a_plant_that_the_records_read(folder: Path) -> None:
+    cases = sorted(folder.glob("case-*"))
+    truths = open_seal(folder)
+    for number, case in enumerate(cases):
+        plant = PLANTS[number % len(PLANTS)]
+        stated = load_plant(case / "plant.toml")
+        bind(stated)
+        columns = log_columns(MODELS[plant.name]())
+        assert set(truths[case.name].floor_rad) == set(plant.outputs)
+        for path in case.glob("*.csv"):
+            log = load_log(path, columns)
+            assert log.t_s[0] >= 0.0
+            assert np.median(np.diff(log.t_s)) == pytest.approx(log.sample_period_s, rel=2e-3, abs=2e-6)
+            for index, output in enumerate(plant.outputs):
+                counts = log.y[:, index] / stated.sensors[output]
+                np.testing.assert_allclose(counts, np.round(counts), atol=2e-3)
+    assert {truth.kind for truth in truths.values()} == {"nominal", "single"}
+
+
+def test_truths_hold_what_was_asked_for_and_no_case_tells_its_own(folder: Path) -> None:
+    truths = open_seal(folder)
+    for truth in truths.values():
+        assert (truth.severity > 0.0) == bool(truth.effects) == (truth.kind == "single")
+        assert all(floor > 0.0 for floor in truth.floor_rad.values())
+    names = {effect.name for truth in truths.values() for effect in truth.effects}
+    public = [path for path in folder.rglob("*") if path.is_file() and "sealed" not in path.parts]
+    assert not [path for path in public if any(name in path.read_text() for name in (*names, "severity", "salt"))]
+
+
+def test_a_case_without_effect_leaves_its_floor_on_the_hold_out(folder: Path) -> None:
+    for truth in open_seal(folder).values():
+        if truth.kind == "nominal":
+            for name, floor in truth.floor_rad.items():
+                assert truth.hold.rms_true[name] < 3.0 * floor
+
+
+def test_a_case_comes_out_the_same_when_it_is_made_again(folder: Path) -> None:
+    name, truth = next((name, truth) for name, truth in open_seal(folder).items() if truth.kind == "single")
+    index, plants = int(name[-4:]), tuple(range(len(PLANTS)))
+    given = PLANTS[(index - 1) % len(PLANTS)].path.read_text()
+    with pytest.MonkeyPatch.context() as patch:
+        shorten(patch)
+        made = make_case(Order(SEED, index, 2 * len(PLANTS), ("nominal", "single"), given, "real", plants))
+    assert made["files"] == {path.name: path.read_text() for path in (folder / name).iterdir()}
+    assert json.dumps(made["truth"]) == json.dumps(truth_to_json(truth))
+
+
+def test_a_plant_file_that_is_given_decides_on_the_plant(tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        shorten(patch)
+        make(3, tmp_path / "x", 1, ("nominal",), PLANTS[-1].path, rig="real")
+    assert f'plant = "{PLANTS[-1].name}"' in (tmp_path / "x/case-0001/hold-1.toml").read_text()
