@@ -35,6 +35,8 @@ OTHERS = {
     "antx_2dof_drone": "rotor.quadratic_thrust input.gain input.delay pitch.offset_force pitch.friction_asymmetry",
     "emps": "input.gain carriage.coulomb carriage.offset_force carriage.friction_asymmetry q_sensor.scale motor.warmup",
     "pamh_aeropendulum": "rotor.lag rotor.quadratic_thrust input.gain arm.offset_force arm.coulomb arm.friction_asymmetry",
+    "maglev_coil": "input.deadzone input.lag input.gain i_sensor.offset i_sensor.delay",
+    "torque_limited_pendulum": "input.deadzone drive.lag pendulum.coulomb pendulum.offset_force theta_sensor.delay",
 }
 PLACES = {
     "ce150": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
@@ -45,6 +47,8 @@ PLACES = {
     "pamh_aeropendulum": "input rotor arm theta_sensor loop",
     "antx_2dof_drone": "input rotor pitch theta_sensor loop",
     "emps": "input motor carriage q_sensor loop",
+    "maglev_coil": "input i_sensor loop",
+    "torque_limited_pendulum": "input drive pendulum theta_sensor loop",
 }
 
 
