@@ -1,13 +1,13 @@
 """`twinlaw splits`: every partition of a rig's logs, in a fixed order, each diagnosed, and how far their names agree."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from records.diagnosis import Diagnosis, Hypothesis, Unknown
+from records.diagnosis import Diagnosis, Hypothesis, Unknown, load_diagnosis
 from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from sim.columns import log_columns
@@ -72,9 +72,11 @@ def short(length_s: float) -> RunLog:
     return replace(log, t_s=t_s, u=np.zeros((len(t_s), 1)), y=np.zeros((len(t_s), 1)))
 
 
-def made_up(*found: str, verdict: str = "gap", likeliest: str = "arm.coulomb", unknown: float = 0.05) -> Split:
+def made_up(*found: str, verdict: str = "gap", unknown: float = 0.05, twin: bool = False) -> Split:
     """A split of two logs whose diagnosis adds `found`."""
-    effects = (Hypothesis(likeliest, "friction", 0.9 - unknown, {}),) if verdict == "gap" else ()
+    twins = ("arm.coulomb + rotor.lag",) if twin else ()
+    likely = Hypothesis(" + ".join(found) or "arm.coulomb", "class", 0.9 - unknown, {}, twins)
+    effects = (likely,) if verdict == "gap" else ()
     told = Diagnosis(verdict, 1e-9, effects=effects, unknown=Unknown(unknown), found=found)
     whole = {key: {"theta_rad": 0.1} for key in ("rms_nominal", "rms_before", "rms_after", "rms_floor")}
     return Split(("a",), ("b", "c"), told, {**whole, "fraction": 0.804, "fraction_ci95": None}, 3.14)
@@ -85,6 +87,7 @@ SPLITS = [
     made_up("arm.coulomb", "rotor.lag"),
     made_up("rotor.lag", "arm.coulomb"),
     made_up("rotor.lag"),
+    made_up("theta_sensor.lag", twin=True),
     made_up(),
     made_up(unknown=0.8),
     made_up(verdict="cannot tell"),
@@ -94,16 +97,17 @@ SPLITS = [
 
 def test_names_agree_whatever_their_order() -> None:
     found = consistency(SPLITS)
-    assert (found.naming, found.most_frequent, found.same) == (3, ("arm.coulomb", "rotor.lag"), 2)
+    assert (found.naming, found.most_frequent, found.same) == (4, ("arm.coulomb", "rotor.lag"), 2)
+    assert found.alike == 3
     assert (found.effect, found.sharing) == ("rotor.lag", 3)
-    assert consistency(SPLITS[3:]).naming == 0
+    assert consistency(SPLITS[4:]).naming == 0
 
 
 def test_the_table_has_a_line_for_each_and_says_what_was_not_answered() -> None:
     told = facts(SPLITS)
     lines = rows(told)
     assert lines[0] == (
-        *("a", "b, c", "gap", "arm.coulomb + rotor.lag", "arm.coulomb", "0.85", "0.05", "", "80%", "3.1"),
+        *("a", "b, c", "gap", "arm.coulomb + rotor.lag", "arm.coulomb + rotor.lag", "0.85", "0.05", "", "80%", "3.1"),
     )
     assert lines[-1] == ("a, b", "c", "not answered", *[""] * 7)
     assert {len(line) for line in lines} == {len(HEADING)}
@@ -112,28 +116,22 @@ def test_the_table_has_a_line_for_each_and_says_what_was_not_answered() -> None:
 
 
 def test_the_sentences_say_how_many_agree_and_what_the_others_say() -> None:
-    agreed = {
-        "naming": 3,
-        "most_frequent": ["arm.coulomb", "rotor.lag"],
-        "same": 2,
-        "effect": "rotor.lag",
-        "sharing": 3,
-    }
-    assert agreement(agreed, facts(SPLITS)) == (
-        "Of 7 splits 3 add effects, and of these 2 (67%) the same: arm.coulomb + rotor.lag. rotor.lag, alone or with others, is added "
-        "by 3 (100%). The others say: gap, nothing added 1, gap, unknown 1, cannot tell 1, not answered 1."
+    assert agreement(asdict(consistency(SPLITS)), facts(SPLITS)) == (
+        "Of 8 splits 4 add effects, and of these 2 (50%) the same, arm.coulomb + rotor.lag, and 3 (75%) that or what looks the same to "
+        "them. rotor.lag, alone or with others, is added by 3 (75%). The others say: gap, nothing added 1, gap, unknown 1, cannot tell 1, "
+        "not answered 1."
     )
-    nothing = {"naming": 0, "most_frequent": [], "same": 0, "effect": None, "sharing": 0}
-    assert agreement(nothing, facts(SPLITS[5:6])) == "None of 1 splits adds an effect. The others say: cannot tell 1."
+    told = agreement(asdict(consistency(SPLITS[6:7])), facts(SPLITS[6:7]))
+    assert told == "None of 1 splits adds an effect. The others say: cannot tell 1."
 
 
 @pytest.mark.soak
-def test_two_logs_of_an_arm_that_rubs_are_two_splits_that_say_so(
+def test_two_logs_of_an_arm_with_a_dead_band_are_two_splits_that_are_diagnosed_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     logs = [tmp_path / "one.csv", tmp_path / "two.csv"]
     for seed, path in enumerate(logs, start=1):
-        save_log(path, arm_log({"arm.coulomb": {"b": 6e-4}}, seed=seed, seconds=12.0))
+        save_log(path, arm_log({"input.deadzone": {"d": 0.6, "w": 0.0}}, seed=seed, seconds=10.0))
     command = ["splits", "--plant", str(PLANTS / "aeroshield.toml"), "--workers", "1", "--out", str(tmp_path / "out")]
     assert main([*command, "--json", *map(str, logs)]) == 0
     told = json.loads(capsys.readouterr().out)
@@ -142,15 +140,15 @@ def test_two_logs_of_an_arm_that_rubs_are_two_splits_that_say_so(
         (["one"], ["two"]),
         (["two"], ["one"]),
     ]
-    assert told["consistency"]["most_frequent"] == ["arm.coulomb"]
-    assert told["consistency"]["same"] == 2
     for entry in told["splits"]:
+        diagnosis = load_diagnosis(tmp_path / "out" / entry["explained"][0] / "diagnosis.json")
+        assert (entry["verdict"], tuple(entry["found"])) == ("gap", diagnosis.found)
+        assert diagnosis.shrinkage is not None
+        assert entry["one_second"]["fraction"] == diagnosis.shrinkage.fraction
         assert entry["whole_run"]["rms_after"]["theta_rad"] < entry["whole_run"]["rms_before"]["theta_rad"]
         assert entry["whole_run"]["fraction"] > 0.8
         assert entry["cpu_s"] > 0.0
-    for name in ("one", "two"):
-        assert (tmp_path / "out" / name / "diagnosis.json").exists()
     stamps = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").glob("*/*")}
     assert main([*command, *map(str, logs)]) == 0  # kept
     assert stamps == {path: path.stat().st_mtime_ns for path in (tmp_path / "out").glob("*/*")}
-    assert "Of 2 splits 2 add effects, and of these 2 (100%) the same: arm.coulomb." in capsys.readouterr().out
+    assert f"Of 2 splits {told['consistency']['naming']} add effects" in capsys.readouterr().out

@@ -60,7 +60,8 @@ def agreement(told: Mapping[str, Any], splits: Sequence[Mapping[str, Any]]) -> s
         return f"None of {len(splits)} splits adds an effect.{others}"
     most, effect = " + ".join(told["most_frequent"]), told["effect"]
     return (
-        f"Of {len(splits)} splits {naming} add effects, and of these {_share(told['same'], naming)} the same: {most}. "
+        f"Of {len(splits)} splits {naming} add effects, and of these {_share(told['same'], naming)} the same, {most}, and "
+        f"{_share(told['alike'], naming)} that or what looks the same to them. "
         f"{effect}, alone or with others, is added by {_share(told['sharing'], naming)}.{others}"
     )
 

@@ -42,12 +42,14 @@ class Split:
 
 @dataclass(frozen=True)
 class Consistency:
-    """How many splits add anything to the plant (`naming`), the `most_frequent` set of effects and how many add `same`; `effect` is the
-    one that most of them add, alone or with others, `sharing` how many do."""
+    """How many splits add anything to the plant (`naming`), the `most_frequent` set of effects, how many add the `same`, and how many that
+    or what they state as `alike` in their own logs; `effect` is the one that most of them add, alone or with others, `sharing` how many
+    do."""
 
     naming: int
     most_frequent: tuple[str, ...]
     same: int
+    alike: int
     effect: str | None
     sharing: int
 
@@ -90,12 +92,25 @@ def _also(whole: Shrinkage | None, cpu_s: float) -> str:
 
 def consistency(found: Sequence[Split]) -> Consistency:
     """Of the splits that add effects, how many add the same; of two that are as frequent, what an earlier split adds counts."""
-    named = [tuple(sorted(entry.diagnosis.found)) for entry in found if entry.diagnosis and entry.diagnosis.found]
-    if not named:
-        return Consistency(0, (), 0, None, 0)
+    told = [entry.diagnosis for entry in found if entry.diagnosis and entry.diagnosis.found]
+    if not told:
+        return Consistency(0, (), 0, 0, None, 0)
+    named = [tuple(sorted(entry.found)) for entry in told]
     (most, same), *_ = Counter(named).most_common(1)
     (effect, sharing), *_ = Counter(name for names in named for name in names).most_common(1)
-    return Consistency(len(named), most, same, effect, sharing)
+    alike = sum(most in _alike(entry) for entry in told)
+    return Consistency(len(told), told[named.index(most)].found, same, alike, effect, sharing)
+
+
+def _alike(diagnosis: Diagnosis) -> set[tuple[str, ...]]:
+    """What was added, and all sets of effects that look the same in the logs that were explained."""
+    added = tuple(sorted(diagnosis.found))
+    twins = [entry.ambiguous_with for entry in diagnosis.effects if _effects(entry.effect) == added]
+    return {added, *(_effects(twin) for entry in twins for twin in entry)}
+
+
+def _effects(text: str) -> tuple[str, ...]:
+    return tuple(sorted(text.split(" + ")))
 
 
 def facts(found: Sequence[Split]) -> list[dict[str, Any]]:
