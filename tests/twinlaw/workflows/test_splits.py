@@ -67,7 +67,7 @@ def test_a_log_too_short_to_be_cut_is_refused(tmp_path: Path) -> None:
 
 def short(length_s: float) -> RunLog:
     """Rows of an arm at rest."""
-    t_s = 0.01 * np.arange(round(length_s / 0.01))
+    t_s = np.linspace(0.0, length_s, round(length_s / 0.01), endpoint=False)
     log = arm_log(seconds=0.1)
     return replace(log, t_s=t_s, u=np.zeros((len(t_s), 1)), y=np.zeros((len(t_s), 1)))
 
