@@ -133,6 +133,11 @@ def test_twins_are_effects_of_the_plant_or_its_parameters(model: Model) -> None:
             assert reason
 
 
+def test_what_reads_no_way_of_an_axis_has_no_disc_no_coupling_and_no_count() -> None:
+    of_sensors = {name for name in effects_for(MODELS["maglev_coil"]()) if name.startswith("i_sensor.")}
+    assert of_sensors == {f"i_sensor.{kind}" for kind in ("offset", "scale", "lag", "delay", "quantization")}
+
+
 def test_every_effect_has_its_words(model: Model) -> None:
     for effect in effects_for(model).values():
         assert effect.story.endswith("."), effect.name
