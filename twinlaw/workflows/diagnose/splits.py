@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.diagnose import Material, diagnose
+from diagnosis.fit.between_rows import between_rows
 from diagnosis.hypothesis.case import make_case
 from diagnosis.result import Result
 from diagnosis.validate.left_alone import left_alone
@@ -79,10 +80,11 @@ def answer(asked: Parcel) -> dict[str, str]:
 
 
 def _whole_runs(result: Result, bound: BoundPlant, material: Material) -> Shrinkage | None:
-    """The hold-out followed to its end by what was found."""
-    used = material.used[len(material.logs) :]
-    checked = make_case(result.case.library, material.holdout, used, bound)
-    return left_alone(checked, result.predicted[0].variants)
+    """The hold-out, taken as the diagnosis took it, followed to its end by what was found."""
+    variants, explained = result.predicted[0].variants, len(material.logs)
+    checked = make_case(result.case.library, material.holdout, material.used[explained:], bound, explained)
+    checked, _ = between_rows(checked, variants["before"])
+    return left_alone(checked, variants)
 
 
 def _also(whole: Shrinkage | None, cpu_s: float) -> str:
