@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
-from records.text.units import dimension, unit_suffix
+from records.text.units import dimension, unit_of
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def _column(channels: Mapping[str, Channel], name: str, choice: Choice | None, w
 
 def _check_unit(unit: str, name: str, channel: str, where: str) -> None:
     """A stated unit must be the one that the column's name bears."""
-    expected = unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s") or "1"
+    expected = unit_of(name) or "1"
     try:
         fits = not unit.strip() or dimension(unit) == dimension(expected)
     except ValueError:

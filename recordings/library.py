@@ -6,7 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from recordings import aeroshield, aeroshield_two_clocks, antx_2dof_drone, emps, pamh_aeropendulum, quanser_aero
+from recordings import (
+    aeroshield,
+    aeroshield_two_clocks,
+    antx_2dof_drone,
+    emps,
+    maglev_coil,
+    pamh_aeropendulum,
+    quanser_aero,
+    torque_limited_pendulum,
+)
 from recordings.files import verified_bytes
 from recordings.recording import Importer, Recording
 from recordings.registry import Dataset, dataset
@@ -23,6 +32,8 @@ IMPORTERS: Mapping[str, Importer] = {
     "emps": emps,
     "pamh_aeropendulum": pamh_aeropendulum,
     "aeroshield_two_clocks": aeroshield_two_clocks,
+    "maglev_coil": maglev_coil,
+    "torque_limited_pendulum": torque_limited_pendulum,
 }
 
 

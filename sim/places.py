@@ -90,6 +90,12 @@ class Places:
         """The axis that gravity turns (elevation, pitch), whose angle the level axis' lever depends on; "" where there is none."""
         return next((name for name, axis in self.axes.items() if not axis.level), "") if self.level else ""
 
+    @property
+    def encoders(self) -> Mapping[str, SensorPlace]:
+        """The sensors that read the way of an axis: they have a disc, a coupling and a count, as a sensor of a current has not."""
+        ways = {axis.angle for axis in self.axes.values()}
+        return {name: sensor for name, sensor in self.sensors.items() if sensor.output in ways}
+
     def driven_by(self, variable: sympy.Symbol) -> str:
         """The rotor that an input drives; "" where none is declared."""
         return next((name for name, rotor in self.rotors.items() if rotor.variable == variable), "")

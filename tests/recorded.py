@@ -33,4 +33,6 @@ FIRST_RECORD = {
     "emps": "DATA_EMPS",
     "pamh_aeropendulum": "PAMH_3set",
     "aeroshield_two_clocks": "dynamic_char",
+    "maglev_coil": "c12",
+    "torque_limited_pendulum": "sac",
 }

@@ -17,7 +17,19 @@ _SYMBOLS: Mapping[str, Dimension] = {
     "1": (0, 0, 0, 0),
     "-": (0, 0, 0, 0),
 }
-_SUFFIXES = ("rad_s2", "rad_s", "m_s2", "m_s", "rad", "m", "V", "N", "s")  # a longer one before its own ending
+_SUFFIXES = (
+    "rad_s2",
+    "rad_s",
+    "m_s2",
+    "m_s",
+    "rad",
+    "Nm",
+    "m",
+    "V",
+    "A",
+    "N",
+    "s",
+)  # a longer one before its own ending
 _FACTOR = re.compile(r"^([A-Za-z]+|1|-)(?:\^(-?\d+))?$")
 
 
@@ -52,7 +64,7 @@ def unit_suffix(name: str) -> str:
 
 def unit_of(name: str) -> str:
     """The unit that a column's name ends in, as a person writes it; empty where it states none."""
-    return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s")
+    return unit_suffix(name).replace("_s2", "/s^2").replace("_s", "/s").replace("Nm", "N m")
 
 
 def label(name: str) -> str:

@@ -15,8 +15,10 @@ from sim.prior import COMMON, RARE
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each sensor, (2) on each input."""
+    """Eq (1) on each encoder, (2) on each input."""
     for output, (place, sensor) in enumerate(model.places.sensors.items()):
+        if place not in model.places.encoders:
+            continue
         size = sensor.size
         grid = tuple(share * size for share in (0.003, 0.01, 0.03))
         yield Effect(

@@ -16,9 +16,11 @@ from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eqs (1), (2) and (4) on each sensor, (3) where there are two."""
+    """Eqs (1) and (2) on each sensor, (4) on each encoder, (3) where there are two."""
     for place, entry in model.places.sensors.items():
         yield from _one(place, entry)
+        if place in model.places.encoders:
+            yield _slipped(place, entry)
         other = next((name for name in model.outputs if name != entry.output), None)
         if other is not None and len(model.places.sensors) > 1:
             yield _crossed(place, entry, other)
@@ -51,11 +53,15 @@ def _one(place: str, entry: SensorPlace) -> Iterator[Effect]:
             "parameters": "where nothing depends on the true angle, inertia, friction and thrust scale along with it",
         },
     )
-    yield Effect(
+
+
+def _slipped(place: str, entry: SensorPlace) -> Effect:
+    y, size = entry.output, entry.size
+    return Effect(
         name=f"{place}.count_slip",
-        depends=f"output(t) of {angle}",
+        depends=f"output(t) of {short(y)}",
         parameters=(
-            EffectParameter("jump", unit, -size, size, 0.04 * size, 0.0, role=Role.JUMP),
+            EffectParameter("jump", entry.unit, -size, size, 0.04 * size, 0.0, role=Role.JUMP),
             EffectParameter("t_s", "s", 0.0, 1.0e5, 10.0, role=Role.INSTANT),
         ),
         equation="y = angle + jump for t > t_s",

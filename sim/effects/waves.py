@@ -25,8 +25,8 @@ ROUNDING = Unlikely(
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each sensor, (2) and (3) on each axis."""
-    for place, sensor in model.places.sensors.items():
+    """Eq (1) on each encoder, (2) and (3) on each axis."""
+    for place, sensor in model.places.encoders.items():
         yield _cyclic(place, sensor)
     for axis, entry in model.places.axes.items():
         yield _detent(model, axis, entry)

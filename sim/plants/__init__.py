@@ -11,8 +11,10 @@ from sim.plants import (
     ce150_seed_literal,
     ce150_velagic,
     emps,
+    maglev_coil,
     pamh_aeropendulum,
     quanser_aero,
+    torque_limited_pendulum,
 )
 
 MODELS: Mapping[str, Callable[[], Model]] = {
@@ -25,4 +27,6 @@ MODELS: Mapping[str, Callable[[], Model]] = {
     "antx_2dof_drone": antx_2dof_drone.model,
     "emps": emps.model,
     "pamh_aeropendulum": pamh_aeropendulum.model,
+    "maglev_coil": maglev_coil.model,
+    "torque_limited_pendulum": torque_limited_pendulum.model,
 }

@@ -32,6 +32,7 @@ NOT_TRIED = {
     r"twinlaw compare|cp build-compare": "takes minutes; tests/twinlaw/verbs/test_compare.py with fewer flights",
     r"twinlaw envelope": "takes a minute; tests/twinlaw/verbs/test_envelope.py with one condition",
     r"twinlaw diagnose --plant plants/(?!ce150)": "takes minutes on a recording; tests/diagnosis/test_real_data.py has one",
+    r"twinlaw splits |python tests/real_rigs\.py": "takes minutes; tests/twinlaw/workflows/test_splits.py with two short logs",
     r"twinlaw identify .*--search genetic": "takes ten seconds; tests/twinlaw/verbs/test_identify_genetic.py",
     r"twinlaw sweep .*--repetitions": "tests/twinlaw/verbs/test_frequency.py with one repetition",
     r"twinlaw blind make --rig second": "tests/blind/test_second_make.py",

@@ -179,3 +179,22 @@ def test_two_clocks_lost_samples_stay_gaps_in_time() -> None:
     steps = np.diff(log.t_s)
     assert steps.max() == pytest.approx(0.267, abs=0.001)
     assert int((steps > 0.075).sum()) == 4
+
+
+def test_the_coil_s_duty_climbs_a_ladder_and_its_current_follows_the_published_resistance() -> None:
+    log = recorded("maglev_coil", "c12")
+    np.testing.assert_allclose(np.diff(log.t_s), 0.005, atol=1e-9)
+    np.testing.assert_allclose(np.unique(log.u), np.arange(11) / 10, atol=1e-6)
+    # The last 0.5 s of full duty: 11.658 V over 4.17 V/A, less what the driver's dead band takes.
+    full = log.u[:, 0] == 1.0
+    assert np.mean(log.y[full][100:, 0]) == pytest.approx(11.658 / 4.17, rel=0.06)
+
+
+@pytest.mark.parametrize("record", ["sac", "es05", "ddp", "dircol"])
+def test_the_pendulum_hangs_at_zero_at_first_and_is_read_in_whole_steps(record: str) -> None:
+    log = recorded("torque_limited_pendulum", record)
+    assert abs(log.y[0, 0]) < 0.002
+    assert off_the_grid(log.y[:, 0] - log.y[0, 0], 2.914473e-3) < 1e-3
+    assert np.abs(log.u).max() < 5.0
+    assert log.source is not None
+    assert log.source.licence == "BSD-3-Clause"

@@ -35,6 +35,7 @@ VERBS: Mapping[str, str] = {
     "identify": "identify",
     "envelope": "envelope",
     "diagnose": "diagnose",
+    "splits": "splits",
     "blind": "blind",
     "compare": "compare",
     "bench": "bench",

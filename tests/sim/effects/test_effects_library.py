@@ -35,6 +35,8 @@ OTHERS = {
     "antx_2dof_drone": "rotor.quadratic_thrust input.gain input.delay pitch.offset_force pitch.friction_asymmetry",
     "emps": "input.gain carriage.coulomb carriage.offset_force carriage.friction_asymmetry q_sensor.scale motor.warmup",
     "pamh_aeropendulum": "rotor.lag rotor.quadratic_thrust input.gain arm.offset_force arm.coulomb arm.friction_asymmetry",
+    "maglev_coil": "input.deadzone input.lag input.gain i_sensor.offset i_sensor.delay",
+    "torque_limited_pendulum": "input.deadzone drive.lag pendulum.coulomb pendulum.offset_force theta_sensor.delay",
 }
 PLACES = {
     "ce150": "main_input tail_input main_rotor tail_rotor elevation azimuth psi_sensor phi_sensor loop",
@@ -45,6 +47,8 @@ PLACES = {
     "pamh_aeropendulum": "input rotor arm theta_sensor loop",
     "antx_2dof_drone": "input rotor pitch theta_sensor loop",
     "emps": "input motor carriage q_sensor loop",
+    "maglev_coil": "input i_sensor loop",
+    "torque_limited_pendulum": "input drive pendulum theta_sensor loop",
 }
 
 
@@ -127,6 +131,11 @@ def test_twins_are_effects_of_the_plant_or_its_parameters(model: Model) -> None:
             assert twin in library or twin.startswith("parameters"), (effect.name, twin)
             assert twin != effect.name
             assert reason
+
+
+def test_what_reads_no_way_of_an_axis_has_no_disc_no_coupling_and_no_count() -> None:
+    of_sensors = {name for name in effects_for(MODELS["maglev_coil"]()) if name.startswith("i_sensor.")}
+    assert of_sensors == {f"i_sensor.{kind}" for kind in ("offset", "scale", "lag", "delay", "quantization")}
 
 
 def test_every_effect_has_its_words(model: Model) -> None:

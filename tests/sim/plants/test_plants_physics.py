@@ -59,6 +59,28 @@ def test_emps_stays_where_dry_friction_holds_it() -> None:
     np.testing.assert_array_equal(x, np.tile([0.1, 0.0], (500, 1)))
 
 
+def test_a_coil_s_current_rises_with_its_time_constant() -> None:
+    # Full duty, from no current: i = k/R (1 - exp(-t R/L)), 2.7957 A in the end and 1 - 1/e of that after L/R = 24 ms.
+    t_s = np.arange(600) * 1e-3
+    current_A = states(bound("maglev_coil", R=4.17, L=0.1), t_s, [0.0], [1.0])[:, 0]
+    np.testing.assert_allclose(current_A, 11.658 / 4.17 * (1.0 - np.exp(-t_s * 41.7)), atol=1e-6)
+    assert current_A[-1] == pytest.approx(2.7957, abs=1e-4)
+
+
+def test_a_driven_pendulum_comes_to_rest_where_its_torque_holds_the_weight() -> None:
+    # G sin(theta) = tau: 0.9 N m hold it at asin(0.9 / 3.31) = 0.27537 rad.
+    x = states(bound("torque_limited_pendulum", b=0.5), np.arange(5000) * 5e-3, [0.0, 0.0], [0.9])
+    np.testing.assert_allclose(x[-1], [0.27537, 0.0], atol=1e-5)
+
+
+def test_a_driven_pendulum_starts_as_its_inertia_lets_it() -> None:
+    # From where it hangs, 0.9 N m on 0.169 kg m^2 are 5.3254 rad/s^2; 0.2 N m of dry friction leave 4.1420 rad/s^2.
+    t_s = np.array([0.0, 1e-4])
+    for friction_Nm, expected in ((0.0, 5.3254), (0.2, 4.1420)):
+        x = states(bound("torque_limited_pendulum", tau_c=friction_Nm), t_s, [0.0, 0.0], [0.9])
+        assert x[-1, 1] / 1e-4 == pytest.approx(expected, rel=1e-3)
+
+
 def test_antx_answers_a_step_of_torque_late_by_its_delay() -> None:
     # The exact answer of eq (1) to a step at t = 0 is that of the undelayed mode, shifted by tau; the approximation of the delay
     # is good to 0.1 % of the swing once the delay has passed.

@@ -28,6 +28,8 @@ CONTRACT = {  # columns after t_s as the contract has them, then any of the opti
     "antx_2dof_drone": ("M,theta_rad,q_rad_s", "theta_ref_rad,q_ref_rad_s", "pitch"),
     "emps": ("u_V,q_m", "q_ref_m", "carriage"),
     "pamh_aeropendulum": ("u_V,theta_rad", "theta_ref_rad", "arm"),
+    "maglev_coil": ("u_1,i_A", "i_ref_A", ""),
+    "torque_limited_pendulum": ("tau_Nm,theta_rad", "theta_dot_rad_s,theta_ref_rad", "pendulum"),
 }
 PUBLISHED = {  # what the authors state, SI
     "quanser_aero": "dt=0.158 me=0.2 dx=0.016 mpa=0.146 lt=0.165 mrod=0.458 ry=0.02 my=0.526 g=9.81 K_omega=17.38 u_max=24 "
@@ -38,6 +40,8 @@ PUBLISHED = {  # what the authors state, SI
     "antx_2dof_drone": "omega_n=2.9499 xi=0.1817 mu=404.87608841 tau=0.0196",
     "emps": "M=95.11 F_v=203.5 gtau=35.15 u_max=10 F_c=0 offset=0",  # dry friction is published too, and left to be found
     "pamh_aeropendulum": "b=5.3807 d=0.1984 k=15.657",
+    "maglev_coil": "k=11.658 R=4.17 L=0.1",
+    "torque_limited_pendulum": "J=0.169 G=3.31 b=0.1 tau_c=0",  # dry friction is left to be found
 }
 recorded_plant = pytest.mark.parametrize("name", list(CONTRACT))
 
