@@ -61,7 +61,8 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
         note_records=notes,
     )
     shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
-    return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape)
+    checked = None if holdout is None else holdout.case
+    return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape, checked)
 
 
 def _reason(judged: Judged) -> Exit:
@@ -93,7 +94,8 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
         decisions=seen.decisions,
         note_records=notes,
     )
-    return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted)
+    checked = None if holdout is None else holdout.case
+    return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted, None, checked)
 
 
 def _unknown(found: Search, by_form: FormScores, weighed: Weighed, first: Suspect | None) -> Unknown:

@@ -325,6 +325,9 @@ OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the libra
 
 # What other logs say (decide)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
+WORSE = Limit(
+    1.0, "standard errors", "what predicts the hold-out worse by more is not added", "AeroShield, twelve splits"
+)
 NO_FAVOUR = Limit(0.0, "1", "as much speaks for a name as against it")
 CONTRADICTION = Limit(
     150.0,

@@ -36,7 +36,7 @@ class Exit(Enum):
     NOT_BORNE_OUT = "not_borne_out"  # a small gap that is not sure and whose explanations do not hold
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"
-    NAMED_NOT_ADDED = "named_not_added"  # the likeliest effect predicts the hold-out surely worse
+    NAMED_NOT_ADDED = "named_not_added"  # the likeliest effect predicts the hold-out worse
     UNKNOWN_EFFECT = "unknown_effect"
 
 
@@ -89,11 +89,12 @@ class Judged:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """The record for diagnosis.json, the improved plant, and the arrays that a report shows: predictions by hold-out log, and the `shape`
-    of an effect without a name."""
+    """The record for diagnosis.json, the improved plant, and the arrays that a report shows: predictions by hold-out log, the `shape`
+    of an effect without a name, and the hold-out logs as they were `checked`."""
 
     diagnosis: Diagnosis
     plant: Plant
     case: Case
     predicted: tuple[Predicted, ...]
     shape: Shape | None = None
+    checked: Case | None = None

@@ -77,6 +77,6 @@ def _nothing_added(diagnosis: Diagnosis) -> str:
     if first is not None and first.probability > unknown.probability:
         return (
             f"The rig does something{where} that the plant file lacks, most likely {words(first.effect)} "
-            f"({percent(first.probability)}); but that predicts the hold-out logs surely worse, so it was not added."
+            f"({percent(first.probability)}); but that predicts the hold-out logs worse, so it was not added."
         )
     return f"The rig does something{where} that the plant file lacks, and no effect of the library can be named for it."

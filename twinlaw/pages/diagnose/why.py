@@ -18,7 +18,7 @@ _REASONS = {
     "not_borne_out": "What remains is small, and nothing that would explain it holds where it was checked.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
-    "named_not_added": "The likeliest effect predicts the hold-out logs surely worse, so the model stays without it.",
+    "named_not_added": "The likeliest effect predicts the hold-out logs worse, so the model stays without it.",
     "unknown_effect": "That no effect of the library is the cause is likelier than any that is.",
 }
 

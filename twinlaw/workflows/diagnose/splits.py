@@ -8,16 +8,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from diagnosis.diagnose import Material, diagnose
-from diagnosis.fit.between_rows import between_rows
-from diagnosis.hypothesis.case import make_case
+from diagnosis.diagnose import diagnose
 from diagnosis.result import Result
 from diagnosis.validate.left_alone import left_alone
 from jobs.crew import Crew
 from jobs.job import Job
 from jobs.keep import Folders
 from records.diagnosis import Diagnosis, Shrinkage, load_diagnosis
-from sim.bind import BoundPlant
 from twinlaw.workflows.diagnose.files import ANSWER, result_files
 from twinlaw.workflows.diagnose.material import read_material
 from twinlaw.workflows.diagnose.parcel import Parcel, opened, parcel
@@ -76,15 +73,12 @@ def answer(asked: Parcel) -> dict[str, str]:
         result = diagnose(bound, material)
         files = result_files(result, [path.name for path in logs])
         cpu_s = time.process_time() - began_s
-        return {**files, ALSO: _also(_whole_runs(result, bound, material), cpu_s)}
+        return {**files, ALSO: _also(_whole_runs(result), cpu_s)}
 
 
-def _whole_runs(result: Result, bound: BoundPlant, material: Material) -> Shrinkage | None:
+def _whole_runs(result: Result) -> Shrinkage | None:
     """The hold-out, taken as the diagnosis took it, followed to its end by what was found."""
-    variants, explained = result.predicted[0].variants, len(material.logs)
-    checked = make_case(result.case.library, material.holdout, material.used[explained:], bound, explained)
-    checked, _ = between_rows(checked, variants["before"])
-    return left_alone(checked, variants)
+    return None if result.checked is None else left_alone(result.checked, result.predicted[0].variants)
 
 
 def _also(whole: Shrinkage | None, cpu_s: float) -> str:
