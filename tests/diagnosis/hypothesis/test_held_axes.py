@@ -10,6 +10,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
+from diagnosis.hypothesis.held_axes import with_held
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -46,6 +47,14 @@ def test_what_a_free_log_shows_is_named_beside_a_log_with_that_axis_held(plant: 
     assert found.unknown is not None
     assert found.unknown.probability < 0.1
     assert not any("contradict" in note for note in found.notes)
+
+
+def test_an_axis_that_is_free_is_left_as_it_is(plant: BoundPlant, fly: Fly) -> None:
+    library = effect_library(plant)
+    (flight,) = make_case(library, [fly(65, seconds=6.0)]).flights
+    found, x0, p0 = with_held(library, flight.filter_input, flight.x0, flight.p0, ())
+    assert np.array_equal(found.y, flight.filter_input.y, equal_nan=True)
+    assert (x0.tolist(), p0.tolist()) == (flight.x0.tolist(), flight.p0.tolist())
 
 
 def test_nothing_is_seen_in_a_held_axis(plant: BoundPlant, fly: Fly) -> None:
