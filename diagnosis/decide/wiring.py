@@ -67,7 +67,7 @@ def _is_strained(fit: Fit) -> bool:
     hypothesis = fit.hypothesis
     return bool(
         np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
-        or np.max(hypothesis.process_noise) > decisions.WIRING_NOISE
+        or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.WIRING_NOISE
     )
 
 
