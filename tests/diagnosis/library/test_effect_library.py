@@ -71,6 +71,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.soak  # a cold library, by processes
 @pytest.mark.parametrize(("asked", "filters"), sampled([("()", 1), ("library.wide_names", 2)], keep=[("()", 1)]))
 def test_two_processes_and_their_threads_on_an_empty_cache_get_the_same_filters(
     tmp_path: Path, asked: str, filters: int
@@ -167,6 +168,7 @@ def test_effects_that_sleep_change_nothing(plant: BoundPlant, effects: dict[str,
     np.testing.assert_allclose(beside.gram, alone.gram, rtol=1e-7, atol=1e-9 * np.abs(alone.gram).max())
 
 
+@pytest.mark.soak  # a cold library, by processes
 def test_interrupted_it_begins_nothing_more(tmp_path: Path) -> None:
     (tmp_path / "zig").symlink_to(CACHE_DIR / "zig")
     command = [sys.executable, "-c", ANNOUNCE + WAIT]
