@@ -3,10 +3,13 @@
 from functools import cache
 from typing import Any
 
+import pytest
+
 from controllers.controller import Controller
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
 from sim.bind import BoundPlant
+from tests.angles import few_angles
 from tests.plants import bound
 
 ROWS = tuple(CONTROLLERS)
@@ -22,4 +25,6 @@ def ce150() -> BoundPlant:
 def designed(name: str) -> tuple[Controller, Any]:
     """The row and its table."""
     row = CONTROLLERS[name]
-    return row, row.design(ce150(), read_settings(ce150()))
+    with pytest.MonkeyPatch.context() as patch:
+        few_angles(patch)
+        return row, row.design(ce150(), read_settings(ce150()))

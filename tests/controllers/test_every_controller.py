@@ -15,8 +15,10 @@ from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
-STEPS = 100_000 if SOAK else 20_000
-TARGET_STEPS = 2_000  # a second of the emulated board a row; `twinlaw compare` steps a hundred thousand on it
+STEPS = 100_000 if SOAK else 4_000
+TARGET_STEPS = (
+    2_000 if SOAK else 500
+)  # a quarter of a second of the emulated board a row; `twinlaw compare` steps a hundred thousand on it
 # Mean |error| on the hop: one step of 10 deg, one of 15 deg, in eight seconds. The PID's one set of gains is slow at every elevation.
 TRUTH_DEG = dict.fromkeys(ROWS, 1.6) | {"pid": 3.0}
 

@@ -37,7 +37,7 @@ def ce150_with(text: str) -> Plant:
     return parse_plant(tomllib.loads(whole), "ce150", "ce150.toml")
 
 
-@pytest.fixture(scope="module", params=sampled(MODELS, keep=["ce150", "emps"]))
+@pytest.fixture(scope="module", params=sampled(MODELS, keep=["emps"]))
 def nominal(request: pytest.FixtureRequest) -> BoundPlant:
     """Each plant in turn."""
     return bind(load_plant(PLANTS / f"{request.param}.toml"))
@@ -80,7 +80,8 @@ def test_all_effects_on_the_equations_of_a_plant_bind_together(name: str) -> Non
     assert without_effects(bound).plant == nominal.plant
 
 
-@pytest.mark.parametrize("name", sampled(OTHERS, keep=["emps"]))
+@pytest.mark.soak  # every effect runs on the CE150 in test_effects_physics.py, and binds to each of these above
+@pytest.mark.parametrize("name", OTHERS)
 def test_every_effect_of_the_other_plants_runs_two_seconds(name: str) -> None:
     """At its reference from rest under steps of the inputs; one model holds all that are torques or outputs.
 

@@ -6,12 +6,14 @@ import pytest
 
 from identification.proof import bench as fit_bench
 from sim.bench import comparison, compiled_peers
+from tests.angles import few_angles
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
 
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
+    few_angles(monkeypatch)
     for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
         monkeypatch.setattr(comparison, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)

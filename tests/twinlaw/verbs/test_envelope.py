@@ -19,6 +19,7 @@ from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
 from jobs.plain import plain
+from tests.soak import SOAK
 from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
 from twinlaw.pages.envelope.report import envelope_page
@@ -28,7 +29,7 @@ from twinlaw.verbs import envelope as verb
 ENDS, BETWEEN = (Condition("HF", 3000, 50), Condition("HF", 3000, 70)), (Condition("HF", 3000, 60),)
 
 
-VALIDATION, OTHER = "HF3000ft-50kts-level-lateral-3", "HF3000ft-50kts-level-longitudinal-1"
+VALIDATION, OTHER = "HF3000ft-50kts-level-lateral-3", "HF3000ft-70kts-level-longitudinal-1"
 SECONDS = 12.0
 
 
@@ -120,10 +121,8 @@ def test_initial_states_typed_in_are_tried_beside_the_tuned_ones(
 ) -> None:
     """Truth: a start 0.9 of a margin off in bank leaves more points outside than any tuning; other flights start as measured."""
     phi_rad, _ = start
-    checks = {
-        check["name"]: check
-        for check in json.loads((answered.out / "envelope.json").read_text())["conditions"][0]["checks"]
-    }
+    conditions = json.loads((answered.out / "envelope.json").read_text())["conditions"]
+    checks = {check["name"]: check for entry in conditions for check in entry["checks"]}
     own, other = checks[VALIDATION], checks[OTHER]
     assert own["starts"]["by hand"][0]["phi_rad"] == pytest.approx(phi_rad, abs=1e-12)
     assert own["starts"]["by hand"][0]["p_rad_s"] == own["starts"]["measured"][0]["p_rad_s"]
@@ -252,6 +251,8 @@ def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answe
     words = ["envelope", "--workers", "2", "--out", str(tmp_path), *start[1], str(folder)]
     with monkeypatch.context() as patch:
         stops_at(patch, "write_atomic", 2)
+        if not SOAK:
+            works_here(patch)
         assert main(words) == 130
     assert "1 condition identified, and 0 predicted between them; the same command goes on" in capsys.readouterr().err
     told = json.loads((tmp_path / "envelope.json").read_text())
@@ -259,7 +260,7 @@ def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answe
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
 
     drawn_of = watched(monkeypatch, lambda *_: Page("not drawn", "", True, (), ()))
-    works_here(monkeypatch)  # what the two processes have done is kept, and the rest is little
+    works_here(monkeypatch)  # what was done is kept, and the rest is little
     assert main(words) == 0
     assert (tmp_path / "envelope.json").read_bytes() == (answered.out / "envelope.json").read_bytes()
     assert plain(drawn_of) == plain(answered.drawn_of)

@@ -14,13 +14,13 @@ from records.table import table_text
 from rig.programming.image import build_firmware
 from sim.loop import fly_law
 from sim.manoeuvres import hop
+from tests.plants import bound, stated_table
 from twinlaw.verbs.watch import page_bytes
 from twinlaw.watching.events import Events
 from twinlaw.watching.opening import Watched, open_watched
 from twinlaw.watching.prediction import ready_lookahead
 from twinlaw.watching.server import Server, Site, serve
 from twinlaw.watching.session import Session
-from twinlaw.workflows.chain.designing import design_controller
 
 PLANT = Path("plants/ce150.toml")
 PATIENT_S = 30.0  # a page that is slow because the computer is busy with other tests is not lost
@@ -30,10 +30,10 @@ PATIENT_S = 30.0  # a page that is slow because the computer is busy with other 
 def carried(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with controller.json, firmware.elf, and hop.csv, a short flight of that law."""
     folder = tmp_path_factory.mktemp("carried")
-    designed = design_controller(PLANT)
-    (folder / "controller.json").write_text(table_text(designed.table), encoding="utf-8")
-    build_firmware(generate_law(designed.table), folder)
-    save_log(folder / "hop.csv", fly_law(designed.bound, designed.table, hop(designed.bound)))
+    rig, table = bound(PLANT.stem), stated_table(PLANT.stem)
+    (folder / "controller.json").write_text(table_text(table), encoding="utf-8")
+    build_firmware(generate_law(table), folder)
+    save_log(folder / "hop.csv", fly_law(rig, table, hop(rig)))
     return folder
 
 
@@ -62,9 +62,9 @@ def watch(carried: Path) -> Iterator[Open]:
 
 @contextmanager
 def running(asked: Watched, clock: Callable[[], float] | None) -> Iterator[Watch]:
-    bound, source, locked = open_watched(asked)
+    rig, source, locked = open_watched(asked)
     clocked = {} if clock is None else {"clock": clock}
-    session = Session(source, ready_lookahead(bound, locked), Events(), lost_s=PATIENT_S, **clocked)
+    session = Session(source, ready_lookahead(rig, locked), Events(), lost_s=PATIENT_S, **clocked)
     server = Server(Site(session, source.facts(), page_bytes()), 0)
     end = serve(server)
     mover = threading.Thread(target=session.run)

@@ -21,6 +21,7 @@ from rig.emulator.ports.pty_port import PtyBoard
 from rig.link.client import BoardClient
 from sim.columns import log_columns
 from sim.plants import MODELS
+from tests.soak import sampled
 from tests.twinlaw.watching.conftest import PATIENT_S, PLANT, Open, Watch
 from twinlaw.command import main
 from twinlaw.watching.events import Events
@@ -393,7 +394,11 @@ def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], Page]]:
         process.wait()
 
 
-@pytest.mark.parametrize(("way", "state"), [(signal.SIGINT, "DISARMED"), (signal.SIGKILL, "LOST")])
+# That a board without its host makes itself safe is tested on the board: tests/rig/flight/test_live.py.
+@pytest.mark.parametrize(
+    ("way", "state"),
+    sampled([(signal.SIGINT, "DISARMED"), (signal.SIGKILL, "LOST")], keep=[(signal.SIGINT, "DISARMED")]),
+)
 def test_ctrl_c_disarms_and_a_host_that_dies_leaves_the_board_to_make_itself_safe(
     carried: Path, tmp_path: Path, way: signal.Signals, state: str
 ) -> None:

@@ -87,7 +87,7 @@ def test_one_step_of_the_law_never_costs_more_than_its_bound(degree: int) -> Non
     table = ce150_table(degree)
     elf = alone(generate_law(table))
     bound, law = static_bound(elf, "law_step"), TargetLaw(EmulatedBoard(elf))
-    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 10_000):
+    for stimulus in stimuli(table, "float32", 20_000 if SOAK else 3_000):
         states = law.start(stimulus.angles) if stimulus.states is None else stimulus.states
         law.run(states, stimulus.inputs)
     assert bound.cycles_bound < MOST_CYCLES
