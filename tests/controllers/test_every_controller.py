@@ -1,5 +1,7 @@
 """What every row of the table holds: twin, host and target equal in all bits, one firmware, a digest of its own, total laws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,7 +17,8 @@ from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
-STEPS = 100_000 if SOAK else 4_000
+STEPS = 100_000 if SOAK else 5_000
+FIRST = 250 if SOAK else 60  # of the samples of a lane: a twin in Python takes as long for many lanes as for one
 TARGET_STEPS = (
     2_000 if SOAK else 500
 )  # a quarter of a second of the emulated board a row; `twinlaw compare` steps a hundred thousand on it
@@ -28,7 +31,8 @@ def test_twin_and_host_are_equal_in_all_bits_of_many_steps(name: str) -> None:
     row, table = designed(name)
     twin, host = row.twin(table), HostLaw(row.generate(table))
     assert host.state_words == twin.state_words
-    result = compare(twin, host, standard_stimuli(table, STEPS, state_words=twin.state_words))
+    stimuli = standard_stimuli(table, 4 * STEPS, state_words=twin.state_words)
+    result = compare(twin, host, [replace(entry, inputs=entry.inputs[:FIRST]) for entry in stimuli])
     assert (result.equality.mismatches, result.first_mismatch) == (0, None)
     assert result.equality.steps >= STEPS
 

@@ -19,6 +19,7 @@ from design.law import AxisState, LawState, law_reset, law_step
 from design.settings import read_settings
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V
 from tests.design.helicopter import helicopter, table_for
+from tests.soak import SOAK
 
 
 class Doubles(Float32Scalars):
@@ -72,7 +73,7 @@ def test_both_start_alike_also_outside_the_range_of_the_reference(psi_rad, phi_r
 @given(st.lists(NUMBERS, min_size=28, max_size=28), st.lists(st.tuples(*[NUMBERS] * 4), min_size=1, max_size=6))
 @example([math.nan] * 28, [(0.1, 0.2, 0.0, 0.0)] * 2)
 @example([0.1] * 5 + [2 * PLAUSIBLE_V] + [0.1] * 22, [(0.1, 0.2, 0.0, 0.0)] * 2)
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=300 if SOAK else 80, deadline=None, derandomize=True)
 def test_both_answer_any_state_and_any_input_alike(numbers, samples):
     side_by_side(from_words(numbers), samples)
 

@@ -21,6 +21,7 @@ from identification.uncertainty.residuals import residual_tests
 from records.errors import BadInput
 from records.experiment import load_experiment, save_experiment
 from sim.bind import bind
+from tests.angles import few_angles
 from tests.identification.conftest import SEED
 from tests.soak import SOAK
 
@@ -150,8 +151,9 @@ def test_an_arm_without_its_weights_is_known_by_ratios_alone(bound, experiments)
     assert told["stages"][0]["not_identifiable"][0]["relative_sd"] > 0.5
 
 
-def test_the_controller_designed_from_the_result_flies_the_rig(bound, truth, stages):
+def test_the_controller_designed_from_the_result_flies_the_rig(monkeypatch, bound, truth, stages):
     """V1 and V2: flown by the same controller, rig and identified plant stay within a degree of one another."""
+    few_angles(monkeypatch)
     result = identification(bound.plant, [(stage.kind, stage.result) for stage in stages], stages[-1].belief)
     few = replace(result.plant, design={**result.plant.design, "operating_points": 17 if SOAK else 5})
     compared = compare_flights(bind(few), truth)

@@ -64,7 +64,7 @@ OTHERS = [
 ]
 
 
-@pytest.mark.parametrize(("controller", "cause", "first"), sampled(OTHERS, keep=OTHERS[:2]))
+@pytest.mark.parametrize(("controller", "cause", "first"), sampled(OTHERS, keep=OTHERS[:1]))
 def test_another_firmware_over_the_stated_plant_is_no_gap_and_is_told_first(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],

@@ -4,8 +4,10 @@ import json
 
 import pytest
 
+from identification.frequency.match import fit
 from records.plant import load_plant
 from tests.plants import PLANTS
+from tests.soak import SOAK
 from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
@@ -26,7 +28,9 @@ def swept(folder):
     return [str(folder / f"sweep_{stick}_1.csv") for stick in ("lat", "ped")]
 
 
-def test_flights_become_a_plant_file_a_report_and_json(flown, tmp_path, capsys):
+def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_path, capsys):
+    if not SOAK:
+        monkeypatch.setattr(fit, "RESTARTS", 0)  # further searches: tests/identification/frequency/test_match.py
     held = ["--holdout", str(flown / "doublets.csv")]
     assert main([*FREQUENCY, *held, "--out", str(tmp_path), "--json", "--band-rad-s", "0.4", "12", *swept(flown)]) == 0
     told = json.loads(capsys.readouterr().out)

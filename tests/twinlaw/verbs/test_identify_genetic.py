@@ -37,9 +37,9 @@ def test_a_rig_as_stated_has_the_plant_file_s_numbers(folder):
 
 
 def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folder, tmp_path, capsys, monkeypatch):
-    """Truth: the rig's own numbers, to 2 or 6 parts in 1000. Of the paper's 150 generations 30, as the fit goes on from where they end;
+    """Truth: the rig's own numbers, to 2 or 6 parts in 1000. Of the paper's 150 generations 15, as the fit goes on from where they end;
     of each figure a tenth of its time, as its rig is computed in Python."""
-    monkeypatch.setattr(methods, "evolve", partial(genetic.evolve, settings=genetic.Settings(generations=30)))
+    monkeypatch.setattr(methods, "evolve", partial(genetic.evolve, settings=genetic.Settings(generations=15)))
     monkeypatch.setattr(figures, "_rows", lambda duration_s: round(0.1 * duration_s / PERIOD_S))
     options = ["--search", "genetic", "--truth", str(folder / "truth.toml"), "--json"]
     assert main(["identify", *PLANT, *options, "--out", str(tmp_path), str(folder)]) == 0
@@ -47,7 +47,7 @@ def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folde
     for stage in told["stages"]:
         ours, beside = stage["searches"]
         assert (ours["method"], beside["method"]) == ("genetic", "gradient")
-        assert len(ours["best_by_generation"]) == 30
+        assert len(ours["best_by_generation"]) == 15
         assert set(ours["bits"]) == set(ours["values"]) == set(beside["values"])
         assert ours["cpu_s"] > 0.0
     page = (tmp_path / "report.html").read_text()
