@@ -14,8 +14,7 @@ ANGLE_BINS = Count(24, "bins", "bins of the angle for holding inputs")
 LEAST_STEADY_ROWS = Count(100, "rows", "quasi-steady rows of a bin in both logs")
 STEADY_RAD_S = Limit(0.05, "rad/s", "slower motion is quasi-steady")
 LEAST_HOLDING_INPUT = Limit(0.1, "share of the larger limit", "a holding input below says nothing")
-NOTE_RATIO = Limit(1.35, "ratio", "two logs hold one angle with inputs this much apart: note, refusal")
-REFUSE_RATIO = Limit(2.0, "ratio", "two logs hold one angle with inputs this much apart: note, refusal")
+NOTE_RATIO = Limit(1.35, "ratio", "two logs hold one angle with inputs this much apart: a note")
 
 # dead
 DEAD_S = Limit(0.2, "s", "an output that stands this long", "18 000 stands in honest logs")

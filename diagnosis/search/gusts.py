@@ -63,7 +63,9 @@ def _fitted(case: Case, nominal: FittedHypothesis, gust: Effect) -> FittedHypoth
 
 
 def _with(hypothesis: Hypothesis, gust: Effect, size: float, time_s: float) -> Hypothesis:
-    values = {gust.symbol(Role.STRENGTH): size, gust.symbol(Role.MEMORY): time_s}
+    given = {gust.symbol(Role.STRENGTH): size, gust.symbol(Role.MEMORY): time_s}
+    bounds = gust.parameter
+    values = {name: float(np.clip(value, bounds[name].lower, bounds[name].upper)) for name, value in given.items()}
     return hypothesis.with_effects({**hypothesis.effects, gust.name: values})
 
 
