@@ -38,7 +38,7 @@ def test_same_table_gives_the_same_bytes_and_states_its_arithmetic() -> None:
         assert not re.search(r"20\d\d-\d\d|/home|/work|/tmp", text)
 
 
-@pytest.mark.parametrize("degree", sampled([0, 1, 3, 4, 7], keep=[0, 7]))
+@pytest.mark.parametrize("degree", sampled([0, 1, 3, 4, 7], keep=[7]))
 def test_any_degree_compiles_for_host_and_target_without_a_warning(degree: int) -> None:
     sources = [CText(name, text) for name, text in generate_law(ce150_table(degree=degree), "fixed").items()]
     compile_objects(sources, flags=(*TARGET_FLAGS, *PICKY))
