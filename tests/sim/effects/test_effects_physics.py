@@ -32,16 +32,20 @@ BOUND = bind(load_plant(PLANTS / "ce150.toml"))
 def _chosen() -> dict[str, Effect]:
     """All effects in a soak, else one of each kind: on the other axis, rotor, input or sensor it is the same function.
 
-    By turns of the first place that has it and of the last, as effects are many and two kernels hold them all; those that tests below
-    name, and those whose equations differ by axis, on both.
+    Of each kind that which a test below names, else by turns the first and the last; both axes' where their equations differ.
     """
-    found, both = library(BOUND), {"wind", "rotor_acceleration", "flexible_mode", "cable_spring", "stribeck"}
+    found, named = library(BOUND), {"azimuth.cable_spring", "elevation.flexible_mode"}
+    if SOAK:
+        return dict(found)
     kinds: dict[tuple[str, str], list[str]] = {}
     for name in found:
         place, _, kind = name.partition(".")
         kinds.setdefault((place.replace("elevation", "azimuth").rpartition("_")[2], kind), []).append(name)
-    turns = {names[-(turn % 2)] for turn, names in enumerate(kinds.values())}
-    return {name: effect for name, effect in found.items() if SOAK or name in turns or name.partition(".")[2] in both}
+    chosen = set()
+    for turn, ((_, kind), names) in enumerate(kinds.items()):
+        one = [name for name in names if name in named] or [names[-(turn % 2)]]
+        chosen.update(names if kind in ("wind", "rotor_acceleration") else one)
+    return {name: found[name] for name in found if name in chosen}
 
 
 LIBRARY = _chosen()
