@@ -9,9 +9,10 @@ from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.profile_likelihood import Point, by_parabola
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
-LEAST_DOUBT, MOST_DOUBT = -7.0, -1.0  # log10 s
+LEAST_DOUBT = -7.0  # log10 s; the most is where it starts: longer doubt would take the part of friction that gives before it slides
 FIRST_STEP = 0.3
 DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells less of it
 MOST_STEPS = 12
@@ -57,7 +58,7 @@ def _of_axis(axis: int) -> Changed:
 
 
 def _of_rest(hypothesis: Hypothesis, x: float) -> Hypothesis:
-    return replace(hypothesis, rest_doubt=float(np.clip(x, LEAST_DOUBT, MOST_DOUBT)))
+    return replace(hypothesis, rest_doubt=float(np.clip(x, LEAST_DOUBT, FIRST_REST_DOUBT)))
 
 
 def _along(case: Case, start: Point, changed: Changed, step: float) -> tuple[Hypothesis, float]:

@@ -94,7 +94,7 @@ def same(one: Result, other: Result) -> None:
 
 
 @pytest.mark.parametrize(
-    ("rig", "law"), sampled([(rig, law) for rig in RIGS for law in LAWS], keep=[("rubs", "one log given as two")])
+    ("rig", "law"), sampled([(rig, law) for rig in RIGS for law in LAWS], keep=[])
 )
 def test_what_is_no_other_question_has_no_other_answer(
     plainly: Callable[[str], tuple[Logs, Result]], rig: str, law: str
@@ -103,7 +103,7 @@ def test_what_is_no_other_question_has_no_other_answer(
     same(before, answered(LAWS[law](logs)))
 
 
-@pytest.mark.parametrize("rig", sampled(RIGS, keep=["rubs"]))
+@pytest.mark.parametrize("rig", sampled(RIGS, keep=[]))
 def test_a_hold_out_of_the_same_rig_changes_no_verdict(plainly: Callable[[str], tuple[Logs, Result]], rig: str) -> None:
     logs, before = plainly(rig)
     after = answered(logs, [arm_log(RIGS[rig], seed=73, rows=2)])
