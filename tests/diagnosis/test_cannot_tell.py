@@ -68,7 +68,7 @@ def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> No
     never = told["azimuth"].split(" of any size")[0]
     assert "quadratic_drag" in never
     assert "upper_stop" in never
-    assert "delay below tau = " in told["main_input"]
+    assert "delay below tau = " in told["tail_input"]
     assert len(told) == len(unseen)
     assert len([note for note in hover.note_records if note.kind == "imitated"]) == 1
     # Truth: a rotor turns six radians from row to row, from where nobody knows.
