@@ -5,6 +5,7 @@ nine digits. In gamma they spread around 0 and nothing cancels.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,9 +42,20 @@ def transfer_function(linear: LinearPlant, sample_period_s: float, where: str) -
 
 
 def _by_python_control(linear: LinearPlant, sample_period_s: float) -> TransferFunction:
+    matrices = (np.ascontiguousarray(matrix, dtype=float).tobytes() for matrix in (linear.A, linear.B, linear.C))
+    return _converted(*matrices, sample_period_s)
+
+
+@lru_cache(maxsize=4096)  # design, verification and report ask for the same points, and most of their time is this
+def _converted(A: bytes, B: bytes, C: bytes, sample_period_s: float) -> TransferFunction:
+    """python-control's conversion of a plant with one input and one output, whose matrices are given as the bytes of their rows."""
     import control  # half a second, which whoever only reads a table is spared
 
-    continuous = control.ss(linear.A, linear.B, linear.C, np.zeros((1, 1)))
+    b_vector, c_vector = np.frombuffer(B), np.frombuffer(C)
+    states = len(b_vector)
+    continuous = control.ss(
+        np.frombuffer(A).reshape(states, states), b_vector[:, None], c_vector[None, :], np.zeros((1, 1))
+    )
     discrete = control.ss2tf(control.sample_system(continuous, sample_period_s, method="zoh"))
     a = np.asarray(discrete.den[0][0], dtype=float)
     b = np.asarray(discrete.num[0][0], dtype=float)
