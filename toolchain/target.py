@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import IO
 
 from records.board import STM32G071
 from toolchain.cache import CACHE_DIR, is_whole
@@ -84,6 +85,21 @@ def runtime_library(core: str = STM32G071.core) -> Path:
     if is_whole(library):
         return library
     library.parent.mkdir(parents=True, exist_ok=True)
+    with (library.parent / f"{library.name}.lock").open("w") as lock:
+        _lock(lock)  # six seconds, which processes that begin together need not all spend
+        return library if is_whole(library) else _built(library, core)
+
+
+def _lock(lock: IO[str]) -> None:
+    """Wait for the file, where files can be locked; elsewhere each process builds its own."""
+    try:
+        import fcntl
+    except ImportError:
+        return
+    fcntl.flock(lock, fcntl.LOCK_EX)
+
+
+def _built(library: Path, core: str) -> Path:
     source = zig_folder() / "lib" / "compiler_rt.zig"
     with tempfile.TemporaryDirectory(dir=library.parent) as work:
         built = Path(work) / "libcompiler_rt.a"
