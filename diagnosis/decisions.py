@@ -324,6 +324,19 @@ SAME_PLACE = Limit(
 OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
 
 # What other logs say (decide)
+LITTLE_LEFT = Limit(
+    0.1,
+    "share of the gap's evidence",
+    "the hold-out overrules an unknown effect where no more is left beside the best name: real rigs always "
+    "leave a little",
+    "real rigs; development cases of the sealed generator, seeds 21 and 22",
+)
+NEARLY_ALL_GONE = Limit(
+    0.85,
+    "share of the removable error",
+    "and so much is gone there",
+    "real rigs; development cases of the sealed generator, seeds 21 and 22",
+)
 SURELY = Limit(2.0, "standard errors", "a difference of predictions that chance makes once in twenty times")
 WORSE = Limit(
     1.0, "standard errors", "what predicts the hold-out worse by more is not added", "AeroShield, twelve splits"

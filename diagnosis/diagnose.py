@@ -12,7 +12,7 @@ from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, likeliest, named, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -162,10 +162,10 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     """Weigh what was found, and check it on the hold-out."""
     retuned = seen.retuned
     seen = seen.because(*found.decisions)
-    found, weighed, rules = _with_gusts(seen, found, beyond)
+    found, left, weighed, rules = _with_gusts(seen, found, beyond)
     seen = seen.because(*rules, *weighed.decisions)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
-    weighed, told, rules = _favoured(holdout, weighed)
+    weighed, told, rules = _favoured(holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)
     weighed, notes = doubts.applied(weighed), (*material.notes, *doubts.notes, *told)
     chosen, named_rules = likeliest(weighed, retuned, None if beyond is None else beyond.fitted)
@@ -176,20 +176,25 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     return seen, Judged(found, beyond, weighed, chosen, holdout, notes)
 
 
-def _favoured(holdout: Holdout | None, weighed: Weighed) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
-    """What was weighed, with what the hold-out says of it, as probabilities."""
+def _favoured(
+    holdout: Holdout | None, weighed: Weighed, gained: float, left: float
+) -> tuple[Weighed, tuple[Note, ...], tuple[Decision, ...]]:
+    """What was weighed, with what the hold-out says of it, as probabilities; `gained` and `left` are nats, see `overruled`."""
     if holdout is None or not weighed.fitted:
         weighed, law = calibrated(weighed, None)
         return weighed, (), law
     weighed, preferences = preferred(holdout, weighed)
+    weighed, over = overruled(holdout, weighed, gained, left)
     told, notes, rules = asked(holdout, weighed.fitted[0])
     weighed, law = calibrated(weighed, favour(told))
-    return weighed, notes, (*preferences, *rules, *law)
+    return weighed, notes, (*preferences, *over, *rules, *law)
 
 
-def _with_gusts(seen: Seen, found: Search, beyond: Retune | None) -> tuple[Search, Weighed, tuple[Decision, ...]]:
+def _with_gusts(
+    seen: Seen, found: Search, beyond: Retune | None
+) -> tuple[Search, float, Weighed, tuple[Decision, ...]]:
     """What was found, weighed; with gusts where nothing else explains the logs well and they do."""
-    weighed = _weighed(seen, found, beyond)
+    left, weighed = _weighed(seen, found, beyond)
     likely = max(weighed.retune, *weighed.probabilities, 0.0)
     explained = likely >= decisions.WELL_EXPLAINED
     rules = [
@@ -209,8 +214,8 @@ def _with_gusts(seen: Seen, found: Search, beyond: Retune | None) -> tuple[Searc
         rules += [_gust_rule(entry, seen.retuned.evidence, enough) for entry in asked]
         if further:
             found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
-            weighed = _weighed(seen, found, beyond)
-    return found, weighed, tuple(rules)
+            left, weighed = _weighed(seen, found, beyond)
+    return found, left, weighed, tuple(rules)
 
 
 def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decision:
@@ -219,14 +224,14 @@ def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decisio
     return held_against("gust_explains", of, gust.evidence - nominal, enough - nominal, "nats", outcome)
 
 
-def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> Weighed:
-    """The probabilities, by what forms still gain beside the best that was found; all that swings beside noise is a form of its own."""
+def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
+    """What forms still gain beside the best that was found, and the probabilities; all that swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
     own = [library.effects[name] for name in best.effects if not library.effects[name].is_noise]
     left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
-    return weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
+    return left, weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
 
 
 def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tuple[Seen, Holdout | None]:

@@ -93,9 +93,7 @@ def same(one: Result, other: Result) -> None:
         assert first.effects[0].probability == pytest.approx(second.effects[0].probability, abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("rig", "law"), sampled([(rig, law) for rig in RIGS for law in LAWS], keep=[])
-)
+@pytest.mark.parametrize(("rig", "law"), sampled([(rig, law) for rig in RIGS for law in LAWS], keep=[]))
 def test_what_is_no_other_question_has_no_other_answer(
     plainly: Callable[[str], tuple[Logs, Result]], rig: str, law: str
 ) -> None:

@@ -56,7 +56,7 @@ def test_gusts_are_weighed_where_nothing_else_explains_the_logs(plant: BoundPlan
     # Truth: gusts on the elevation, and a search that found nothing.
     seen = _detected(make_case(effect_library(plant), [fly(91, GUST, 20.0, rig_seed=90)]), None)
     nothing = Search((seen.retuned,), seen.retuned, False, seen.linearisation, seen.score_tests)
-    found, weighed, rules = _with_gusts(seen, nothing, None)
+    found, _, weighed, rules = _with_gusts(seen, nothing, None)
     assert found.fitted[0].effects == ("elevation.gust",)
     assert weighed.fitted[0].effects == ("elevation.gust",)
     told = {rule.rule: rule.outcome for rule in rules if rule.of != "azimuth.gust"}
