@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.prior import at_its_end
+from diagnosis.decide.prior import size_at_its_end
 from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.instants import happens
@@ -121,7 +121,7 @@ def overruled(holdout: Holdout, weighed: Weighed, gained: float, left: float) ->
         return weighed, ()
     first, of = weighed.fitted[0], " + ".join(weighed.fitted[0].effects)
     enough = decisions.LITTLE_LEFT * gained
-    little = left <= enough and not any(at_its_end(name, first) for name in first.effects)
+    little = left <= enough and not any(size_at_its_end(name, first) for name in first.effects)
     rule = held_against("little_left", of, left, enough, "nats", "hold-out asked" if little else "unknown stays")
     if not little:
         return weighed, (rule,)

@@ -50,6 +50,13 @@ def _rounding(effect: Effect, fitted: FittedHypothesis, step: float) -> float:
     )
 
 
+def size_at_its_end(name: str, fitted: FittedHypothesis) -> bool:
+    """Whether a fitted size of an effect went as far from zero as it may."""
+    values = fitted.fit.hypothesis.effects[name]
+    sizes = [entry.parameter for entry in fitted.fit.free if entry.effect == name and entry.parameter.is_size]
+    return any(values[size.symbol] in {size.lower, size.upper} - {size.zero} for size in sizes)
+
+
 def at_its_end(name: str, fitted: FittedHypothesis) -> bool:
     """Whether a fitted size of an effect went as far from zero as it may, or a sine has as few waves or as many as it may."""
     values = fitted.fit.hypothesis.effects[name]
