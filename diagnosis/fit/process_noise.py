@@ -12,9 +12,8 @@ from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
-LEAST_DOUBT = (
-    -3.0
-)  # log10 s; the most is where it starts: longer doubt would take the part of friction that gives before it slides
+# The most is where it starts: longer doubt would take the part of friction that gives before it slides.
+LEAST_DOUBT = -7.0  # log10 s
 FIRST_STEP = 0.3
 DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells less of it
 MOST_STEPS = 12
