@@ -88,6 +88,11 @@ REST_SHARES = Limits(
 JUDGED_START_S = Limit(3.0, "s", "so long readings tell which start it was")
 
 # Priors of numbers (fit)
+SMOOTH_INPUT = Limit(
+    1.0,
+    "rms of second over first differences",
+    "a rougher input was held: the ratio is 1.4 where each command is drawn anew, little where they are points of a way",
+)
 WORTH_STRAIGHT = Limit(
     10.0, "nats", "an input goes straight between rows only where that is so much likelier than that it was held"
 )
@@ -314,7 +319,7 @@ LEFT_POWER = Limit(3.0, "1", "beyond that an unknown effect becomes likelier by 
 UNKNOWN = Limit(1.7, "scales", "log odds against an unknown effect where exactly as much is left", DEVELOPMENT_21)
 FARTHEST_GAIN = Limit(3e4, "nats", "a larger gain only says that the nominal plant had lost its way", DEVELOPMENT)
 RETUNE_COST = Limit(10.0, "nats", "of parameters beyond their spread beside effects")
-UNNAMED = Limit(0.95, "probability", "of an unknown effect where what would be named is refuted")
+UNNAMED = Limit(0.95, "probability", "of an unknown effect where a name is forbidden")
 FREE_SPREAD = Limit(3.0, "standard deviations", "a parameter within costs no more than its prior", DEVELOPMENT)
 NATS_PER_FORM = Limit(2.0, "nats", "that each further form of a class costs, with ln of the number of its forms")
 MOST_FORMS = Count(4, "forms", "of one class")
@@ -324,6 +329,11 @@ SAME_PLACE = Limit(
 OTHER_KNEE = Limit(0.05, "factor", "a limit's knee may be rounder than the library's", DEVELOPMENT)
 
 # What other logs say (decide)
+PREFERRED = Count(4, "names", "of which a hold-out is asked which it prefers: time")
+LEAST_PREFERRED = Limit(0.02, "probability", "a less probable name is not asked: time")
+FARTHEST_LOGIT = Limit(
+    6.0, "logits", "surer weights are told to the learned law as this: evidence of dense readings is too sure"
+)
 LITTLE_LEFT = Limit(
     0.1,
     "share of the gap's evidence",

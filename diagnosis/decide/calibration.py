@@ -8,11 +8,11 @@ from importlib.resources import files
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.decide.weighing import Weighed, named
 from diagnosis.decisions import held_against
 from records.reasons import Decision
 
-FARTHEST = 6.0  # logits: surer weights say no more
 FEATURES = ("sure", "favour", "silent", "further")  # in the order of the law's coefficients
 
 
@@ -28,6 +28,7 @@ class Features:
 
     @property
     def vector(self) -> tuple[float, ...]:
+        """The features in the order of FEATURES."""
         return (self.sure, self.favour, self.silent, self.further)
 
 
@@ -53,7 +54,11 @@ def learned() -> Law:
 def features_of(weighed: Weighed, favour: float | None) -> Features:
     """What the law is told; `favour` is None without a hold-out."""
     p = weighed.probabilities[0]
-    sure = float(np.clip(np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -FARTHEST, FARTHEST))
+    sure = float(
+        np.clip(
+            np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT
+        )
+    )
     return Features(sure, favour or 0.0, float(favour is None), float(len(weighed.fitted[0].effects) - 1))
 
 

@@ -24,8 +24,6 @@ from records.reasons import Decision, Note
 from records.table import ControllerTable
 
 NATS = "nats a reading"
-ASKED = 4  # hypotheses of which the logs are asked: time
-LEAST_ASKED = 0.02  # probability
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +58,7 @@ class Holdout:
         kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
         if len(kept) == len(hypothesis.effects):
             return hypothesis
-        without = replace(hypothesis, effects=kept)
+        without = hypothesis.with_effects(kept)
         return hypothesis if score(self._errors(hypothesis), self._errors(without)).gain > 0.0 else without
 
     def score(self, hypothesis: Hypothesis, other: Hypothesis | None = None) -> Score:
@@ -135,7 +133,9 @@ def overruled(holdout: Holdout, weighed: Weighed, gained: float, left: float) ->
 def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decision, ...]]:
     """The names in the order of what both the training logs and these say: what one predicts better counts in nats for each second, as
     readings within one share their errors, on the scale on which the hypotheses are compared."""
-    chosen = [index for index, p in enumerate(weighed.probabilities[:ASKED]) if p >= LEAST_ASKED]
+    chosen = [
+        index for index, p in enumerate(weighed.probabilities[: decisions.PREFERRED]) if p >= decisions.LEAST_PREFERRED
+    ]
     if len(chosen) < 2:
         return weighed, ()
     told = [holdout.score(weighed.fitted[index].fit.hypothesis) for index in chosen]

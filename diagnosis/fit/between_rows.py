@@ -16,8 +16,6 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, FilteredLog
 from records.reasons import Decision
 
-SMOOTH = 1.0  # rms second over rms first differences: 1.4 where each command is drawn anew, little where they are points of a way
-
 
 def between_rows(case: Case, held: Fit) -> tuple[Case, Fit, tuple[Decision, ...]]:
     """The case and its nominal fit with smooth inputs straight between rows, where that fits better than they were `held`, and the record
@@ -51,4 +49,4 @@ def _straight(flight: FilteredLog) -> FilteredLog:
 
 def _is_smooth(u: NDArray[np.float64]) -> bool:
     first, second = np.diff(u), np.diff(u, 2)
-    return bool(first.any() and np.mean(second**2) < SMOOTH**2 * np.mean(first**2))
+    return bool(first.any() and np.mean(second**2) < decisions.SMOOTH_INPUT**2 * np.mean(first**2))

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnosis.decide.calibration import FARTHEST, FEATURES, Law, calibrated, features_of, learned
+from diagnosis import decisions
+from diagnosis.decide.calibration import FEATURES, Law, calibrated, features_of, learned
 from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.evidence import FittedHypothesis
 from tests.diagnosis.arm import plain_linearisation
@@ -27,8 +28,8 @@ def test_the_first_gets_the_laws_probability_and_the_rest_share_what_is_left() -
 
 
 def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
-    assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None).sure == FARTHEST
-    assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None).sure == -FARTHEST
+    assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None).sure == decisions.FARTHEST_LOGIT
+    assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None).sure == -decisions.FARTHEST_LOGIT
 
 
 def test_without_a_name_nothing_is_asked() -> None:
