@@ -62,7 +62,7 @@ def gap(seen: Seen, material: Material, judged: Judged) -> Result:
     )
     shape = shape_of(found.linearisation, seen.detection.by_form, blamed[0]) if blamed and weighed.nameless else None
     checked = None if holdout is None else holdout.case
-    return Result(diagnosis, improved_plant(case, judged.chosen.fit), case, predicted, shape, checked)
+    return Result(diagnosis, improved_plant(case, judged.chosen), case, predicted, shape, checked)
 
 
 def _reason(judged: Judged) -> Exit:
@@ -95,7 +95,7 @@ def no_gap(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit
         note_records=notes,
     )
     checked = None if holdout is None else holdout.case
-    return Result(diagnosis, improved_plant(case, chosen.fit), case, predicted, None, checked)
+    return Result(diagnosis, improved_plant(case, chosen), case, predicted, None, checked)
 
 
 def _unknown(found: Search, by_form: FormScores, weighed: Weighed, first: Suspect | None) -> Unknown:
@@ -113,7 +113,7 @@ def _innovations(case: Case, fitted: FittedHypothesis) -> list[NDArray[np.float6
 
 def _hypothesis(case: Case, weighed: Weighed, fitted: FittedHypothesis, probability: float) -> Hypothesis:
     classes = [case.library.effects[name].class_text for name in fitted.effects]
-    own = estimates(case, fitted.fit)
+    own = estimates(case, fitted)
     single = len(fitted.effects) == 1
     parameters = {
         symbol if single else f"{name}.{symbol}": entry

@@ -11,10 +11,11 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.calibration import calibrated
+from diagnosis.decide.consequence import consequence
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
 from diagnosis.decide.unknown import left_beside
-from diagnosis.decide.weighing import Weighed, likeliest, named, weigh
+from diagnosis.decide.weighing import Weighed, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
 from diagnosis.decisions import decided, held_against
 from diagnosis.detect.detection import detect, form_scores
@@ -22,13 +23,13 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, straight
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import plain_fit, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
-from diagnosis.search.gusts import gusts
+from diagnosis.search.draughts import Draught, draught
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -42,7 +43,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = _seen(bound, material)
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
-    demand_wiring(seen.case, seen.retuned.fit, nominal_fit, "the logs to explain")
+    demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
@@ -53,7 +54,10 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen, judged = _judged(seen, material, found, beyond)
     seen, stands = borne_out(seen, judged.weighed)
     if not stands:
-        return _told(seen, replace(material, notes=judged.notes), judged.holdout, Exit.NOT_BORNE_OUT)
+        return _nothing(seen, replace(material, notes=judged.notes), Exit.NOT_BORNE_OUT, judged.holdout)
+    seen, matters = of_consequence(seen, judged)
+    if not matters:
+        return _nothing(seen, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
     return gap(seen, material, judged)
 
 
@@ -62,10 +66,26 @@ def _alarmed(p: float) -> bool:
     return p <= decisions.ALARM
 
 
-def _nothing(seen: Seen, material: Material, reason: Exit) -> Result:
-    """The answer where no gap shows. Raises BadInput where logs that were not fitted are wired otherwise."""
-    seen, holdout = _checked(seen, material)
+def _nothing(seen: Seen, material: Material, reason: Exit, holdout: Holdout | None = None) -> Result:
+    """The answer where no effect shows: a gust where the noise is one, else none. Raises BadInput where logs that were not fitted are
+    wired otherwise."""
+    gusty, rules = draught(seen.case, seen.retuned)
+    seen = seen.because(*rules)
+    if gusty is not None:
+        return _gust(seen, material, gusty)
+    if holdout is None:
+        seen, holdout = _checked(seen, material)
     return _told(seen, material, holdout, reason)
+
+
+def _gust(seen: Seen, material: Material, found: Draught) -> Result:
+    """The answer where all that is missing is a torque that comes and goes: beside a plant whose noise is white."""
+    gained = found.gusty.evidence - found.quiet.evidence
+    p = min(1.0, float(np.exp(-gained)))
+    seen = replace(seen, retuned=found.quiet, detection=replace(seen.detection, p=p))
+    tried = Search((found.gusty, found.quiet), found.quiet, True, seen.linearisation, seen.score_tests)
+    seen, judged = _judged(seen, material, tried, None)
+    return gap(seen, material, judged)
 
 
 def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit) -> Result:
@@ -75,7 +95,7 @@ def _told(seen: Seen, material: Material, holdout: Holdout | None, reason: Exit)
     together = seen.case.with_flights([*seen.case.flights, *seen.checked.flights])
     told, rules = contradicting(together, seen.retuned.fit.hypothesis, [*material.names, *material.holdout_names])
     if told:
-        demand_wiring(seen.checked, nominal_fit(seen.checked), nominal_fit, "the hold-out")
+        demand_wiring(seen.checked, plain_fit(seen.checked), plain_fit, "the hold-out")
     return no_gap(seen.because(*rules), replace(material, notes=(*material.notes, *told)), holdout, reason)
 
 
@@ -91,9 +111,10 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
 
 def _detected(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and score the library beside it."""
-    nominal = nominal_fit(case)
+    nominal = plain_fit(case)
     held = case
     case, nominal, between = between_rows(case, nominal)
+    nominal = with_memory(case, nominal)
     if checked is not None and case is not held:
         checked = straight(checked)
     case = with_usual(case, nominal.hypothesis)
@@ -162,8 +183,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     """Weigh what was found, and check it on the hold-out."""
     retuned = seen.retuned
     seen = seen.because(*found.decisions)
-    found, left, weighed, rules = _with_gusts(seen, found, beyond)
-    seen = seen.because(*rules, *weighed.decisions)
+    left, weighed = _weighed(seen, found, beyond)
+    seen = seen.because(*weighed.decisions)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
     weighed, told, rules = _favoured(holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)
@@ -190,45 +211,11 @@ def _favoured(
     return weighed, notes, (*preferences, *over, *rules, *law)
 
 
-def _with_gusts(
-    seen: Seen, found: Search, beyond: Retune | None
-) -> tuple[Search, float, Weighed, tuple[Decision, ...]]:
-    """What was found, weighed; with gusts where nothing else explains the logs well and they do."""
-    left, weighed = _weighed(seen, found, beyond)
-    likely = max(weighed.retune, *weighed.probabilities, 0.0)
-    explained = likely >= decisions.WELL_EXPLAINED
-    rules = [
-        decided(
-            "well_explained",
-            named(weighed),
-            likely,
-            decisions.WELL_EXPLAINED,
-            "explained" if explained else "gusts asked",
-        )
-    ]
-    if not explained:
-        gained = found.fitted[0].evidence - seen.retuned.evidence
-        enough = seen.retuned.evidence + decisions.GUST_EXPLAINS * gained
-        asked = gusts(seen.case, seen.retuned)
-        further = [entry for entry in asked if entry.evidence > enough]
-        rules += [_gust_rule(entry, seen.retuned.evidence, enough) for entry in asked]
-        if further:
-            found = replace(found, fitted=tuple(sorted((*found.fitted, *further), key=lambda entry: -entry.evidence)))
-            left, weighed = _weighed(seen, found, beyond)
-    return found, left, weighed, tuple(rules)
-
-
-def _gust_rule(gust: FittedHypothesis, nominal: float, enough: float) -> Decision:
-    outcome = "weighed" if gust.evidence > enough else "left out"
-    of = " + ".join(gust.effects)
-    return held_against("gust_explains", of, gust.evidence - nominal, enough - nominal, "nats", outcome)
-
-
 def _weighed(seen: Seen, found: Search, beyond: Retune | None) -> tuple[float, Weighed]:
     """What forms still gain beside the best that was found, and the probabilities; all that swings beside noise is a form of its own."""
     best = found.fitted[0] if found.fitted[0].effects else found.fitted[-1]
     library = seen.case.library
-    own = [library.effects[name] for name in best.effects if not library.effects[name].is_noise]
+    own = [library.effects[name] for name in best.effects]
     left = left_beside(form_scores(linearised(seen.case, best.fit)), own)
     score = None if beyond is None else beyond.score
     return left, weigh(found.fitted, seen.retuned, library.effects, left, score, library.frictionless, library.steps)
@@ -240,7 +227,7 @@ def _checked(seen: Seen, material: Material, effects: Sequence[str] = ()) -> tup
     if checked is None:
         return seen, None
     if any(checked.library.effects[name].loses_commands for name in effects):
-        checked = with_losses(checked, linearised(checked, nominal_fit(checked)))[0]
+        checked = with_losses(checked, linearised(checked, plain_fit(checked)))[0]
     holdout = holdout_of(checked, material.holdout_names, material.tables, seen.case, seen.retuned)
     return seen.because(*holdout.decisions), holdout
 
@@ -260,6 +247,17 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
     best = max(explained, default=found.nominal.evidence) - found.nominal.evidence
     p = max(detection.p, float(np.exp(-max(best, 0.0))))
     return replace(seen.because(size, _false_alarm("what explains it", p)), detection=replace(detection, p=p))
+
+
+def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
+    """Whether what explains the logs changes what a model predicts. What is not explained is not asked, nor are parameters: the plain
+    plant has them moved as far as it may."""
+    weighed = judged.weighed
+    if not weighed.explained or weighed.retune > max(weighed.probabilities, default=0.0):
+        return seen, True
+    beyond = [] if judged.beyond is None else [judged.beyond.fitted]
+    rules = consequence(seen.case, seen.retuned, [*beyond, *weighed.fitted])
+    return seen.because(*rules), all(rule.value is None or rule.value >= decisions.MATTERS for rule in rules)
 
 
 def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:

@@ -34,6 +34,7 @@ class Exit(Enum):
     YIELDING_EXPLAINS = "yielding_explains"  # axes that creep or give near rest, which is no gap, leave none
     UNEXPLAINED = "unexplained"  # a small gap that neither an effect of sure size nor parameters explain
     NOT_BORNE_OUT = "not_borne_out"  # a small gap that is not sure and whose explanations do not hold
+    TOO_SMALL = "too_small"  # a gap whose explanations change no prediction by enough to matter
     EFFECT_ADDED = "effect_added"
     PARAMETERS_ALONE = "parameters_alone"
     NAMED_NOT_ADDED = "named_not_added"  # the likeliest effect predicts the hold-out worse

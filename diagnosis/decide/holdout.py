@@ -50,7 +50,7 @@ class Holdout:
     def stated(self) -> Hypothesis:
         """The plant as stated, with the process noise of `base`."""
         nominal = nominal_hypothesis(self.case, decisions.FIRST_PROCESS_NOISE)
-        return replace(nominal, process_noise=self.base.fit.hypothesis.process_noise)
+        return nominal.with_noise_of(self.base.fit.hypothesis)
 
     def foreseen(self, hypothesis: Hypothesis) -> Hypothesis:
         """What a hypothesis says of these logs: an event that happened in another log counts only where it predicts these better."""
@@ -95,7 +95,7 @@ def holdout_of(
     rule = held_against(
         "as_stated", "plant", told.gain, decisions.SURELY * told.sd, NATS, "as stated" if better else "re-tuned"
     )
-    found = unfitted(training, retuned.fit.hypothesis.process_noise) if better else None
+    found = unfitted(training, retuned.fit.hypothesis) if better else None
     if found is None:
         return replace(trial, decisions=(rule,))
     notes = (Note("stated_predicts_better", "plant", {"worse": float(np.expm1(told.gain / _outputs(case)))}),)

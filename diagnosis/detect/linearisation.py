@@ -170,7 +170,7 @@ def linearised(case: Case, fit: Fit) -> Linearisation:
         solve=np.asarray(np.linalg.inv(slopes.T @ slopes + case.known), float),
         runs=tuple(runs),
         filter_inputs=tuple(
-            filter_input_under(case, compiled, flight, hypothesis.over(flight).effects) for flight in case.flights
+            filter_input_under(case, compiled, flight, hypothesis.over(flight)) for flight in case.flights
         ),
         filter=compiled.filter,
     )

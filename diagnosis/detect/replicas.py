@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.detect.linearisation import Linearisation
 from diagnosis.hypothesis.hypothesis import noise_of
+from diagnosis.library.reading_noise import state_of
 from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
@@ -58,6 +59,9 @@ def _flight(linearisation: Linearisation, index: int, count: int, rng: np.random
     moving = [
         library.states.index(str(axis.velocity)) for axis in library.bound.model.axes if axis.name not in flight.locked
     ]
+    pushed = [library.effects[name] for name in linearisation.fit.hypothesis.effects if library.effects[name].is_noise]
+    moving += [compiled.states.index(e.filter_state.name) for e in pushed if e.filter_state is not None]
+    moving += [compiled.states.index(state_of(output)) for output in linearisation.fit.hypothesis.reading_noise]
     measured = [place for place, slot in enumerate(case.slots) if slot >= 0]
     targets = [*moving, *(states + place for place in measured)]
     values = np.empty((len(filter_input.t_s), len(targets), count))

@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.fit.coloured_noise import colour_sd
+from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.jitter import jitter_sd
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import coefficients
-from diagnosis.search.gusts import gust_sd
 from records.correlation import Correlation
 from records.diagnosis import Estimate
 from records.plant import Parameter, Plant
@@ -23,9 +24,9 @@ CORRELATION_DIGITS = 9
 SOURCE = "re-estimated from logs by twinlaw diagnose"
 
 
-def improved_plant(case: Case, fit: Fit) -> Plant:
+def improved_plant(case: Case, found: FittedHypothesis) -> Plant:
     """The plant of a fit: values and standard deviations of its uncertain parameters, and its effects."""
-    nominal = case.library.bound
+    nominal, fit = case.library.bound, found.fit
     spread = deviations(fit)
     p, sd = coefficients(case, case.library.compiled(()), fit.hypothesis.with_effects({})), nominal.sd.copy()
     sd[case.free] = spread[: len(case.free)] * case.sd
@@ -44,11 +45,12 @@ def improved_plant(case: Case, fit: Fit) -> Plant:
         parameters[spec.name] = entry
     plant = replace(nominal.plant, parameters=parameters, effects={}, correlation=_correlation(case, fit))
     bound = replace(nominal, plant=plant)
-    effects = {**case.draws, **fit.hypothesis.effects}  # a draw of these very flights comes before the stated one
+    supposed = {name: fit.hypothesis.effects[name] for name in _supposed(case, found)}
+    effects = {**case.draws, **supposed}  # a draw of these very flights comes before the stated one
     if not effects:
         return plant
     sizes = {name: dict(case.stated_sd[name]) for name in case.draws}
-    sizes |= {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, fit).items()}
+    sizes |= {name: {s: e.sd for s, e in entries.items()} for name, entries in estimates(case, found).items()}
     return with_effects(bound, effects, sd=sizes, source="found by twinlaw diagnose").plant
 
 
@@ -67,21 +69,36 @@ def _correlation(case: Case, fit: Fit) -> Correlation | None:
     return Correlation(tuple(names[place] for place in case.free), tuple(tuple(row) for row in matrix.tolist()))
 
 
-def estimates(case: Case, fit: Fit) -> Mapping[str, Mapping[str, Estimate]]:
+def estimates(case: Case, found: FittedHypothesis) -> Mapping[str, Mapping[str, Estimate]]:
     """Each effect's parameters with one standard deviation."""
+    fit = found.fit
     spread = deviations(fit)[len(fit.hypothesis.theta) :]
     free = zip(fit.free[::-1], spread[::-1], strict=True)  # of what each log has for itself the first log's stay
     sd = {(entry.effect, entry.parameter.symbol): s * entry.scale for entry, s in free}
-    for name in fit.hypothesis.effects:
+    supposed = _supposed(case, found)
+    for name in supposed:
         beside = _beside_slopes(case, fit, case.library.effects[name])
         sd |= {(name, symbol): deviation for symbol, deviation in beside.items()}
     return {
         name: {
-            symbol: Estimate(float(values[symbol]), float(sd.get((name, symbol), 0.0)), _unit(case, name, symbol))
+            symbol: Estimate(
+                float(fit.hypothesis.effects[name][symbol]),
+                float(sd.get((name, symbol), 0.0)),
+                _unit(case, name, symbol),
+            )
             for symbol in case.library.effects[name].parameter
         }
-        for name, values in fit.hypothesis.effects.items()
+        for name in supposed
     }
+
+
+def _supposed(case: Case, found: FittedHypothesis) -> list[str]:
+    """The effects of a model: noise is none but where it was named."""
+    return [
+        name
+        for name in found.fit.hypothesis.effects
+        if name in found.effects or not case.library.effects[name].is_noise
+    ]
 
 
 def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
@@ -89,7 +106,7 @@ def _beside_slopes(case: Case, fit: Fit, effect: Effect) -> Mapping[str, float]:
     if effect.shown_in_readings:
         return {symbol: decisions.GRID_SD * v for symbol, v in fit.hypothesis.effects[effect.name].items()}
     if effect.is_noise:
-        return gust_sd(case, fit.hypothesis, effect)
+        return colour_sd(case, fit.hypothesis, effect)
     scatter = effect.having(Role.JITTER)
     if scatter is None:
         return {}

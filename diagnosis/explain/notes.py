@@ -21,6 +21,7 @@ def notes_of(
     """All notes of what was `chosen`; sentences.py says them."""
     return (
         *_presliding(case, chosen),
+        *_restless(case, chosen),
         *_moved(case, chosen),
         *_own_events(case, chosen),
         *_twins(case, weighed),
@@ -38,6 +39,19 @@ def _presliding(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
             size = effect.size
             told = {"story": effect.story, "symbol": size.symbol, "value": values[size.symbol], "unit": size.unit}
             yield Note("presliding_friction", effect.place, told)
+
+
+def _restless(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:
+    """Noise with a memory, which every hypothesis has: no effect, but what no model foretells."""
+    hypothesis, effects = chosen.fit.hypothesis, case.library.effects
+    for name, values in hypothesis.effects.items():
+        effect = effects[name]
+        if effect.is_noise and name not in chosen.effects:
+            size, time = effect.symbol(Role.STRENGTH), effect.symbol(Role.MEMORY)
+            told = {"sd": values[size], "unit": effect.parameter[size].unit, "time_s": values[time]}
+            yield Note("restless", effect.place, told)
+    for output, noise in hypothesis.reading_noise.items():
+        yield Note("coloured_readings", output, {"sd": noise.sd, "time_s": noise.time_s})
 
 
 def _moved(case: Case, chosen: FittedHypothesis) -> Iterator[Note]:

@@ -141,8 +141,22 @@ def _stated_predicts_better(note: Note) -> str:
     )
 
 
+def _restless(note: Note) -> str:
+    sd, unit, time_s = (note.numbers[name] for name in ("sd", "unit", "time_s"))
+    return f"noise of {note.subject}: a torque of {sd:.3g} {unit} (one sd) comes and goes within {time_s:.2g} s; none foretells it"
+
+
+def _coloured_readings(note: Note) -> str:
+    return (
+        f"noise of {note.subject}: its readings are off by {note.numbers['sd']:.3g} (one sd) alike over {note.numbers['time_s']:.2g} s, "
+        "as behind a filter or an observer"
+    )
+
+
 _SENTENCES: Mapping[str, Callable[[Note], str]] = {
     "presliding_friction": _presliding_friction,
+    "restless": _restless,
+    "coloured_readings": _coloured_readings,
     "moved_parameter": _moved_parameter,
     "moved_effect": _moved_effect,
     "twins": _twins,

@@ -12,7 +12,9 @@ from sim.effect import Effect, Role
 
 STEPS_COST = 8.0  # nats for the choice of an input's step among some thousand
 WAVE_COST = 5.0  # nats for the choice of a sine's waves among some hundred
-NOISE_COST = 10.0  # nats for a gust's size and time, which the fit does not count among its numbers
+COLOUR_COST = (
+    8.0  # nats for size and time of a noise with a memory, which the fit does not count: ln of some thousand rows
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ def evidence(found: Fit, effects: Mapping[str, Effect]) -> float:
     supposed = [effects[name] for name in found.hypothesis.effects]
     prior -= WAVE_COST * sum(entry.parameter.role in (Role.WAVES, Role.RATE) for entry in found.free)
     prior -= STEPS_COST * sum(parameter.rough for effect in supposed for parameter in effect.parameters)
-    prior -= NOISE_COST * sum(effect.is_noise for effect in supposed)
+    prior -= COLOUR_COST * (len(found.hypothesis.reading_noise) + sum(effect.is_noise for effect in supposed))
     own = 0.5 * sum(float(np.log(max(found.information[row, row], 1.0))) for row in shapes)
     return found.log_posterior - 0.5 * float(volume if sign > 0 else 0.0) + prior + own
 

@@ -237,9 +237,10 @@ def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: f
     return Fit(hypothesis, found, log_posterior, free, information, pull)
 
 
-def unfitted(case: Case, process_noise: Array) -> Fit | None:
-    """The plant as stated, no more known of it than its file says; None where it cannot follow the logs."""
-    start = fit(case, replace(nominal_hypothesis(case, 0.0), process_noise=process_noise), rounds=0)
+def unfitted(case: Case, noisy: Hypothesis) -> Fit | None:
+    """The plant as stated with the noise of another hypothesis, no more known of it than its file says; None where it cannot follow the
+    logs."""
+    start = fit(case, nominal_hypothesis(case, 0.0).with_noise_of(noisy), rounds=0)
     if start is None:
         return None
     information, pull = np.zeros_like(start.information), np.zeros_like(start.pull)

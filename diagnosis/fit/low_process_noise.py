@@ -5,31 +5,32 @@ its innovations no longer
 tell one effect from another. Under low process noise the missing effect's own signature stands out.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from diagnosis import decisions
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import process_noise_of
-from diagnosis.hypothesis.case import Case
+from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.hypothesis.case import Case, beginning_of
+from diagnosis.hypothesis.hypothesis import scaled
 
 LOWERED_FIRST_STEP = 0.6
 
 
 def with_low_process_noise(case: Case, found: Fit) -> Fit | None:
     """The fit anew under low process noise; None where it is low already or the plant cannot follow its logs then."""
-    process_noise = found.hypothesis.process_noise.copy()
-    for place, level in enumerate(_lowest(case)):
-        process_noise[place] = min(process_noise[place], max(level, process_noise[place] - decisions.LOWEST_NOISE))
-    if np.max(found.hypothesis.process_noise - process_noise, initial=0.0) < decisions.LEAST_LOWERED:
+    lowered = found.hypothesis
+    for axis, level in enumerate(_lowest(case)):
+        now = float(lowered.process_noise[axis])
+        lowered = scaled(case, lowered, axis, min(now, max(level, now - decisions.LOWEST_NOISE)))
+    if np.max(found.hypothesis.process_noise - lowered.process_noise, initial=0.0) < decisions.LEAST_LOWERED:
         return None
-    return fit(case, replace(found.hypothesis, process_noise=process_noise), rounds=4)
+    return fit(case, lowered, rounds=4)
 
 
 def with_own_process_noise(case: Case, found: Fit) -> Fit | None:
     """A fit found under low process noise with the process noise that its innovations show."""
-    return fit(case, process_noise_of(case, found, LOWERED_FIRST_STEP), rounds=3)
+    noisy = with_process_noise(beginning_of(case), found.hypothesis, LOWERED_FIRST_STEP)
+    return fit(case, noisy, rounds=3)
 
 
 def _lowest(case: Case) -> list[float]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from diagnosis import decisions
+from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
 from diagnosis.hypothesis.case import Case
@@ -14,7 +15,12 @@ SETTLED_NOISE = 0.05
 
 
 def nominal_fit(case: Case) -> Fit:
-    """The plant re-tuned within its spread, with the process noise that then remains."""
+    """The plant re-tuned within its spread, with all noise that then remains, white and with a memory."""
+    return with_memory(case, plain_fit(case))
+
+
+def plain_fit(case: Case) -> Fit:
+    """The plant re-tuned within its spread, with the white noise that then remains."""
     hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
     found = fit(case, hypothesis, rounds=NOMINAL_ROUNDS)
     for turn in range(NOMINAL_ROUNDS):
@@ -35,3 +41,15 @@ def nominal_fit(case: Case) -> Fit:
             break
     assert found is not None
     return found
+
+
+def with_memory(case: Case, found: Fit) -> Fit:
+    """The fit with noise with a memory where the logs tell of it."""
+    coloured = with_colours(case, found)
+    if coloured is found.hypothesis:
+        return found
+    again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
+    if again is None:
+        return found
+    ended = fit(case, coloured_noise_of(case, again.hypothesis), rounds=NOMINAL_ROUNDS)
+    return again if ended is None else ended

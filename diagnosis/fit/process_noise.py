@@ -1,14 +1,13 @@
 """The noise of a hypothesis, by maximum likelihood: what drives each axis at random, and how long dry friction is in doubt at rest."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
-from diagnosis.fit.profile_likelihood import Point, by_parabola
+from diagnosis.fit.profile_likelihood import Changed, Point, along
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, scaled
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
@@ -16,10 +15,6 @@ LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
 LEAST_DOUBT = -7.0  # log10 s
 FIRST_STEP = 0.3
 DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells less of it
-MOST_STEPS = 12
-LITTLE_PROMISED = 0.1  # nats
-
-Changed = Callable[[Hypothesis, float], Hypothesis]
 
 
 def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
@@ -36,9 +31,9 @@ def _likeliest(case: Case, hypothesis: Hypothesis, value: float, first: float) -
     """The likeliest noise, axis after axis; `value` is the log likelihood as it is."""
     for axis in range(len(hypothesis.process_noise)):
         start = Point(float(hypothesis.process_noise[axis]), hypothesis, value)
-        hypothesis, value = _along(case, start, _of_axis(axis), first)
+        hypothesis, value = along(case, start, _of_axis(case, axis), first)
     if _rubs(case, hypothesis):
-        hypothesis, _ = _along(case, Point(hypothesis.rest_doubt, hypothesis, value), _of_rest, DOUBT_STEPS * first)
+        hypothesis, _ = along(case, Point(hypothesis.rest_doubt, hypothesis, value), _of_rest, DOUBT_STEPS * first)
     return hypothesis
 
 
@@ -49,25 +44,14 @@ def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
     return supposed or len(library.frictionless) < len(library.bound.model.axes)
 
 
-def _of_axis(axis: int) -> Changed:
+def _of_axis(case: Case, axis: int) -> Changed:
+    """All noise of an axis: what comes and goes grows with what is white."""
+
     def changed(hypothesis: Hypothesis, x: float) -> Hypothesis:
-        process_noise = hypothesis.process_noise.copy()
-        process_noise[axis] = np.clip(x, LEAST_NOISE, MOST_NOISE)
-        return replace(hypothesis, process_noise=process_noise)
+        return scaled(case, hypothesis, axis, float(np.clip(x, LEAST_NOISE, MOST_NOISE)))
 
     return changed
 
 
 def _of_rest(hypothesis: Hypothesis, x: float) -> Hypothesis:
     return replace(hypothesis, rest_doubt=float(np.clip(x, LEAST_DOUBT, FIRST_REST_DOUBT)))
-
-
-def _along(case: Case, start: Point, changed: Changed, step: float) -> tuple[Hypothesis, float]:
-    """The likeliest of one noise, all others held."""
-
-    def at(x: float) -> Point:
-        there = changed(start.hypothesis, x)
-        return Point(x, there, likelihood_of(case, there))
-
-    found = by_parabola(at, start, step, MOST_STEPS, LITTLE_PROMISED)
-    return found.hypothesis, found.value

@@ -16,6 +16,10 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map
 
+Changed = Callable[[Hypothesis, float], Hypothesis]
+MOST_STEPS = 12
+LITTLE_PROMISED = 0.1  # nats
+
 
 @dataclass(frozen=True, eq=False)
 class Point:
@@ -58,6 +62,17 @@ def by_parabola(at: Callable[[float], Point], middle: Point, step: float, most_s
         return middle
     top = at(middle.x + 0.5 * step * (below.value - above.value) / bend)
     return top if top.value > middle.value else middle
+
+
+def along(case: Case, start: Point, changed: Changed, step: float) -> tuple[Hypothesis, float]:
+    """The likeliest of one number, all others held, and its log likelihood."""
+
+    def at(x: float) -> Point:
+        there = changed(start.hypothesis, x)
+        return Point(x, there, likelihood_of(case, there))
+
+    found = by_parabola(at, start, step, MOST_STEPS, LITTLE_PROMISED)
+    return found.hypothesis, found.value
 
 
 def by_folds(at: Callable[[float], Point], start: Point, fold: float, low: float, high: float) -> Point:

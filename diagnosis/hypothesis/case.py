@@ -9,7 +9,7 @@ import sympy
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.filter.filter_input import FilterInput, filter_input_of
+from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of
 from diagnosis.hypothesis.held_axes import with_held
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.library.effect_library import EffectLibrary
@@ -64,8 +64,9 @@ class Case:
     spread: Array | None = None
 
     def added(self, effects: Iterable[str]) -> tuple[str, ...]:
-        """Those of `effects` that the plant file does not state."""
-        return tuple(name for name in effects if name not in self.stated)
+        """Those of `effects` that the plant file does not state; noise is none."""
+        known = self.library.effects
+        return tuple(name for name in effects if name not in self.stated and not known[name].is_noise)
 
     @cached_property
     def known(self) -> Array:
@@ -116,6 +117,16 @@ def make_case(
     draws = {name: values.pop(name) for name in list(values) if not library.effects[name].repeats}
     free = np.flatnonzero(library.bound.sd > 0.0)
     return Case(library, flights, slots, free, values, sd, draws, _spread(library.bound, free))
+
+
+def beginning_of(case: Case) -> Case:
+    """The first BEGINNING_ROWS rows of each log: some numbers of noise are known well enough from those."""
+    flights = []
+    for flight in case.flights:
+        since = flight.log.t_s[: int(decisions.BEGINNING_ROWS)]
+        cut = beginning(flight.filter_input, float(since[-1] - since[0]))
+        flights.append(flight if len(since) == len(flight.log.t_s) else replace(flight, filter_input=cut))
+    return case.with_flights(flights)
 
 
 def _spread(bound: BoundPlant, free: NDArray[np.int64]) -> Array | None:

@@ -7,15 +7,16 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.filter.filter_input import FilterInput
+from diagnosis.filter.filter_input import FilterInput, variance_stated
 from diagnosis.filter.kalman import Noise, Pass
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 from diagnosis.library.effect_library import CompiledFilter, EffectLibrary
 from diagnosis.library.input_effects import commanded
+from diagnosis.library.reading_noise import ReadingNoise, state_of, switch_of, time_of
 from diagnosis.library.sensor_effects import sensed
 from jobs.thread_map import thread_map
-from sim.effect import Values
+from sim.effect import Effect, Role, Values
 
 Array = NDArray[np.float64]
 SHORTEST_LAG_S = 4e-3  # a shorter one is too stiff for the filter's steps
@@ -29,7 +30,8 @@ class Hypothesis:
     """Steps `theta` (free,) of the plant's uncertain coefficients in standard deviations, `effects` with their values by symbol, and
     `process noise` (axes,): log10 of the noise on each axis' speed per square root of a second.
 
-    `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis comes to rest or leaves it: noise as the others.
+    `rest_doubt` is log10 of how long, in s, dry friction is in doubt where an axis comes to rest or leaves it, `reading_noise` the errors
+    of readings that are alike from row to row, by output: noise as the others.
     `own`: what happens at another instant and by another size in each log has values by the log's number, and by ELSEWHERE those of all
     other logs; in `effects` it has those of the first in which it happens.
     """
@@ -39,6 +41,13 @@ class Hypothesis:
     process_noise: Array
     own: Mapping[str, Mapping[int, Values]] = field(default_factory=dict)
     rest_doubt: float = FIRST_REST_DOUBT
+    reading_noise: Mapping[str, ReadingNoise] = field(default_factory=dict)
+
+    def with_noise_of(self, other: "Hypothesis") -> "Hypothesis":
+        """The same with all noise that another supposes."""
+        return replace(
+            self, process_noise=other.process_noise, rest_doubt=other.rest_doubt, reading_noise=other.reading_noise
+        )
 
     def with_effects(self, effects: Mapping[str, Values]) -> "Hypothesis":
         """The same with other effects."""
@@ -69,6 +78,25 @@ class Hypothesis:
         return replace(self, effects={**self.effects, effect: first}, own={**self.own, effect: own})
 
 
+def noise_on(case: Case, axis: int) -> Effect | None:
+    """The effect that is noise with a memory on an axis; None where nothing pushes it."""
+    name = case.library.bound.model.axes[axis].name
+    return next((e for n in case.library.noises if (e := case.library.effects[n]).place == name), None)
+
+
+def scaled(case: Case, hypothesis: Hypothesis, axis: int, level: float) -> Hypothesis:
+    """The same with the process noise of an axis at `level`, and what comes and goes there grown or shrunk as much."""
+    process_noise = hypothesis.process_noise.copy()
+    by = 10.0 ** (level - process_noise[axis])
+    process_noise[axis] = level
+    effect = noise_on(case, axis)
+    if effect is not None and effect.name in hypothesis.effects:
+        values = hypothesis.effects[effect.name]
+        size = effect.symbol(Role.STRENGTH)
+        hypothesis = hypothesis.with_effects({**hypothesis.effects, effect.name: {**values, size: by * values[size]}})
+    return replace(hypothesis, process_noise=process_noise)
+
+
 def nominal_hypothesis(case: Case, process_noise: float) -> Hypothesis:
     """The plant as stated, with the effects that its file states."""
     return Hypothesis(np.zeros(len(case.free)), case.stated, np.full(len(case.library.bound.model.axes), process_noise))
@@ -88,17 +116,34 @@ def coefficients(case: Case, compiled: CompiledFilter, hypothesis: Hypothesis) -
             for symbol, value in values.items():
                 late = library.effects[name].reads_late
                 p[compiled.place(name, symbol)] = max(value, SHORTEST_LAG_S) if late else value
+    for output in library.bound.model.outputs:
+        noise = hypothesis.reading_noise.get(output)
+        p[compiled.index[switch_of(output)]] = 0.0 if noise is None else 1.0
+        p[compiled.index[time_of(output)]] = 1.0 if noise is None else noise.time_s
     return p
 
 
 def filter_input_under(
-    case: Case, compiled: CompiledFilter, flight: FilteredLog, effects: Mapping[str, Values]
+    case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothesis: Hypothesis
 ) -> FilterInput:
-    """The flight's filter input with what the effects do on the way of the signals."""
-    further = {name: values for name, values in effects.items() if name not in compiled.names}
-    if not further:
-        return flight.filter_input
-    return _sent(case.library, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
+    """The flight's filter input with what the effects do on the way of the signals, and readings as sure as is supposed."""
+    further = {name: values for name, values in hypothesis.effects.items() if name not in compiled.names}
+    found = flight.filter_input
+    if further:
+        found = _sent(case.library, flight, tuple((name, tuple(values.items())) for name, values in further.items()))
+    return found if not hypothesis.reading_noise else _as_sure_as_stated(case.library, found, hypothesis)
+
+
+def _as_sure_as_stated(library: EffectLibrary, filter_input: FilterInput, hypothesis: Hypothesis) -> FilterInput:
+    """The filter input with white errors as stated of outputs that have errors alike from row to row: scatter is theirs then."""
+    r, single = filter_input.r.copy(), filter_input.single.copy()
+    for output in hypothesis.reading_noise:
+        place = library.outputs.index(output)
+        stated = variance_stated(library.bound.plant, output)
+        if 0.0 < stated < single[place]:
+            r[:, place] *= stated / single[place]
+            single[place] = stated
+    return replace(filter_input, r=r, single=single)
 
 
 @lru_cache(maxsize=32)
@@ -119,6 +164,9 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothes
         if state is not None and state.noise is not None:
             place = compiled.states.index(state.name)
             q[place], p0[place] = state.noise(values)
+    for output, noise in hypothesis.reading_noise.items():
+        place = compiled.states.index(state_of(output))
+        q[place], p0[place] = noise.intensity, noise.sd**2
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
     return Noise(q, np.full(max(1, len(compiled.filter.axes)), 10.0**hypothesis.rest_doubt), p0, drive, flight.step_s)
 
@@ -146,7 +194,7 @@ def passes(
     def over(flight: FilteredLog) -> Pass | None:
         here = hypothesis.over(flight)
         p = coefficients(case, compiled, here)
-        filter_input = filter_input_under(case, compiled, flight, here.effects)
+        filter_input = filter_input_under(case, compiled, flight, here)
         x0, noise = start_under(compiled, flight)[0], noise_of(case, compiled, flight, here)
         run = compiled.filter.run(
             filter_input,

@@ -67,12 +67,13 @@ def _likelihood(
     library: EffectLibrary, filter_input: FilterInput, x0: Array, p0: Array, locked: tuple[str, ...]
 ) -> float:
     """How well the plant without effects follows a filter input from a start, with the process noise of before any log was seen."""
-    q, none = np.zeros(len(x0)), np.zeros(len(x0))
+    none = np.zeros(library.plain.filter.states)
+    q = none.copy()
     q[list(library.velocities)] = 10.0 ** (2.0 * decisions.FIRST_PROCESS_NOISE)
     rub = np.full(max(1, len(library.plain.filter.axes)), 10.0**FIRST_REST_DOUBT)
-    noise = Noise(q, rub, p0, none, float(np.median(np.diff(filter_input.t_s))))
+    noise = Noise(q, rub, _padded(p0, none), none, float(np.median(np.diff(filter_input.t_s))))
     run = library.plain.filter.run(
-        filter_input, library.plain.p, x0, noise, range(filter_input.y.shape[1]), locked=locked
+        filter_input, library.plain.p, _padded(x0, none), noise, range(filter_input.y.shape[1]), locked=locked
     )
     return -np.inf if run is None or not np.isfinite(run.log_likelihood) else run.log_likelihood
 
@@ -93,8 +94,13 @@ def _rest(library: EffectLibrary, filter_input: FilterInput, x0: Array) -> Array
         rows=len(t_s),
         untold_s=np.zeros(len(t_s)),
     )
-    compiled, none = library.plain, np.zeros(len(x0))
+    compiled, none = library.plain, np.zeros(library.plain.filter.states)
     axes = compiled.filter.axes
     low_noise = Noise(none, np.zeros(max(1, len(axes))), none, none, step_s)
-    run = compiled.filter.run(blind, compiled.p, x0, low_noise, [-1] * read.shape[1], locked=axes)
-    return x0 if run is None else run.x[-1]
+    run = compiled.filter.run(blind, compiled.p, _padded(x0, none), low_noise, [-1] * read.shape[1], locked=axes)
+    return x0 if run is None else run.x[-1, : len(x0)]
+
+
+def _padded(own: Array, none: Array) -> Array:
+    """The plant's own states with those that a filter has beside them, at rest."""
+    return np.append(own, none[len(own) :])

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 import sim
 from diagnosis.filter.kalman import Filter, build_filter, equations_text, open_filter
 from diagnosis.library.filter_state import with_filter_state
+from diagnosis.library.reading_noise import switch_of, with_reading_noise
 from diagnosis.library.subprocess import NotDone, in_subprocess
 from jobs.thread_map import begin
 from records.errors import BadInput
@@ -110,12 +111,12 @@ class EffectLibrary:
     @property
     def plain(self) -> CompiledFilter:
         """The nominal equations alone, which are the fastest."""
-        return _compiled(self, ())
+        return _compiled(self, self.noises)
 
     def prepare(self) -> None:
-        """Begin to open the variants without noise of their own, the one that takes longest first; who needs one sooner waits for it."""
+        """Begin to open the variants, the one that takes longest first; who needs one sooner waits for it."""
         for effects in (self.whole, (), self.narrow):
-            begin(_compiled, self, effects)
+            begin(_compiled, self, (*effects, *self.noises))
 
     @property
     def narrow(self) -> tuple[str, ...]:
@@ -124,7 +125,7 @@ class EffectLibrary:
 
     @property
     def whole(self) -> tuple[str, ...]:
-        """All effects that any variant carries, but for noise, which is asked for seldom."""
+        """All effects that any variant carries beside noise, which all do."""
         return (*self.narrow, *self.wide_names, *self.bristles)
 
     @cached_property
@@ -142,14 +143,14 @@ class EffectLibrary:
         return name in self.whole or name in self.noises
 
     def compiled(self, effects: Iterable[str]) -> CompiledFilter:
-        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all; each with noise or without.
+        """The fastest that carries all of `effects` that any carries: the plant alone, with `narrow`, with all.
 
         States of effects that are off sleep, and take next to no time.
         """
         wanted = set(effects)
         others = wanted.intersection(self.whole)
         carried = () if not others else self.narrow if others.issubset(self.narrow) else self.whole
-        return _compiled(self, (*carried, *self.noises) if wanted.intersection(self.noises) else carried)
+        return _compiled(self, (*carried, *self.noises))
 
 
 def _filter_states(library: EffectLibrary, names: Iterable[str]) -> Iterator[FilterState]:
@@ -189,7 +190,9 @@ def _compiled(library: EffectLibrary, names: tuple[str, ...]) -> CompiledFilter:
     what = hashlib.sha256(repr(names).encode()).hexdigest()[:16]
     with BUILDING.setdefault(f"{bound.plant.model} {what}", Lock()):
         # The whole library takes longest; for a smaller one another process costs as much as it saves.
-        known = _noted(bound, what, lambda: (_built_in_subprocess if names == library.whole else _build)(bound, names))
+        known = _noted(
+            bound, what, lambda: (_built_in_subprocess if set(library.whole).issubset(names) else _build)(bound, names)
+        )
     p = np.array(known["p"])
     p[: len(bound.p)] = bound.p
     return CompiledFilter(
@@ -230,6 +233,7 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
     switched = [name for name in names if name not in (*behind, *noises)]
     values = dict(zip(map(str, bound.model.parameter_symbols), bound.p.tolist(), strict=True))
     values |= {coefficient(name, p.symbol): p.touched for name in switched for p in effects[name].parameters}
+    values |= {switch_of(output): 0.0 for output in bound.model.outputs}
     values |= {
         coefficient(name, p.symbol): p.reference for name in (*behind, *noises) for p in effects[name].parameters
     }
@@ -239,7 +243,9 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
             model = with_filter_state(model, effects[name])
         brought = model.states[len(bound.model.states) :]
         late = brought[len(brought) - len(behind) :]
-        model = replace(model, states=(*bound.model.states, *late, *brought[: len(brought) - len(behind)]))
+        model = with_reading_noise(model)
+        own, errors = bound.model.states, model.states[len(bound.model.states) + len(brought) :]
+        model = replace(model, states=(*own, *errors, *late, *brought[: len(brought) - len(behind)]))
         for name in noises:
             model = with_filter_state(model, effects[name])
         model = observed(model, bound.model)

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from diagnosis import decisions
 from diagnosis.detect.score_tests import ScoreTest, holding
+from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
 from diagnosis.fit.low_process_noise import with_own_process_noise
-from diagnosis.fit.process_noise import process_noise_of, with_process_noise
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
@@ -70,7 +71,7 @@ def at_its_place(case: Case, job: Job) -> FittedHypothesis | None:
 
 def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
     """The fit with the process noise that then remains."""
-    start = with_jitter(case, process_noise_of(case, fitted.fit), fitted.effects)
+    start = with_jitter(case, coloured_noise_of(case, fitted.fit.hypothesis), fitted.effects)
     for name in fitted.effects:
         start = _polished(case, start, name, STEP_FINELY) if _is_rough(case, name) else start
     for name in holding(case.library, fitted.effects):

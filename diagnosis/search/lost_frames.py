@@ -85,7 +85,7 @@ def _settled(
 
 def _from_stated(case: Case, linearisation: Linearisation, losses: Effect) -> tuple[Case, Fit | None]:
     """The same from the parameters as stated: those of a plant fitted without losses bend to take their part."""
-    start = unfitted(case, linearisation.fit.hypothesis.process_noise)
+    start = unfitted(case, linearisation.fit.hypothesis)
     if start is None:
         return case, None
     stated = linearised(case, start)

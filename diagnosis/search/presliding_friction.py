@@ -56,7 +56,9 @@ def _rule(beside: FittedHypothesis, gain: float, limit: float) -> Decision:
 
 def needed(case: Case, best: FittedHypothesis) -> bool:
     """Whether a hypothesis found where axes yield is worth as much more as that must be, than the same under `case`, where they do not."""
-    kept = {name: v for name, v in best.fit.hypothesis.effects.items() if name in case.stated or name in best.effects}
+    kept = {
+        name: v for name, v in best.fit.hypothesis.effects.items() if name in best.effects or not case.added([name])
+    }
     found = fit(case, with_process_noise(case, best.fit.hypothesis.with_effects(kept)), rounds=4)
     return found is None or best.evidence > evidence(found, case.library.effects) + decisions.YIELDING_GAIN
 

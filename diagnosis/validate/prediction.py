@@ -40,8 +40,8 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
     """
     library, hypothesis = case.library, hypothesis.over(flight)
     compiled = library.compiled(hypothesis.effects)
-    filter_input = filter_input_under(case, compiled, flight, hypothesis.effects)
-    unforeseen_input = filter_input_under(case, compiled, _unforeseen(flight), hypothesis.effects)
+    filter_input = filter_input_under(case, compiled, flight, hypothesis)
+    unforeseen_input = filter_input_under(case, compiled, _unforeseen(flight), hypothesis)
     given, noise = coefficients(case, compiled, hypothesis), noise_of(case, compiled, flight, hypothesis)
     chosen = compiled.filter
     places = np.tile(np.arange(len(filter_input.t_s))[:, None], (1, filter_input.y.shape[1]))

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from diagnosis.filter.filter_input import variance_stated
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.validate.prediction import WINDOW_S, windows
@@ -129,10 +130,13 @@ def _attainable(case: Case, flight: FilteredLog, hypothesis: Hypothesis) -> Arra
     coarse = _steps(case, hypothesis)
     found = np.empty((len(HORIZONS_S), len(model.outputs)))
     for place, (name, expression) in enumerate(model.outputs.items()):
+        errors = hypothesis.reading_noise.get(name)
         r = float(flight.filter_input.single[library.outputs.index(name)])
+        r = r if errors is None else variance_stated(library.bound.plant, name)
         r = max(r if np.isfinite(r) else 0.0, coarse.get(name, 0.0) ** 2 / 12.0, 1e-30)
         q = noise.get(str(expression), 0.0)
         R = r * flight.step_s
+        r += 0.0 if errors is None else errors.sd**2
         P_x, P_xv, P_v = np.sqrt(2.0) * q**0.25 * R**0.75, np.sqrt(q * R), np.sqrt(2.0) * q**0.75 * R**0.25
         found[:, place] = r + P_x + 2.0 * P_xv * tau + P_v * tau**2 + q * tau**3 / 3.0
     return found

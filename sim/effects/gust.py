@@ -32,7 +32,7 @@ def effects(model: Model) -> Iterator[Effect]:
             depends="torque(t)",
             parameters=(
                 EffectParameter("sigma", entry.torque_unit, 0.0, size, 0.05 * size, 0.0, role=Role.STRENGTH),
-                EffectParameter("T", "s", 0.1, 30.0, 0.5, role=Role.MEMORY),
+                EffectParameter("T", "s", 0.03, 30.0, 0.5, role=Role.MEMORY),
             ),
             equation=f"+ sigma g, g of {SINES} sines with the spectrum 1 / (1 + omega^2 T^2)",
             story="The air in the room is restless: it pushes the axis to and fro, never twice alike.",

@@ -36,12 +36,13 @@ def gain_of_own_numbers(case: Case) -> float:
 
 
 def test_two_parts_of_one_flight_agree_and_flights_of_two_plants_do_not(library: EffectLibrary, fly: Fly) -> None:
-    # About 25 numbers of its own gain a log half a nat each by chance; a spring that only one of two plants has gains hundreds.
+    # About 25 numbers of its own gain a log half a nat each by chance; a spring that only one of two plants has gains several times
+    # that, whatever part of it noise with a memory takes.
     flight = fly(41)
     agreeing = make_case(library, [part(flight, slice(0, 1500)), part(flight, slice(1500, 3000))])
     assert gain_of_own_numbers(agreeing) < 30.0
     differing = make_case(library, [part(flight, slice(0, 1500)), part(fly(42, SPRING), slice(0, 1500))])
-    assert gain_of_own_numbers(differing) > 100.0
+    assert gain_of_own_numbers(differing) > 60.0
     assert contradiction(make_case(library, [flight]), nominal_fit(agreeing)) is None
 
 

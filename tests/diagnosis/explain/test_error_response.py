@@ -83,6 +83,6 @@ def delayed(plant: BoundPlant, fly: Fly, effect: str, tau_s: float) -> Linearisa
     as_stated = dict.fromkeys((str(symbol) for symbol in plant.model.parameter_symbols), 1.0)
     logs = [fly(seed, {effect: {"tau": tau_s}}, factors=as_stated, jumps_rad=0.05, air=False) for seed in (71, 72)]
     case = make_case(effect_library(plant), logs)
-    stated = unfitted(case, nominal_fit(case).hypothesis.process_noise)
+    stated = unfitted(case, nominal_fit(case).hypothesis)
     assert stated is not None
     return linearised(case, stated)

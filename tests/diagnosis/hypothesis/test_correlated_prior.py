@@ -7,6 +7,7 @@ import pytest
 
 from diagnosis.decide.contradiction import contradiction
 from diagnosis.explain.improved import improved_plant
+from diagnosis.fit.evidence import as_fitted
 from diagnosis.fit.gauss_newton import log_prior, prior_chi_squared
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
@@ -75,7 +76,7 @@ def test_what_the_log_cannot_show_follows_what_it_shows(case: Case) -> None:
     theta = found.hypothesis.theta
     assert abs(theta[place(case, "J_E")]) > 0.1
     assert theta[place(case, "J_A")] == pytest.approx(HANG * theta[place(case, "J_E")], rel=1e-3)
-    improved = improved_plant(case, found)
+    improved = improved_plant(case, as_fitted(case, found))
     deviation = improved.parameters["J_A"].sds[0] / case.library.bound.plant.parameters["J_A"].sds[0]
     j_E = improved.parameters["J_E"].sds[0] / case.library.bound.plant.parameters["J_E"].sds[0]
     assert deviation**2 == pytest.approx(1.0 - HANG**2 * (1.0 - j_E**2), rel=1e-3)

@@ -1,0 +1,174 @@
+"""Noise with a memory, by maximum likelihood: a torque that comes and goes on an axis, errors of readings that are alike from row to row.
+
+Both are Ornstein-Uhlenbeck processes of a standard deviation and a correlation time, states of every filter (sim/effects/gust.py eq (2),
+library/reading_noise.py eq (1)). Every hypothesis has those that the plant alone, fitted, shows.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.fit.evidence import COLOUR_COST
+from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.process_noise import FIRST_STEP, with_process_noise
+from diagnosis.fit.profile_likelihood import Point, along, likelihoods
+from diagnosis.hypothesis.case import Case, beginning_of
+from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
+from diagnosis.library.reading_noise import ReadingNoise
+from sim.effect import Effect, Role
+
+READING_SIZES, READING_ROWS = (0.5, 2.0), (1.5, 6.0, 25.0, 100.0)  # standard deviations of one reading; rows
+PUSH_SHARES, PUSH_TIMES_S = (0.001, 0.006, 0.03), (0.06, 0.25, 1.0, 4.0)  # shares of an axis' usual torque
+PUSH_LOWERS_NOISE = 0.7  # decades by which white noise is lower where noise with a memory takes its place
+READING_LOWERS_NOISE = (0.0, 1.5)  # decades: white noise may have taken its place
+LEAST_SHARE = 0.02  # of the least start: a smaller one is none
+LONGEST_READING_S = 5.0
+COLOUR_STEP = 0.2  # decades
+REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
+
+Numbers = tuple[float, float]  # standard deviation, correlation time in s
+
+
+@dataclass(frozen=True, eq=False)
+class Colour:
+    """One noise with a memory: its numbers in a hypothesis, a hypothesis with others of them, or without; where its search begins, below
+    which size there is none, the shortest and the longest time."""
+
+    of: Callable[[Hypothesis], Numbers | None]
+    put: Callable[[Hypothesis, Numbers], Hypothesis]
+    without: Callable[[Hypothesis], Hypothesis]
+    begun: Callable[[Hypothesis], Sequence[Hypothesis]]
+    starts: tuple[Numbers, ...]
+    least: float
+    times_s: tuple[float, float]
+
+
+def with_colours(case: Case, found: Fit) -> Hypothesis:
+    """What was fitted with all noise with a memory that the logs tell of: each must gain what its two numbers cost in evidence."""
+    hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
+    for colour in _colours(case):
+        starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
+        without, *values = likelihoods(part, [hypothesis, *starts])
+        if max(values) <= without - COLOUR_COST:
+            continue
+        start, there = _likeliest(case, starts[int(np.argmax(values))], None, colour)
+        if colour.of(start) is not None and there > value + COLOUR_COST:
+            hypothesis, value = start, there
+    return hypothesis
+
+
+def coloured_noise_of(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
+    """The hypothesis with the likeliest numbers of all noise that it has, white and with a memory."""
+    hypothesis = with_process_noise(case, hypothesis, first)
+    chosen = [colour for colour in _colours(case) if colour.of(hypothesis) is not None]
+    value = likelihood_of(case, hypothesis) if chosen else 0.0
+    for colour in chosen:
+        hypothesis, value = _likeliest(case, hypothesis, value, colour)
+    return hypothesis
+
+
+def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
+    """What is known of a gust's size and time (one standard deviation of each), by how the likelihood bends over a factor of REACH to all
+    sides, with each known to a factor of e before."""
+    names = gust.symbol(Role.STRENGTH), gust.symbol(Role.MEMORY)
+    values = hypothesis.effects[gust.name]
+
+    def at(by_size: float, by_time: float) -> Hypothesis:
+        moved = {names[0]: by_size * values[names[0]], names[1]: by_time * values[names[1]]}
+        return hypothesis.with_effects({**hypothesis.effects, gust.name: moved})
+
+    folds = (1.0, REACH, 1.0 / REACH)
+    v = np.reshape(likelihoods(case, [at(by_size, by_time) for by_size in folds for by_time in folds]), (3, 3))
+    bends = v[1, 0] + v[2, 0] - 2.0 * v[0, 0], v[0, 1] + v[0, 2] - 2.0 * v[0, 0]
+    both = 0.25 * (v[1, 1] + v[2, 2] - v[1, 2] - v[2, 1])
+    curvature = -np.nan_to_num([[bends[0], both], [both, bends[1]]]) / np.log(REACH) ** 2
+    bent, vectors = np.linalg.eigh(curvature)
+    relative = np.sqrt(vectors**2 @ (1.0 / (1.0 + np.maximum(bent, 0.0))))
+    return {name: float(share * values[name]) for name, share in zip(names, relative, strict=True)}
+
+
+def _likeliest(case: Case, hypothesis: Hypothesis, value: float | None, colour: Colour) -> tuple[Hypothesis, float]:
+    """The likeliest size, then time; none where that is too small to tell. `value` is the log likelihood as it is, if that is known."""
+    now = _numbers(colour, hypothesis)
+    value = likelihood_of(case, hypothesis) if value is None else value
+
+    def sized(hypothesis: Hypothesis, x: float) -> Hypothesis:
+        return colour.put(hypothesis, (float(10.0**x), _numbers(colour, hypothesis)[1]))
+
+    def timed(hypothesis: Hypothesis, x: float) -> Hypothesis:
+        return colour.put(hypothesis, (_numbers(colour, hypothesis)[0], float(np.clip(10.0**x, *colour.times_s))))
+
+    hypothesis, value = along(case, Point(float(np.log10(now[0])), hypothesis, value), sized, COLOUR_STEP)
+    hypothesis, value = along(case, Point(float(np.log10(now[1])), hypothesis, value), timed, COLOUR_STEP)
+    if _numbers(colour, hypothesis)[0] > colour.least:
+        return hypothesis, value
+    without = colour.without(hypothesis)
+    return without, likelihoods(case, [without])[0]
+
+
+def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:
+    numbers = colour.of(hypothesis)
+    assert numbers is not None
+    return numbers
+
+
+def _colours(case: Case) -> Iterator[Colour]:
+    """All that the rig may have: on axes that are not held in all logs, in outputs that any log has."""
+    library = case.library
+    held = set.intersection(*(set(flight.locked) for flight in case.flights))
+    for index, axis in enumerate(library.bound.model.axes):
+        effect = noise_on(case, index)
+        if effect is not None and axis.name not in held:
+            yield _push(effect, library.bound.model.places.axes[axis.name].torque_size, index)
+    step_s = min(flight.step_s for flight in case.flights)
+    for name in library.bound.model.outputs:
+        place = library.outputs.index(name)
+        if any(np.isfinite(flight.filter_input.y[:, place]).any() for flight in case.flights):
+            unit = float(np.sqrt(min(flight.filter_input.single[place] for flight in case.flights)))
+            yield _misreading(name, unit, step_s)
+
+
+def _push(effect: Effect, usual: float, axis: int) -> Colour:
+    size, time = effect.symbol(Role.STRENGTH), effect.symbol(Role.MEMORY)
+    bounds = effect.parameter[time]
+
+    def of(hypothesis: Hypothesis) -> Numbers | None:
+        values = hypothesis.effects.get(effect.name)
+        return None if values is None else (values[size], values[time])
+
+    def put(hypothesis: Hypothesis, numbers: Numbers) -> Hypothesis:
+        return hypothesis.with_effects({**hypothesis.effects, effect.name: {size: numbers[0], time: numbers[1]}})
+
+    def without(hypothesis: Hypothesis) -> Hypothesis:
+        return hypothesis.with_effects({n: v for n, v in hypothesis.effects.items() if n != effect.name})
+
+    def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
+        process_noise = hypothesis.process_noise.copy()
+        process_noise[axis] -= PUSH_LOWERS_NOISE
+        return [replace(hypothesis, process_noise=process_noise)]
+
+    starts = tuple((share * usual, time_s) for share in PUSH_SHARES for time_s in PUSH_TIMES_S)
+    return Colour(of, put, without, begun, starts, LEAST_SHARE * PUSH_SHARES[0] * usual, (bounds.lower, bounds.upper))
+
+
+def _misreading(output: str, unit: float, step_s: float) -> Colour:
+    def of(hypothesis: Hypothesis) -> Numbers | None:
+        noise = hypothesis.reading_noise.get(output)
+        return None if noise is None else (noise.sd, noise.time_s)
+
+    def put(hypothesis: Hypothesis, numbers: Numbers) -> Hypothesis:
+        return replace(hypothesis, reading_noise={**hypothesis.reading_noise, output: ReadingNoise(*numbers)})
+
+    def without(hypothesis: Hypothesis) -> Hypothesis:
+        return replace(
+            hypothesis,
+            reading_noise={name: noise for name, noise in hypothesis.reading_noise.items() if name != output},
+        )
+
+    def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
+        return [replace(hypothesis, process_noise=hypothesis.process_noise - less) for less in READING_LOWERS_NOISE]
+
+    starts = tuple((share * unit, rows * step_s) for share in READING_SIZES for rows in READING_ROWS)
+    least = LEAST_SHARE * READING_SIZES[0] * unit
+    return Colour(of, put, without, begun, starts, least, (step_s, LONGEST_READING_S))

@@ -1,0 +1,58 @@
+"""Errors of readings that are alike from row to row: noise of every hypothesis, and no gap."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from diagnosis.diagnose import Material, diagnose
+from diagnosis.fit.coloured_noise import coloured_noise_of
+from diagnosis.fit.gauss_newton import likelihood_of
+from diagnosis.fit.nominal import nominal_fit
+from diagnosis.library.reading_noise import ReadingNoise
+from records.log import RunLog
+from tests.diagnosis.arm import PERIOD_S, arm, arm_case, arm_log
+
+STEP_RAD = 1.150486e-3
+SD_RAD, TIME_S = 2.0 * STEP_RAD, 0.06  # truth: two counts, forgotten in six rows
+
+
+def misread(log: RunLog, seed: int) -> RunLog:
+    """The log with an Ornstein-Uhlenbeck process on its readings, rounded to counts again."""
+    keep = np.exp(-PERIOD_S / TIME_S)
+    white = np.random.default_rng(seed).standard_normal(len(log.t_s)) * SD_RAD * np.sqrt(1.0 - keep**2)
+    error = lfilter([1.0], [1.0, -keep], white)
+    return replace(log, y=np.round((log.y + error[:, None]) / STEP_RAD) * STEP_RAD)
+
+
+@pytest.fixture(scope="module")
+def log() -> RunLog:
+    return misread(arm_log(seed=74), 75)
+
+
+def test_they_are_found_with_size_and_time(log: RunLog) -> None:
+    # 2000 rows hold 330 times six rows: 4 % of the size, some 15 % of the time; rounding beside it, hence 15 % and 40 %.
+    case = arm_case(log)
+    noise = nominal_fit(case).hypothesis.reading_noise["theta_rad"]
+    assert noise.sd == pytest.approx(SD_RAD, rel=0.15)
+    assert noise.time_s == pytest.approx(TIME_S, rel=0.4)
+
+
+def test_an_encoder_alone_has_none() -> None:
+    assert nominal_fit(arm_case(arm_log(seed=74))).hypothesis.reading_noise == {}
+
+
+def test_no_other_numbers_are_likelier(log: RunLog) -> None:
+    case = arm_case(log)
+    found = coloured_noise_of(case, nominal_fit(case).hypothesis)
+    best, own = likelihood_of(case, found), found.reading_noise["theta_rad"]
+    for by_size, by_time in ((1.3, 1.0), (1.0 / 1.3, 1.0), (1.0, 1.6), (1.0, 1.0 / 1.6)):
+        moved = ReadingNoise(by_size * own.sd, by_time * own.time_s)
+        assert likelihood_of(case, replace(found, reading_noise={"theta_rad": moved})) < best
+
+
+def test_they_are_no_gap(log: RunLog) -> None:
+    found = diagnose(arm(), Material([log], [], [], [None])).diagnosis
+    assert found.verdict == "no gap"
+    assert any(note.kind == "coloured_readings" for note in found.note_records)
