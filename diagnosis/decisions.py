@@ -287,6 +287,32 @@ ASTRAY_LOSSES = Limit(
     1.0, "mean square standard deviations", "beyond it losses are sought from the stated parameters too", "seed 900011"
 )
 LEAST_LOSS_GAIN = Limit(10.0, "nats", "no frame counts as lost below", DEVELOPMENT)
+PUSH_SHARES = Limits(
+    (0.001, 0.006, 0.03),
+    "shares of the axis' usual torque",
+    "sizes of a torque that comes and goes that are begun from",
+    "third rig: 0.002 to 0.025",
+)
+PUSH_TIMES_S = Limits(
+    (0.06, 0.25, 1.0, 4.0), "s", "its correlation times that are begun from", "gusts of 0.3 to 3 s; third rig"
+)
+PUSH_LOWERS_NOISE = Limit(
+    0.7, "decades", "white noise is lower where noise with a memory takes its place", "gusts of 0.3 to 3 s"
+)
+READING_SIZES = Limits(
+    (0.5, 2.0),
+    "standard deviations of a reading",
+    "sizes of errors alike from row to row that are begun from",
+    "third rig: 0.1 to 0.5 counts",
+)
+READING_ROWS = Limits(
+    (1.5, 6.0, 25.0, 100.0), "rows", "their correlation times that are begun from: each four times the last"
+)
+READING_LOWERS_NOISE = Limits(
+    (0.0, 1.5), "decades", "white noise of the axes is lower there: it may have taken their place"
+)
+LONGEST_READING_S = Limit(5.0, "s", "errors alike for longer are an offset")
+NO_NOISE_SHARE = Limit(0.02, "shares of the least start", "a smaller noise with a memory is none")
 RETUNE_WIDER = Limit(8.0, "factor", "by which the spreads of what had moved are taken wider")
 RETUNE_FAR = Limit(4.0, "standard deviations", "a parameter that went further is told as beyond its spread")
 RETUNE_PULLED = Limit(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.process_noise import FIRST_STEP, with_process_noise
@@ -18,12 +19,6 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
 from sim.effect import Effect, Role
 
-READING_SIZES, READING_ROWS = (0.5, 2.0), (1.5, 6.0, 25.0, 100.0)  # standard deviations of one reading; rows
-PUSH_SHARES, PUSH_TIMES_S = (0.001, 0.006, 0.03), (0.06, 0.25, 1.0, 4.0)  # shares of an axis' usual torque
-PUSH_LOWERS_NOISE = 0.7  # decades by which white noise is lower where noise with a memory takes its place
-READING_LOWERS_NOISE = (0.0, 1.5)  # decades: white noise may have taken its place
-LEAST_SHARE = 0.02  # of the least start: a smaller one is none
-LONGEST_READING_S = 5.0
 COLOUR_STEP = 0.2  # decades
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
@@ -145,11 +140,19 @@ def _push(effect: Effect, usual: float, axis: int) -> Colour:
 
     def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
         process_noise = hypothesis.process_noise.copy()
-        process_noise[axis] -= PUSH_LOWERS_NOISE
+        process_noise[axis] -= decisions.PUSH_LOWERS_NOISE
         return [replace(hypothesis, process_noise=process_noise)]
 
-    starts = tuple((share * usual, time_s) for share in PUSH_SHARES for time_s in PUSH_TIMES_S)
-    return Colour(of, put, without, begun, starts, LEAST_SHARE * PUSH_SHARES[0] * usual, (bounds.lower, bounds.upper))
+    starts = tuple((share * usual, time_s) for share in decisions.PUSH_SHARES for time_s in decisions.PUSH_TIMES_S)
+    return Colour(
+        of,
+        put,
+        without,
+        begun,
+        starts,
+        decisions.NO_NOISE_SHARE * decisions.PUSH_SHARES[0] * usual,
+        (bounds.lower, bounds.upper),
+    )
 
 
 def _misreading(output: str, unit: float, step_s: float) -> Colour:
@@ -167,8 +170,13 @@ def _misreading(output: str, unit: float, step_s: float) -> Colour:
         )
 
     def begun(hypothesis: Hypothesis) -> Sequence[Hypothesis]:
-        return [replace(hypothesis, process_noise=hypothesis.process_noise - less) for less in READING_LOWERS_NOISE]
+        return [
+            replace(hypothesis, process_noise=hypothesis.process_noise - less)
+            for less in decisions.READING_LOWERS_NOISE
+        ]
 
-    starts = tuple((share * unit, rows * step_s) for share in READING_SIZES for rows in READING_ROWS)
-    least = LEAST_SHARE * READING_SIZES[0] * unit
-    return Colour(of, put, without, begun, starts, least, (step_s, LONGEST_READING_S))
+    starts = tuple(
+        (share * unit, rows * step_s) for share in decisions.READING_SIZES for rows in decisions.READING_ROWS
+    )
+    least = decisions.NO_NOISE_SHARE * decisions.READING_SIZES[0] * unit
+    return Colour(of, put, without, begun, starts, least, (step_s, decisions.LONGEST_READING_S))
