@@ -1,14 +1,13 @@
-"""Signals as a measurement tool recorded them, each under its own name, unit and clock, as one run log."""
+"""Columns of a plant, each on the clock on which it was recorded, as one run log."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.log import LogColumns, RunLog
-from records.text.units import dimension, unit_of
 
 Array = NDArray[np.float64]
 
@@ -17,19 +16,29 @@ SAME_INSTANT_S = 1e-9  # two clocks of one recording that differ by less show on
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """One recorded signal: values (n,) at t_s (n,), and its unit as the file states it, empty where it states none."""
+    """One column as recorded: values (n,) in SI units at t_s (n,); `faults` tells by row what stood there in place of a number.
 
-    t_s: Array
+    A channel without times, t_s None, is one constant.
+    """
+
+    t_s: Array | None
     values: Array
-    unit: str = ""
+    faults: Mapping[int, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which channel gives a column, and the factor from the channel's unit to the column's (None: the unit is the column's)."""
+class Span:
+    """The part of a recording that is asked for, in its own seconds; both ends are in it."""
 
-    channel: str
-    factor: float | None = None
+    from_s: float = -np.inf
+    until_s: float = np.inf
+
+    def holds(self, t_s: Array) -> NDArray[np.bool_]:
+        """Which times (n,) are in it; one that is no number counts as the last before it, so that it is not lost silently."""
+        if self == Span():
+            return np.ones(t_s.shape, dtype=bool)
+        times = _last_known(t_s)
+        return np.asarray((times >= self.from_s) & (times <= self.until_s))
 
 
 def log_of_channels(
@@ -37,102 +46,130 @@ def log_of_channels(
     columns: LogColumns,
     where: str,
     *,
-    choices: Mapping[str, Choice] | None = None,
+    span: Span | None = None,
     loop: str | None = None,
-    table_digest: str | None = None,
 ) -> RunLog:
-    """The run log of a plant with `columns`; a column is the channel of its own name unless `choices` names another.
+    """The run log of a plant with `columns` from the channels of these names, within `span` as if the rest had not been recorded.
 
     A row stands wherever an output was measured; an output without a sample then is NaN, inputs and all else hold their last
-    value. `loop` None: closed where a reference was recorded. Raises BadInput for a missing channel, a unit that is not the
-    column's, a chosen column that the plant does not have, and a recording without two samples.
+    value. `loop` None: closed where a reference was recorded. Raises BadInput for a fault, an input without a number, times that do
+    not increase, and a recording without two samples, all within the span.
     """
-    chosen = dict(choices or {})
-    known = (*columns.inputs, *columns.outputs, *columns.optional)
-    for name in chosen:
-        if name not in known:
-            raise BadInput(f"column {name!r}", where, "an unknown column", f"one of {', '.join(known)}", "rename it")
-    found = {name: _column(channels, name, chosen.get(name), where) for name in (*columns.inputs, *columns.outputs)}
-    wanted = [name for name in columns.optional if name in chosen or name in channels]
-    extra = {name: _column(channels, name, chosen.get(name), where) for name in wanted}
-    t_s = _instants([found[name].t_s for name in columns.outputs], where)
+    part = span or Span()
+    outputs = {name: _cut(channels[name], part) for name in columns.outputs}
+    clocked = {name: _in_order(channel, name, where) for name, channel in outputs.items() if channel.t_s is not None}
+    t_s = _instants([t for t, _ in clocked.values()], where, part, channels)
+    extra = [name for name in columns.optional if name in channels]
     return RunLog(
         columns=columns,
-        sample_period_s=float(f"{np.median(np.diff(t_s)):.9g}"),
+        sample_period_s=float(f"{min(float(np.median(np.diff(t))) for t, _ in clocked.values() if t.size > 1):.9g}"),
         loop=loop or ("closed" if any("_ref" in name for name in extra) else "open"),
         t_s=t_s,
-        u=np.column_stack([_finite(_held(found[name], t_s, name, where), name, where) for name in columns.inputs]),
-        y=np.column_stack([_sampled(found[name], t_s) for name in columns.outputs]),
-        extra={name: _held(channel, t_s, name, where) for name, channel in extra.items()},
-        table_digest=table_digest,
+        u=np.column_stack(
+            [_finite(_held(channels[name], t_s, name, where), t_s, name, where) for name in columns.inputs]
+        ),
+        y=np.column_stack([_sampled(outputs[name], t_s) for name in columns.outputs]),
+        extra={name: _numbers(_held(channels[name], t_s, name, where)) for name in extra},
     )
 
 
-def _column(channels: Mapping[str, Channel], name: str, choice: Choice | None, where: str) -> Channel:
-    choice = choice or Choice(name)
-    if choice.channel not in channels:
-        there = ", ".join(channels) or "no channel at all"
-        raise BadInput(
-            f"channel {choice.channel!r}",
-            where,
-            there if len(there) <= 300 else f"{there[:297]}...",
-            f"a channel for the column {name}",
-            f"name it with --column {name}=CHANNEL, and its factor to SI units with --column {name}=CHANNEL*FACTOR",
-        )
-    channel = channels[choice.channel]
-    if choice.factor is None:
-        _check_unit(channel.unit, name, choice.channel, where)
-    return Channel(channel.t_s, channel.values * (1.0 if choice.factor is None else choice.factor))
+def _last_known(t_s: Array) -> Array:
+    """The times with the last finite one in place of what is none."""
+    rows = np.maximum.accumulate(np.where(np.isfinite(t_s), np.arange(t_s.size), 0))
+    known: Array = t_s[rows]
+    return known
 
 
-def _check_unit(unit: str, name: str, channel: str, where: str) -> None:
-    """A stated unit must be the one that the column's name bears."""
-    expected = unit_of(name) or "1"
-    try:
-        fits = not unit.strip() or dimension(unit) == dimension(expected)
-    except ValueError:
-        fits = False
-    if not fits:
-        remedy = f"give the factor to {expected}: --column {name}={channel}*FACTOR (degrees: 0.017453292519943295)"
-        raise BadInput(f"unit of channel {channel!r}", where, repr(unit), expected, remedy)
+def _cut(channel: Channel, span: Span) -> Channel:
+    """The samples within the span, their faults with them."""
+    if channel.t_s is None:
+        return channel
+    inside = span.holds(channel.t_s)
+    rows = np.flatnonzero(inside)
+    places = {int(row): place for place, row in enumerate(rows)} if channel.faults else {}
+    faults = {places[row]: told for row, told in channel.faults.items() if row in places}
+    return Channel(channel.t_s[inside], channel.values[inside], faults)
 
 
-def _instants(clocks: list[Array], where: str) -> Array:
+def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
+    """Times and values of an output; raises BadInput for a fault, and for times that do not increase, with the first that does not."""
+    assert channel.t_s is not None
+    _without_faults(channel.faults, channel.t_s, name, where)
+    t_s = channel.t_s
+    late = np.flatnonzero(~(np.diff(t_s) > 0.0))
+    if late.size or not np.all(np.isfinite(t_s)):
+        row = int(late[0]) if late.size else 0
+        got = f"{t_s[row + 1] if t_s.size > 1 else t_s[0]:.9g} s in row {row + 2} after {t_s[row]:.9g} s"
+        remedy = "drop doubled rows; of several recordings in one file give each as its own"
+        raise BadInput(f"times of {name}", where, got, "times that increase", remedy)
+    return t_s, channel.values
+
+
+def _instants(clocks: list[Array], where: str, span: Span, channels: Mapping[str, Channel]) -> Array:
     """All times at which any output was sampled, ascending, instants that are the same taken once."""
-    for clock in clocks:
-        if not (np.all(np.isfinite(clock)) and np.all(np.diff(clock) > 0.0)):
-            got = "times that stand still, go back or are no numbers"
-            raise BadInput("times of an output", where, got, "times that increase", "sort the samples, drop doubles")
-    times = np.sort(np.concatenate(clocks))
+    times = np.sort(np.concatenate(clocks)) if clocks else np.zeros(0)
     t_s: Array = times[np.concatenate([[True], np.diff(times) > SAME_INSTANT_S])] if times.size else times
-    if t_s.size < 2:
+    if max((clock.size for clock in clocks), default=0) < 2:
+        if span != Span():
+            whole = [channel.t_s for channel in channels.values() if channel.t_s is not None and channel.t_s.size]
+            ends = (
+                f", the file has {np.nanmin([t.min() for t in whole]):g} s to {np.nanmax([t.max() for t in whole]):g} s"
+                if whole
+                else ""
+            )
+            got = f"{t_s.size} rows"
+            raise BadInput("part of a record", "--from, --until", got, f"two or more{ends}", "choose other times")
         raise BadInput("outputs", where, f"{t_s.size} samples", "at least 2", "record for longer")
     return t_s
 
 
 def _sampled(channel: Channel, t_s: Array) -> Array:
     """The channel's samples on the rows of their instants, NaN on the others."""
+    if channel.t_s is None:
+        return np.full(t_s.shape, float(channel.values))
     values = np.full(t_s.shape, np.nan)
-    values[np.searchsorted(t_s, channel.t_s - SAME_INSTANT_S)] = np.where(
-        np.isfinite(channel.values), channel.values, np.nan
-    )
+    values[np.searchsorted(t_s, channel.t_s - SAME_INSTANT_S)] = _numbers(channel.values)
     return values
+
+
+def _numbers(values: Array) -> Array:
+    """Values with NaN in place of what is infinite."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def _held(channel: Channel, t_s: Array, name: str, where: str) -> Array:
-    """The channel's last value at each row; raises BadInput when it begins after the first row."""
-    order = np.argsort(channel.t_s, kind="stable")
+    """The channel's last value at each row; raises BadInput when it begins after the first row, and for a fault among those used."""
+    if channel.t_s is None:
+        return np.full(t_s.shape, float(channel.values))
+    timed = np.flatnonzero(np.isfinite(channel.t_s))
+    order = timed[np.argsort(channel.t_s[timed], kind="stable")]
     index = np.searchsorted(channel.t_s[order], t_s + SAME_INSTANT_S, side="right") - 1
     if index[0] < 0:
-        begins = f"its first sample at {np.min(channel.t_s, initial=np.inf):g} s"
-        raise BadInput(f"column {name!r}", where, begins, f"one by {t_s[0]:g} s", "cut the recording's beginning")
-    values: Array = channel.values[order][index]
+        first_s = channel.t_s[order][0] if order.size else np.inf
+        remedy = f"cut the recording's beginning: --from {first_s:.9g}"
+        got = f"its first sample at {first_s:.9g} s"
+        raise BadInput(f"column {name!r}", where, got, f"one by {t_s[0]:.9g} s", remedy)
+    rows = order[index]
+    if channel.faults:
+        used = set(rows.tolist())
+        _without_faults({row: told for row, told in channel.faults.items() if row in used}, channel.t_s, name, where)
+    values: Array = channel.values[rows]
     return values
 
 
-def _finite(values: Array, name: str, where: str) -> Array:
+def _without_faults(faults: Mapping[int, str], t_s: Array, name: str, where: str) -> None:
+    if faults:
+        row = min(faults)
+        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+        place, _, got = faults[row].partition(": ")
+        remedy = f"mend it, or cut it off with --until or --from: it is at {_last_known(t_s)[row]:.9g} s"
+        raise BadInput(f"column {name!r}", f"{where}, {place}", f"{got}{more}", "a number", remedy)
+
+
+def _finite(values: Array, t_s: Array, name: str, where: str) -> Array:
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
-        got = f"{values[bad[0]]:g} at sample {bad[0]}"
-        raise BadInput(f"column {name!r}", where, got, "a finite number", "cut the recording to where inputs are known")
+        got = f"{values[bad[0]]:g} at {t_s[bad[0]]:.9g} s, in {bad.size} of {values.size} rows"
+        remedy = "cut the recording with --from or --until to where inputs are known"
+        raise BadInput(f"column {name!r}", where, got, "a finite number", remedy)
     return values

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from recordings.files import datasets_folder
-from recordings.library import import_record
+from recordings.datasets.files import datasets_folder
+from recordings.datasets.library import import_record
 from records.errors import BadInput
 from records.log import RunLog
 

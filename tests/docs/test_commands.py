@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from recordings.files import datasets_folder
+from recordings.datasets.files import datasets_folder
 from tests.docs.commands import PAGES, calls, checkout, commands, fenced, mentions
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
@@ -84,7 +84,7 @@ def shell(command: str, folder: Path) -> None:
 @pytest.mark.parametrize("page", TRIED)
 def test_the_commands_of_a_page_work_in_their_order(page: str, built: Path, tmp_path: Path) -> None:
     if page == "docs/real-data.md" and not (datasets_folder() / "emps").is_dir():
-        pytest.skip(f"no recordings in {datasets_folder()}: see recordings/registry.toml")
+        pytest.skip(f"no recordings in {datasets_folder()}: see recordings/datasets/registry.toml")
     folder = checkout(tmp_path / "checkout")
     shutil.copytree(built, folder / "build")
     for command in commands(page):

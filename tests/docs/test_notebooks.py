@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from recordings.files import datasets_folder
+from recordings.datasets.files import datasets_folder
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 
@@ -34,7 +34,7 @@ def test_a_notebook_runs_to_its_end_and_draws(path: Path, monkeypatch: pytest.Mo
     nbclient = pytest.importorskip("nbclient", reason="no nbclient: pip install --editable '.[test]'")
     pytest.importorskip("ipykernel", reason="no ipykernel: pip install --editable '.[test]'")
     if "quanser" in path.stem and not (datasets_folder() / "quanser_aero").is_dir():
-        pytest.skip(f"no recordings of the Quanser Aero in {datasets_folder()}: see recordings/registry.toml")
+        pytest.skip(f"no recordings of the Quanser Aero in {datasets_folder()}: see recordings/datasets/registry.toml")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
     monkeypatch.setenv("TWINLAW_CACHE", str(CACHE_DIR))
     monkeypatch.setenv("TWINLAW_DATASETS", str(datasets_folder()))

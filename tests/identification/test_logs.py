@@ -12,8 +12,8 @@ from identification.search.methods import Search
 from identification.stages.best_fit import apart_sd, best_fit
 from identification.stages.estimate import interval_factor
 from identification.stages.logs import identify_logs
-from recordings.files import datasets_folder
-from recordings.library import import_record
+from recordings.datasets.files import datasets_folder
+from recordings.datasets.library import import_record
 from records.correlation import Correlation
 from records.errors import BadInput
 from records.log import RunLog

@@ -3,7 +3,7 @@
 import pytest
 
 from logcheck.integrity import examine
-from recordings.library import import_record, records
+from recordings.datasets.library import import_record, records
 from tests.plants import bound
 from tests.recorded import FIRST_RECORD, dataset_folder
 

@@ -7,7 +7,7 @@ import argparse
 import json
 from pathlib import Path
 
-from recordings.mdf4_export import mdf4_bytes
+from recordings.formats.mdf4_export import mdf4_bytes
 from records.files import write_atomic
 from twinlaw.cli import options
 from twinlaw.workflows.reading import load_known_log

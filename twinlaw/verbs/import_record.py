@@ -1,43 +1,69 @@
-"""Import a record of a real rig's dataset, a MATLAB .mat or an MDF4 .mf4 file as a run log: SI units, true times, known limits told.
+"""Import a log of another tool, or a record of a published data set, as a run log: SI units, true times, known limits told.
 
-`twinlaw import quanser_aero model_verification --out mv.csv` writes mv.csv and mv.toml. A dataset without a record lists its records.
-`twinlaw import FILE.mat --plant ce150 --column psi_rad=Pitch*0.01745329252 --out run.csv` takes vectors or channels that are named
-like the columns of a run log (t_s, u_M_V, ...), or that --column names, with a factor where their unit is another. --from and --until
-keep a part, in the record's own time, where not all of it is of the plant: motors off, a wall. --every 5 keeps one row in five, for a
-record that is sampled much faster than the plant moves; an input that changed between two kept rows is then late by up to four rows.
+`twinlaw import FILE --plant ce150 --column psi_rad='Pitch [deg]' --out run.csv` takes tables of text, MATLAB, MDF, PX4, Parquet and ROS
+files. A column is the signal of its own name, or what --column says: arithmetic over the file's names, as in psi_rad="elevation_deg*pi/180"
+or u_M_V="ScopeData.signals(1).values(:,2)", for the times t_s too; known units convert by themselves. --mapping FILE.toml uses what is
+kept there and keeps what is said here for the next log. What was found unasked is told. `twinlaw import quanser_aero model_verification
+--out mv.csv` imports a record of a data set; a data set without a record lists its records. --from and --until keep a part, in the
+record's own time, as if the rest had not been recorded. --every 5 keeps one row in five, for a record that is sampled much faster than the
+plant moves; an input that changed between two kept rows is then late by up to four rows.
 """
 
 import argparse
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from recordings.channels import Choice
-from recordings.exported import SUFFIXES, import_file
-from recordings.library import IMPORTERS, import_record, records
+from recordings.channels import Span
+from recordings.datasets.library import IMPORTERS, import_record, records
+from recordings.formats import table
+from recordings.importing import Imported, import_file
+from recordings.layout import TextLayout
+from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
 from records.errors import BadInput
 from records.log import LOOPS, RunLog, save_log
 from twinlaw.cli import options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """DATASET, RECORD or FILE, --plant, --column, --loop, --from, --until, --every, --out, --json."""
-    parser.add_argument("dataset", metavar="DATASET|FILE", help=f"{', '.join(IMPORTERS)}; or a .mat or .mf4 file")
-    parser.add_argument("record", metavar="RECORD", nargs="?", help="left out: list the dataset's records")
-    parser.add_argument("--plant", default="ce150", metavar="NAME", help="of a file: its rig; default: %(default)s")
+    """DATASET, RECORD or FILE, the mapping, --from, --until, --every, --out, --json."""
     parser.add_argument(
-        "--column",
-        type=_choice,
-        action="append",
-        default=[],
-        metavar="COLUMN=CHANNEL[*FACTOR]",
-        help="of a file: the channel of a column; may be repeated",
+        "dataset", metavar="DATASET|FILE", help=f"{', '.join(IMPORTERS)}; or a {', '.join(table.SUFFIXES)} file"
+    )
+    parser.add_argument("record", metavar="RECORD", nargs="?", help="left out: list the dataset's records")
+    parser.add_argument("--plant", metavar="PLANT", help="of a file: its rig, by name or plant file; default: ce150")
+    text = "of a file: what gives a column; may be repeated"
+    parser.add_argument("--column", type=_column, action="append", default=[], metavar="NAME=EXPRESSION", help=text)
+    parser.add_argument(
+        "--mapping", type=Path, metavar="FILE.toml", help="of a file: columns and options from there, kept there"
+    )
+    parser.add_argument(
+        "--group",
+        metavar="NAME",
+        help="of a file: the group, structure or topic that is meant where several have a name",
+    )
+    parser.add_argument(
+        "--per-turn", type=_positive, metavar="N", help="of a file: counts of one turn of an encoder, all edges counted"
+    )
+    parser.add_argument(
+        "--separator",
+        metavar="SIGN",
+        help="of a table of text: between cells, a sign or `tab`, `blanks`; default: found",
+    )
+    parser.add_argument("--decimal", choices=(".", ","), help="of a table of text; default: found")
+    parser.add_argument(
+        "--skip",
+        type=options.count,
+        default=0,
+        metavar="LINES",
+        help="of a table of text: pass these over at its beginning",
     )
     parser.add_argument("--loop", choices=LOOPS, help="of a file; default: closed where it holds references")
-    parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="leave out rows before this time")
-    parser.add_argument("--until", dest="until_s", type=float, metavar="S", help="leave out rows after this time")
+    parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="leave out all before this time")
+    parser.add_argument("--until", dest="until_s", type=float, metavar="S", help="leave out all after this time")
     parser.add_argument("--every", type=options.count, default=1, metavar="N", help="keep one row in N; default: all")
     parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: RECORD.csv here")
     options.as_json(parser)
@@ -45,31 +71,81 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Import and write, or list."""
-    is_file = Path(chosen.dataset).suffix.lower() in SUFFIXES
-    if chosen.record is None and not is_file:
+    if chosen.record is None and chosen.dataset not in IMPORTERS and table.is_file(chosen.dataset):
+        return _import_file(chosen)
+    if chosen.record is None:
         names = records(chosen.dataset)
         print(json.dumps(names) if chosen.json else "\n".join(names))
         return 0
-    if is_file:
-        log = import_file(Path(chosen.dataset), chosen.plant, dict(chosen.column), chosen.loop)
-    else:
-        log = import_record(chosen.dataset, chosen.record)
-    path = chosen.out or Path(f"{Path(chosen.dataset if is_file else chosen.record).stem}.csv")
-    options.demand_ending(path, ".csv")
-    log = _part(log, chosen.from_s, chosen.until_s, chosen.every)
-    save_log(path, log)
-    _tell(path, log, chosen.json)
+    out = _out(chosen, chosen.record)
+    log = _every(_part(import_record(chosen.dataset, chosen.record), _span(chosen)), chosen.every)
+    save_log(out, log)
+    _tell(out, log, (), {}, chosen.json)
     return 0
 
 
-def _part(log: RunLog, from_s: float | None, until_s: float | None, every: int) -> RunLog:
-    """One row in `every` of those within the times that were asked for."""
-    if from_s is None and until_s is None and every == 1:
-        return log
-    inside = (log.t_s >= (-np.inf if from_s is None else from_s)) & (
-        log.t_s <= (np.inf if until_s is None else until_s)
+def _import_file(chosen: argparse.Namespace) -> int:
+    path = Path(chosen.dataset)
+    if not path.exists():
+        raise BadInput("file", str(path), "no such file", "a readable file", "check the path")
+    out = _out(chosen, chosen.dataset)
+    if out.resolve() == path.resolve():
+        raise BadInput("--out", str(out), "the recording itself", "another name", "name the log with --out NAME.csv")
+    there = chosen.mapping is not None and chosen.mapping.exists()
+    mapping = _said(chosen).over(load_mapping(chosen.mapping) if there else ColumnMapping())
+    imported = import_file(path, mapping, _span(chosen))
+    log = _every(imported.log, chosen.every)
+    save_log(out, log)
+    kept = (
+        [f"mapping kept in {chosen.mapping}"]
+        if chosen.mapping and save_mapping(chosen.mapping, _to_keep(imported, mapping))
+        else []
     )
-    rows = np.flatnonzero(inside)[::every]
+    _tell(out, log, (*imported.found, *kept), imported.mapping.columns, chosen.json)
+    return 0
+
+
+def _to_keep(imported: Imported, mapping: ColumnMapping) -> ColumnMapping:
+    """The mapping of all columns that this import found; how text is laid out only where it was said."""
+    return replace(imported.mapping, layout=mapping.layout)
+
+
+def _said(chosen: argparse.Namespace) -> ColumnMapping:
+    """What the command line says of the mapping."""
+    return ColumnMapping(
+        columns=dict(chosen.column),
+        plant=chosen.plant,
+        loop=chosen.loop,
+        group=chosen.group,
+        per_turn=chosen.per_turn,
+        layout=TextLayout(chosen.separator, chosen.decimal, chosen.skip),
+    )
+
+
+def _out(chosen: argparse.Namespace, name: str) -> Path:
+    out: Path = chosen.out or Path(f"{Path(name).stem}.csv")
+    options.demand_ending(out, ".csv")
+    return out
+
+
+def _span(chosen: argparse.Namespace) -> Span:
+    """The part that is asked for."""
+    return Span(
+        -np.inf if chosen.from_s is None else chosen.from_s, np.inf if chosen.until_s is None else chosen.until_s
+    )
+
+
+def _part(log: RunLog, span: Span) -> RunLog:
+    """The rows of a record within the times that were asked for."""
+    return log if span == Span() else _rows(log, np.flatnonzero(span.holds(log.t_s)), 1)
+
+
+def _every(log: RunLog, every: int) -> RunLog:
+    """One row in `every`."""
+    return log if every == 1 else _rows(log, np.arange(0, len(log.t_s), every), every)
+
+
+def _rows(log: RunLog, rows: np.ndarray, every: int) -> RunLog:
     if len(rows) < 2:
         within = f"two or more of the record's, {len(log.t_s)} from {log.t_s[0]:g} s to {log.t_s[-1]:g} s"
         remedy = "choose other times, or a smaller step"
@@ -85,21 +161,36 @@ def _part(log: RunLog, from_s: float | None, until_s: float | None, every: int) 
     )
 
 
-def _tell(path: Path, log: RunLog, as_json: bool) -> None:
+def _tell(path: Path, log: RunLog, found: Sequence[str], columns: Mapping[str, str], as_json: bool) -> None:
     notes = log.source.notes if log.source else ()
     if as_json:
-        print(json.dumps({"log": str(path), "rows": len(log.t_s), "notes": list(notes)}))
+        told = {
+            "log": str(path),
+            "rows": len(log.t_s),
+            "notes": list(notes),
+            "found": list(found),
+            "columns": dict(columns),
+        }
+        print(json.dumps(told))
     else:
-        print(f"{path}  {len(log.t_s)} rows, {log.t_s[-1] - log.t_s[0]:.3f} s", *notes, sep="\n  ")
+        lines = (f"{path}  {len(log.t_s)} rows, {log.t_s[-1] - log.t_s[0]:.3f} s", *found, *notes)
+        print(*lines, sep="\n  ")
 
 
-def _choice(text: str) -> tuple[str, Choice]:
-    """COLUMN=CHANNEL or COLUMN=CHANNEL*FACTOR."""
-    column, found, channel = text.partition("=")
-    if not (found and column and channel):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}, expected COLUMN=CHANNEL or COLUMN=CHANNEL*FACTOR")
-    name, found, factor = channel.rpartition("*")
+def _column(text: str) -> tuple[str, str]:
+    """NAME=EXPRESSION, as the type of an option."""
+    column, found, expression = text.partition("=")
+    if not (found and column.strip() and expression.strip()):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}, expected NAME=EXPRESSION")
+    return column.strip(), expression.strip()
+
+
+def _positive(text: str) -> float:
+    """A number above 0, as the type of an option."""
     try:
-        return column, Choice(name, float(factor)) if found and name else Choice(channel)
+        value = float(text)
     except ValueError:
-        return column, Choice(channel)  # the channel's own name has the asterisk
+        value = 0.0
+    if not 0.0 < value < np.inf:
+        raise argparse.ArgumentTypeError(f"got {text[:30]!r}, expected a number above 0")
+    return value

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from serial import SerialException
 
-from recordings.files import datasets_folder
+from recordings.datasets.files import datasets_folder
 from records.log import RunLog, load_log, save_log
 from records.table import ControllerTable, load_table
 from rig.emulator.ports.serial_port import EmulatedSerial

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recordings import (
+from recordings.datasets import (
     aeroshield,
     aeroshield_two_clocks,
     antx_2dof_drone,
@@ -16,9 +16,9 @@ from recordings import (
     quanser_aero,
     torque_limited_pendulum,
 )
-from recordings.files import verified_bytes
-from recordings.recording import Importer, Recording
-from recordings.registry import Dataset, dataset
+from recordings.datasets.files import verified_bytes
+from recordings.datasets.recording import Importer, Recording
+from recordings.datasets.registry import Dataset, dataset
 from records.errors import BadInput
 from records.log import RunLog
 from records.source import Source

@@ -3,8 +3,8 @@
 import tomllib
 from collections.abc import Sequence
 
-from recordings.recording import Load, Recording, gap_notes
-from recordings.texts import cells, column
+from recordings.datasets.recording import Load, Recording, gap_notes
+from recordings.datasets.texts import cells, column
 
 
 def read_run_log(record: str, load: Load, names: Sequence[str], notes: Sequence[str]) -> Recording:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from recordings.matlab import array, stream, variables
+from recordings.datasets.matlab import array, stream, variables
 from sim.simulate import simulate
 from tests.plants import bound
 from tests.recorded import dataset_folder, recorded

@@ -7,8 +7,8 @@ that is trusted: the notes say by how much the board's clock runs fast (-30 ppm 
 
 import numpy as np
 
-from recordings.recording import Array, Load, Recording, gap_notes
-from recordings.texts import cells, column
+from recordings.datasets.recording import Array, Load, Recording, gap_notes
+from recordings.datasets.texts import cells, column
 
 FULL_DUTY_V = 3.7  # the motor's mean voltage at 100 % duty, as the AeroShield library has it
 _FREE = tuple(

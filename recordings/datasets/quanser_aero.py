@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from recordings.matlab import array, variables
-from recordings.recording import Array, Load, Recording, limit_notes, missing_notes
+from recordings.datasets.matlab import array, variables
+from recordings.datasets.recording import Array, Load, Recording, limit_notes, missing_notes
 from records.errors import BadInput
 
 SAMPLE_PERIOD_S = 0.002

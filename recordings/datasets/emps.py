@@ -1,7 +1,7 @@
 """EMPS: MATLAB files of motor voltage, measured and wanted position every 1 ms, under PD control."""
 
-from recordings.matlab import array, variables
-from recordings.recording import Load, Recording, limit_notes
+from recordings.datasets.matlab import array, variables
+from recordings.datasets.recording import Load, Recording, limit_notes
 
 DRIVE_LIMIT_V = 10.0
 _NAMES = {"u_V": "vir", "q_m": "qm", "q_ref_m": "qg"}

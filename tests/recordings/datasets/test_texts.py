@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recordings.texts import cells, column
+from recordings.datasets.texts import cells, column
 from records.errors import BadInput
 
 

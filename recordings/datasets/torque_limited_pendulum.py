@@ -1,7 +1,7 @@
 """Pendulum on a quasi-direct drive: swing-ups, cut before hands touch it, with the angle as the drive replied to each row's command."""
 
-from recordings.recording import Load, Recording
-from recordings.run_logs import read_run_log
+from recordings.datasets.recording import Load, Recording
+from recordings.datasets.run_logs import read_run_log
 
 _MEASURED = "tau_Nm is the torque that the drive measured, as it closes a loop of its own"
 _NOTES = {

@@ -5,8 +5,8 @@ The closed-loop sheets hold remarks and figures in columns beyond the named ones
 
 from collections.abc import Mapping
 
-from recordings.recording import Load, Recording, limit_notes
-from recordings.texts import cells, column
+from recordings.datasets.recording import Load, Recording, limit_notes
+from recordings.datasets.texts import cells, column
 
 SAMPLE_PERIOD_S = 0.02
 DRIVE_LIMIT_V = 2.0

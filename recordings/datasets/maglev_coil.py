@@ -1,7 +1,7 @@
 """Coil of a magnetic levitation rig: duty and current every 5 ms while the duty climbs a ladder, the ball held at one of five heights."""
 
-from recordings.recording import Load, Recording
-from recordings.run_logs import read_run_log
+from recordings.datasets.recording import Load, Recording
+from recordings.datasets.run_logs import read_run_log
 
 _NOTE = "the ball is held at {} mm; i_A has steps of 2.53 mA"
 

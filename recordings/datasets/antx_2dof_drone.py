@@ -9,8 +9,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from recordings.matlab import stream, variables
-from recordings.recording import Array, Load, Recording, gap_notes, missing_notes
+from recordings.datasets.matlab import stream, variables
+from recordings.datasets.recording import Array, Load, Recording, gap_notes, missing_notes
 
 SAMPLE_PERIOD_S = 0.004
 _STREAMS: Mapping[str, str] = {"theta_rad": "theta", "q_rad_s": "q", "theta_ref_rad": "theta0", "q_ref_rad_s": "q0"}

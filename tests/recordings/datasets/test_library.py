@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recordings.files import datasets_folder, verified_bytes
-from recordings.library import IMPORTERS, import_record, records
-from recordings.registry import dataset, datasets
+from recordings.datasets.files import datasets_folder, verified_bytes
+from recordings.datasets.library import IMPORTERS, import_record, records
+from recordings.datasets.registry import dataset, datasets
 from records.errors import BadInput
 from records.log import load_log, save_log
 from sim.plants import MODELS

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from recordings.matlab import array, variables
-from recordings.recording import Array, Load, Recording, limit_notes, missing_notes
-from recordings.texts import cells, number, texts
+from recordings.datasets.matlab import array, variables
+from recordings.datasets.recording import Array, Load, Recording, limit_notes, missing_notes
+from recordings.datasets.texts import cells, number, texts
 
 DRIVE_LIMIT_V = 3.7
 _MATLAB: Mapping[str, tuple[str, str, float]] = {  # angle, voltage, sample period

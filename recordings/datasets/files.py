@@ -4,11 +4,11 @@ import hashlib
 import os
 from pathlib import Path
 
-from recordings.registry import Dataset
+from recordings.datasets.registry import Dataset
 from records.errors import BadInput
 
 VARIABLE = "TWINLAW_DATASETS"
-DEFAULT_FOLDER = Path(__file__).parents[2] / "shared" / "datasets"
+DEFAULT_FOLDER = Path(__file__).parents[3] / "shared" / "datasets"
 
 
 def datasets_folder() -> Path:

@@ -1,0 +1,45 @@
+"""The clock of each signal of a file that does not state it: the vector beside it, or above it, that is named as times are."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from recordings.signals import Signal
+from recordings.units import known, suffix_of
+
+# As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
+TIME_NAMES = frozenset(
+    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time zeit temps tiempo tempo".split()  # noqa: SIM905
+)
+
+
+def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
+    """The signals with their clocks: in the innermost structure around one, the only vector of times as long as it is."""
+    clocks = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
+    return {name: replace(signal, clock=_clock_of(name, signal, signals, clocks)) for name, signal in signals.items()}
+
+
+def is_time_name(name: str) -> bool:
+    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`."""
+    last = re.split(r"[./]", name)[-1].lower()
+    unit = suffix_of(last)
+    bare = last.removesuffix(f"_{unit}") if unit and (known(unit) or known("s")) else last
+    return bare in TIME_NAMES
+
+
+def _clock_of(name: str, signal: Signal, signals: Mapping[str, Signal], clocks: list[str]) -> str | None:
+    if name in clocks:
+        return None
+    scope = name
+    while scope:
+        scope = scope[: max(scope.rfind("."), scope.rfind("/"), 0)]
+        beside = [
+            clock
+            for clock in clocks
+            if clock[: max(clock.rfind("."), clock.rfind("/"), 0)] == scope
+            and signals[clock].values.size in signal.values.shape
+        ]
+        exact = [clock for clock in beside if clock.endswith("t_s")] or beside
+        if exact:
+            return exact[0] if len(exact) == 1 else None
+    return None

@@ -1,0 +1,42 @@
+"""The bytes of a text file as text: UTF-8, UTF-16, or the letters of Windows, and what is to be said of that."""
+
+import codecs
+from pathlib import Path
+
+from records.errors import BadInput
+
+MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+BINARY = {
+    b"PK\x03\x04": "a zipped file, such as an Excel workbook",
+    b"\xd0\xcf\x11\xe0": "an old Excel workbook",
+    b"MATLAB": "a MATLAB file",
+    b"MDF  ": "an MDF file",
+    b"\x89HDF": "an HDF5 file",
+}
+
+
+def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
+    """The text of a file in UTF-8, UTF-16 or, where it is neither, Windows-1252, and what is to be said of that; raises BadInput."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise BadInput(
+            "text file", str(path), error.strerror or str(error), "a readable file", "check the path"
+        ) from error
+    for start, what in BINARY.items():
+        if content.startswith(start):
+            raise BadInput(
+                "text file", str(path), what, "a table of text", "export it as CSV, or give it its own ending"
+            )
+    encoding = next((encoding for mark, encoding in MARKS if content.startswith(mark)), None)
+    if encoding is None and b"\0" in content[:4096]:
+        encoding = next(
+            (f"utf-16-{end}" for end, at in (("le", 1), ("be", 0)) if content[at:200:2].count(0) > 50), None
+        )
+        if encoding is None:
+            raise BadInput("text file", str(path), "bytes that are no text", "a table of text", "export it as CSV")
+    try:
+        text = content.decode(encoding or "utf-8")
+        return text, (f"encoding {encoding.removesuffix('-sig')} by its mark",) if encoding else ()
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace"), ("encoding Windows-1252, as it is no UTF-8",)

@@ -1,0 +1,161 @@
+"""Tables of text (.csv, .tsv, .txt): how they are laid out is found by itself, and said."""
+
+import io
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recordings.formats.clocks import with_clocks
+from recordings.formats.decoding import decoded
+from recordings.formats.headings import name_and_unit
+from recordings.formats.text_cells import from_the_first_s, is_missing, number, time_of_day_s
+from recordings.formats.text_layout import COMMENTS, SEPARATORS, Layout, Line, find_layout, split
+from recordings.layout import TextLayout
+from recordings.signals import Contents, Signal
+
+Array = NDArray[np.float64]
+
+MOST_TEXT = (
+    0.5  # of a column's filled cells that are no numbers: beyond it the column is a text, not a signal with faults
+)
+
+
+def read(path: Path, asked: TextLayout) -> Contents:
+    """The columns of a table as signals; a row that is short, or a cell that is no number, is a fault of its row.
+
+    Raises BadInput for a file that is missing, no text, or holds no row of numbers.
+    """
+    text, found = decoded(path)
+    lines, comments, said = _lines(text, asked.skip)
+    if said and asked.separator is None:
+        asked = replace(asked, separator=said)
+    layout = find_layout(lines, comments, asked, str(path))
+    body, left_out = _body(lines[layout.first :], layout)
+    told = (*found, *layout.found, *_comments(comments), *left_out)
+    signals, unread = _signals(body, layout)
+    return Contents(with_clocks(signals), _sidecar(path), told, unread)
+
+
+def _sidecar(path: Path) -> dict[str, str]:
+    """The text of NAME.toml beside NAME.csv, which says what flew where the table is a run log already."""
+    try:
+        return {"sidecar": path.with_suffix(".toml").read_text(encoding="utf-8")}
+    except (OSError, UnicodeDecodeError):
+        return {}
+
+
+def _lines(text: str, skip: int) -> tuple[list[Line], list[Line], str | None]:
+    """Lines behind those to skip, comments apart; and the separator that a spreadsheet's first line `sep=;` states."""
+    numbered = [Line(index, line) for index, line in enumerate(re.split(r"\r\n|\r|\n", text), start=1) if index > skip]
+    stated = re.fullmatch(r'"?sep=(.)"?', numbered[0].text.strip()) if numbered else None
+    filled = [line for line in numbered[1 if stated else 0 :] if line.text.strip()]
+    comments = [line for line in filled if line.text.lstrip().startswith(COMMENTS)]
+    return (
+        [line for line in filled if not line.text.lstrip().startswith(COMMENTS)],
+        comments,
+        stated[1] if stated else None,
+    )
+
+
+def _comments(comments: Sequence[Line]) -> tuple[str, ...]:
+    return (f"{len(comments)} lines of comment",) if comments else ()
+
+
+def _body(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], tuple[str, ...]]:
+    """The rows of numbers: a last row that was cut short, and text below the numbers, are left out and said; rows of nothing too."""
+    end = len(lines)
+    while end > 1 and not any(_is_value(cell, layout) for cell in split(lines[end - 1].text, layout.separator)):
+        end -= 1
+    told = []
+    if end < len(lines):
+        told.append(f"text below the numbers is left out, from line {lines[end].number} on: {lines[end].text[:40]!r}")
+    width, last = len(layout.headings), split(lines[end - 1].text, layout.separator)
+    if end > 2 and len(last) < width:
+        told.append(f"line {lines[end - 1].number}, the last, is cut short ({len(last)} cells of {width}) and left out")
+        end -= 1
+    return lines[:end], tuple(told)
+
+
+def _is_value(cell: str, layout: Layout) -> bool:
+    return number(cell, layout.decimal) is not None and not is_missing(cell)
+
+
+def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], dict[str, str]]:
+    """The columns of numbers, and of each other what stands in it first."""
+    units = [unit or name_and_unit(heading)[1] for unit, heading in zip(layout.units, layout.headings, strict=True)]
+    numbers = _at_once(lines, layout)
+    columns = _one_by_one(lines, layout) if numbers is None else [Signal(column) for column in numbers.T]
+    signals: dict[str, Signal] = {}
+    unread: dict[str, str] = {}
+    for name, heading, unit, found in zip(_names(layout.headings), layout.headings, units, columns, strict=True):
+        if isinstance(found, Signal):
+            signals[name] = replace(found, unit=found.unit or unit, heading=heading)
+        else:
+            unread[name] = found
+    return signals, unread
+
+
+def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
+    """Each column cell by cell; a row of another width is a fault of all columns that it lacks, or of all where it is wider."""
+    width = len(layout.headings)
+    rows = [split(line.text, layout.separator) for line in lines]
+    filled = [(line, row) for line, row in zip(lines, rows, strict=True) if not all(map(is_missing, row))]
+    short = [f"line {line.number}: {len(row)} cells of {width}" for line, row in filled]
+    whole = [[] if any(row[width:]) else row for _, row in filled]
+    return [
+        _column(
+            [row[place] if place < len(row) else None for row in whole], [line for line, _ in filled], short, layout
+        )
+        for place in range(width)
+    ]
+
+
+def _names(headings: Sequence[str]) -> list[str]:
+    """The names without units; of headings that are the same each gets its column before it, so that none hides another."""
+    names = [name_and_unit(heading)[0] for heading in headings]
+    counts = Counter(names)
+    return [f"c{place}.{name}" if counts[name] > 1 else name for place, name in enumerate(names, start=1)]
+
+
+def _at_once(lines: Sequence[Line], layout: Layout) -> Array | None:
+    """All numbers at once, where every cell is a plain one."""
+    body = "\n".join(line.text for line in lines)
+    if '"' in body:
+        return None
+    body = body.replace(",", ".") if layout.decimal == "," else body
+    try:
+        rows = np.loadtxt(io.StringIO(body), delimiter=SEPARATORS[layout.separator], ndmin=2, comments=None)
+    except ValueError:
+        return None
+    return rows if rows.shape == (len(lines), len(layout.headings)) else None
+
+
+def _column(cells: Sequence[str | None], lines: Sequence[Line], short: Sequence[str], layout: Layout) -> Signal | str:
+    """A column as a signal; where it is text, what stands there first."""
+    times = [None if cell is None else time_of_day_s(cell) for cell in cells]
+    if sum(time is not None for time in times) > 0.5 * len(cells):
+        values = from_the_first_s([np.nan if time is None else time for time in times])
+        faults = {row: _told(cells[row], lines[row], short[row]) for row, time in enumerate(times) if time is None}
+        return Signal(values, "s", faults=faults)
+    values = np.array([np.nan if cell is None else _value(cell, layout.decimal) for cell in cells])
+    nan = map(int, np.flatnonzero(np.isnan(values)))
+    odd = [row for row in nan if (cell := cells[row]) is None or not is_missing(cell)]
+    faults = {row: _told(cells[row], lines[row], short[row]) for row in odd}
+    filled = sum(cell is not None and not is_missing(cell) for cell in cells)
+    if filled and sum(cells[row] is not None for row in odd) > MOST_TEXT * filled:
+        return f"text, as {next(iter(faults.values()))}"
+    return Signal(values, faults=faults)
+
+
+def _told(cell: str | None, line: Line, short: str) -> str:
+    return short if cell is None else f"line {line.number}: {cell[:30]!r}"
+
+
+def _value(cell: str, decimal: str) -> float:
+    value = number(cell, decimal)
+    return np.nan if value is None else value

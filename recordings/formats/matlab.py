@@ -1,0 +1,70 @@
+"""MATLAB's .mat files: vectors, whole workspaces, structures of any depth, Simulink's scopes and matrices; version 7.3 through h5py."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from scipy.io import loadmat
+from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadError
+
+from recordings.formats import hdf5
+from recordings.formats.clocks import is_time_name, with_clocks
+from recordings.formats.nested import Unreadable, flat
+from recordings.layout import TextLayout
+from recordings.signals import Contents
+from records.errors import BadInput
+
+_OBJECT = (
+    "a MATLAB object, which only MATLAB reads: save x.Time and x.Data of a timeseries, or a structure, in place of it"
+)
+
+_UNITS = ("unit", "units", "Unit", "Units")
+_LABELS = ("label", "Name", "name")  # of a scope's signal, and of a timeseries
+
+
+def read(path: Path, asked: TextLayout) -> Contents:
+    """All arrays of numbers under their paths, all texts; raises BadInput for a file that is missing or no whole .mat file."""
+    found = flat(_content(path))
+    texts = {name: text.strip() for name, text in found.texts.items()}
+    signals = {
+        name: replace(signal, unit=_beside(name, _UNITS, texts), heading=_beside(name, _LABELS, texts))
+        for name, signal in found.signals.items()
+    }
+    return Contents(with_clocks(signals), texts, unread=found.unread)
+
+
+def _beside(name: str, words: Sequence[str], texts: Mapping[str, str]) -> str:
+    """The text that stands under one of `words` in the structure of a value, empty where there is none."""
+    scope, _, field = name.rpartition(".")
+    if not scope or is_time_name(field):
+        return ""
+    return next((texts[f"{scope}.{word}"] for word in words if f"{scope}.{word}" in texts), "")
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        with path.open("rb") as stream, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of variables that it cannot read, which are told by name
+            if stream.read(8) == b"\x89HDF\r\n\x1a\n":
+                return hdf5.content(path)
+            stream.seek(0)
+            content = loadmat(stream, simplify_cells=True)
+    except OSError as error:
+        raise BadInput(
+            "MATLAB file", str(path), error.strerror or str(error), "a readable file", "check the path"
+        ) from error
+    except NotImplementedError:
+        return hdf5.content(path)
+    except (MatReadError, ValueError, TypeError, EOFError, KeyError, IndexError, MemoryError, ArithmeticError) as error:
+        raise BadInput(
+            "MATLAB file", str(path), f"no whole .mat file ({error})", "a .mat file", "save it again with -v7"
+        ) from error
+    return {name: _readable(value) for name, value in content.items() if not name.startswith("__")}
+
+
+def _readable(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _readable(inner) for name, inner in value.items()}
+    return Unreadable(_OBJECT) if isinstance(value, (MatlabOpaque, MatlabFunction)) else value

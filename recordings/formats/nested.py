@@ -1,0 +1,56 @@
+"""Structures within structures, as MATLAB workspaces and messages are, as signals under their paths."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from recordings.signals import Signal
+
+
+@dataclass(frozen=True)
+class Flat:
+    """Signals and texts by path, and what is neither."""
+
+    signals: dict[str, Signal] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
+    unread: dict[str, str] = field(default_factory=dict)
+
+
+def flat(content: Mapping[str, Any]) -> Flat:
+    """The content by path: a field behind a point, an entry of several in round brackets, counted from 1."""
+    found = Flat()
+    for name, value in _leaves(content, ""):
+        if isinstance(value, str):
+            found.texts[name] = value
+            continue
+        array = np.asarray(value)
+        if array.dtype.kind not in "biuf":
+            found.unread[name] = str(value) if isinstance(value, Unreadable) else "no numbers"
+        elif array.size > 1:
+            found.signals[name] = Signal(np.squeeze(array).astype(float))
+    return found
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """Something that a reader cannot give as numbers; `told` says what it is."""
+
+    told: str
+
+    def __str__(self) -> str:
+        return self.told
+
+
+def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _leaves(inner, f"{path}.{name}" if path else name)
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        for index, inner in enumerate(value, start=1):
+            yield from _leaves(inner, f"{path}({index})")
+    elif isinstance(value, np.ndarray) and value.dtype == object:
+        yield from _leaves(list(value.flat), path)
+    else:
+        yield path, value

@@ -1,0 +1,60 @@
+"""The file formats, a row each: a new one is a file in this folder and a row here."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Protocol, cast
+
+from recordings.layout import TextLayout
+from recordings.signals import Contents
+from records.errors import BadInput
+
+
+class Reader(Protocol):
+    """A module that reads one format."""
+
+    def read(self, path: Path, asked: TextLayout) -> Contents:
+        """What the file holds; `asked` is for tables of text alone. Raises BadInput for a file that is missing, damaged or another."""
+        ...
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format: the module that reads it, what it is called, and the extra of pyproject.toml that it needs, if any."""
+
+    module: str
+    called: str
+    extra: str | None = None
+
+
+FORMATS: Mapping[tuple[str, ...], Format] = {
+    (".csv", ".tsv", ".txt", ".dat", ".log"): Format("delimited", "table of text"),
+    (".mat",): Format("matlab", "MATLAB file; version 7.3 needs the extra hdf5"),
+    (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "hdf5"),
+    (".mf4", ".mdf"): Format("mdf", "ASAM MDF file", "mdf4"),
+    (".ulg",): Format("ulog", "PX4 log", "px4"),
+    (".parquet",): Format("parquet", "Parquet file", "parquet"),
+    (".mcap", ".db3", ".bag"): Format("ros_bag", "ROS bag or MCAP file", "ros"),
+}
+_BY_SUFFIX = {suffix: entry for suffixes, entry in FORMATS.items() for suffix in suffixes}
+SUFFIXES = tuple(_BY_SUFFIX)
+
+
+def is_file(name: str) -> bool:
+    """Whether a word of the command line means a file, and not a data set."""
+    path = Path(name)
+    return path.suffix.lower() in SUFFIXES or path.exists() or "/" in name
+
+
+def read(path: Path, asked: TextLayout) -> Contents:
+    """What the file at `path` holds; a folder is a ROS 2 bag. Raises BadInput, also for an ending that no row has."""
+    suffix = ".db3" if path.is_dir() else path.suffix.lower()
+    if suffix not in _BY_SUFFIX:
+        got = f"the ending {path.suffix!r}" if path.suffix else "a name without an ending"
+        raise BadInput("file", str(path), got, f"one of {', '.join(SUFFIXES)}", "export it as one of these")
+    entry = _BY_SUFFIX[suffix]
+    if asked != TextLayout() and entry.module != "delimited":
+        got = f"--separator, --decimal or --skip for a {entry.called.split(';')[0]}"
+        raise BadInput("option", str(path), got, "these for tables of text alone", "leave them out")
+    return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)

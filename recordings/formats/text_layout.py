@@ -1,0 +1,164 @@
+"""How a table of text is laid out: separator, decimal sign, where names, units and numbers stand; found by what makes most numbers."""
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median, mode
+
+from recordings.formats.text_cells import DECIMALS, is_missing, is_number
+from recordings.layout import TextLayout
+from recordings.units import known
+from records.errors import BadInput
+
+SEPARATORS: dict[str, str | None] = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blanks": None}
+SAMPLE_LINES = 400  # by which the layout is told: enough to pass a preamble, few enough to be quick
+COMMENTS = ("#", "%", "//")
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a file that is neither empty nor a comment, by its number from 1."""
+
+    number: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A table's layout: the separator by its name, the width of a row, headings and units by column, the first row's place in the lines."""
+
+    separator: str
+    decimal: str
+    headings: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    found: tuple[str, ...]
+
+
+def split(text: str, separator: str) -> list[str]:
+    """The stripped cells of a line; quotes hold what is between them together."""
+    sign = SEPARATORS[separator]
+    if '"' in text:
+        text = re.sub(r"\s+", " ", text.strip()) if sign is None else text
+        return [cell.strip() for cell in next(csv.reader([text], delimiter=sign or " ", skipinitialspace=True))]
+    return [cell.strip() for cell in text.split(sign)]
+
+
+def find_layout(lines: Sequence[Line], comments: Sequence[Line], asked: TextLayout, where: str) -> Layout:
+    """The layout of the lines; a last comment before the numbers may hold the names. Raises BadInput where no row is of numbers."""
+    sample = lines[:SAMPLE_LINES]
+    separator, decimal, score = max(_scores(sample, asked), key=lambda entry: entry[2])  # of equals the first
+    if not score:
+        shown = repr(sample[0].text[:60]) if sample else "an empty file"
+        tried = f"{shown}, and no row of numbers below it" if sample else shown
+        remedy = "say --separator, --decimal and --skip, or export it as CSV"
+        raise BadInput(
+            "text file", f"{where}, line {sample[0].number if sample else 1}", tried, "rows of numbers", remedy
+        )
+    rows = [split(line.text, separator) for line in sample]
+    counts = [sum(is_number(cell, decimal) for cell in row) for row in rows]
+    least = max(1.0, 0.5 * median(count for count in counts if count))
+    width = mode(len(_trimmed(row)) for row, count in zip(rows, counts, strict=True) if count >= least)
+    first = next(index for index, count in enumerate(counts) if count >= least and len(rows[index]) >= width)
+    before = [*(line for line in comments if line.number < sample[first].number), *sample[:first]]
+    headings, units, told = _headings(sorted(before, key=lambda line: line.number), separator, width)
+    comma = " with decimal commas" if decimal == "," else ""
+    return Layout(separator, decimal, headings, units, first, (f"cells separated by {separator}{comma}", *told))
+
+
+def _scores(sample: Sequence[Line], asked: TextLayout) -> list[tuple[str, str, float]]:
+    """For each way to read the sample how many numbers it makes, less where it leaves cells that are none."""
+    quoted = any('"' in line.text for line in sample)
+    ways = [
+        (separator, decimal)
+        for separator in ([_name(asked.separator)] if asked.separator else SEPARATORS)
+        for decimal in ([asked.decimal] if asked.decimal else DECIMALS)
+        if quoted or SEPARATORS[separator] != decimal
+    ]
+    return [
+        (*way, sum(_worth(split(line.text, way[0]), way[1]) for line in sample)) for way in ways or [("comma", ".")]
+    ]
+
+
+def _worth(row: Sequence[str], decimal: str) -> float:
+    return sum(is_number(cell, decimal) for cell in row) ** 2 / len(row) if row else 0.0
+
+
+def _name(separator: str) -> str:
+    """The name of a separator that a user gave as a sign or by its name; raises BadInput."""
+    signs = {sign: name for name, sign in SEPARATORS.items() if sign} | {"\\t": "tab", " ": "blanks", "space": "blanks"}
+    name = signs.get(separator, separator)
+    if name not in SEPARATORS:
+        known_names = ", ".join(f"{name} {sign!r}" if sign else name for name, sign in SEPARATORS.items())
+        raise BadInput("separator", "--separator", repr(separator), f"one of {known_names}", "choose one of these")
+    return name
+
+
+def _trimmed(row: list[str]) -> list[str]:
+    """A row without the empty cells behind its last separator."""
+    while len(row) > 1 and not row[-1]:
+        row = row[:-1]
+    return row
+
+
+def _headings(
+    before: Sequence[Line], separator: str, width: int
+) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
+    """Headings and units by column out of the lines before the numbers, and what is to be said of them."""
+    candidates = [(line, _cells_of_heading(line.text, separator, width)) for line in before]
+    wide = [(line, cells) for line, cells in candidates if cells is not None]
+    if not wide:
+        names = tuple(f"c{index}" for index in range(1, width + 1))
+        return (
+            names,
+            ("",) * width,
+            (f"no header: the columns are c1 to c{width}", *_passed_over(before, separator, width)),
+        )
+    line, cells = wide[-1]
+    units = [""] * width
+    if len(wide) > 1 and _are_units(cells):
+        units = [cell.strip("[](){}") for cell in cells]
+        line, cells = wide[-2]
+    names = tuple(cell or f"c{index}" for index, cell in enumerate(cells, start=1))
+    told = [f"header in line {line.number}: {separator_text(names)}"]
+    if any(units):
+        told.append(f"units in line {wide[-1][0].number}: {separator_text(units)}")
+    if line.number > 1 and before[0].number < line.number:
+        told.append(f"lines before {line.number} are passed over")
+    return names, tuple(units), tuple(told)
+
+
+def _passed_over(before: Sequence[Line], separator: str, width: int) -> tuple[str, ...]:
+    """What stands before rows that have no header: one of half their cells tells of a comma for two things."""
+    if not before:
+        return ()
+    last = before[-1]
+    cells = len(_trimmed(split(last.text, separator)))
+    half = " (half of the rows' cells: the comma separates and is the decimal sign too, which nobody can tell apart)"
+    hint = half if separator == "comma" and 2 * cells == width else ""
+    return (f"line {last.number} and those before it are passed over: {last.text[:60]!r}, {cells} cells{hint}",)
+
+
+def separator_text(cells: Sequence[str], most: int = 160) -> str:
+    """Cells in a row as a person reads them, cut at `most` characters."""
+    text = " | ".join(cells)
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def _cells_of_heading(text: str, separator: str, width: int) -> list[str] | None:
+    """The cells of a line as wide as the rows, split as these or, as some loggers do, in another way; None for another line."""
+    bare = text.lstrip("".join(COMMENTS) + " ") if text.startswith(COMMENTS) else text
+    for way in (separator, *SEPARATORS):
+        cells = [cell.rstrip(",;") if way == "blanks" else cell for cell in split(bare, way)]
+        cells = cells[:width] if len(cells) > width and not any(cells[width:]) else cells
+        if len(cells) == width and any(cells):
+            return cells
+    return None
+
+
+def _are_units(cells: Sequence[str]) -> bool:
+    """Whether a line below the names holds units: most of its cells are known ones or stand in brackets."""
+    filled = [cell for cell in cells if not is_missing(cell)]
+    units = [cell for cell in filled if known(cell.strip("[](){}")) or re.fullmatch(r"[\[({].*[\])}]", cell)]
+    return len(filled) > 0 and 2 * len(units) > len(filled)

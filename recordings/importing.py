@@ -1,0 +1,178 @@
+"""A recording that another tool wrote as one file, as a run log of a known plant."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recordings.channels import Channel, Span, log_of_channels
+from recordings.formats import table
+from recordings.mapping.columns import TIME, Column, Source, ambiguous, automatic, column, source
+from recordings.mapping.mapping import ColumnMapping
+from recordings.mapping.names import Ambiguous, is_under
+from recordings.proposal import proposed
+from recordings.signals import Contents, listed
+from records.errors import BadInput
+from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
+from records.plant import load_plant
+from records.text.units import unit_of
+from sim.columns import log_columns
+from sim.plants import MODELS
+
+DEFAULT_PLANT = "ce150"
+EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A run log, the mapping that gave it, every column in it, and in sentences what was found unasked."""
+
+    log: RunLog
+    mapping: ColumnMapping
+    found: tuple[str, ...]
+
+
+def import_file(path: Path, mapping: ColumnMapping, span: Span | None = None) -> Imported:
+    """The recording at `path` as a run log, columns by `mapping` and, where that says nothing, from the signals of their names.
+
+    The loop is what the mapping says, else what the file does, else closed where it holds references. Raises BadInput.
+    """
+    columns = columns_of(mapping.plant or DEFAULT_PLANT)
+    _check_columns(mapping, columns)
+    contents = table.read(path, mapping.layout)
+    facts = _facts(contents, str(path), columns)
+    of = _source(contents, str(path), mapping)
+    found, left_out = _columns(of, mapping, columns)
+    channels, shift = _from_the_first({name: entry.channel for name, entry in found.items()})
+    stated = mapping.loop or facts.get("loop")
+    if stated not in (None, *LOOPS):
+        raise BadInput("text 'loop'", str(path), repr(stated), " or ".join(LOOPS), "say it with --loop")
+    log = log_of_channels(channels, columns, str(path), span=span, loop=stated)
+    log = replace(log, locked=tuple(facts.get("locked", ())), table_digest=facts.get("table_digest"))
+    used = replace(
+        mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}
+    )
+    times = dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told)
+    told = [*contents.found, *times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
+    return Imported(log, used, (*told, *_missing(log)))
+
+
+def columns_of(plant: str) -> LogColumns:
+    """The columns of a plant by its name or its file; raises BadInput."""
+    name = load_plant(Path(plant)).model if plant.endswith(".toml") else plant
+    if name not in MODELS:
+        raise BadInput(
+            "plant", "--plant", repr(plant), f"one of {', '.join(MODELS)}", "name a known plant, or its file"
+        )
+    return log_columns(MODELS[name]())
+
+
+def _check_columns(mapping: ColumnMapping, columns: LogColumns) -> None:
+    known = (TIME, *columns.inputs, *columns.outputs, *columns.optional)
+    for name in mapping.columns:
+        if name not in known:
+            where = f"plant {columns.plant}"
+            raise BadInput(f"column {name!r}", where, "an unknown column", f"one of {', '.join(known)}", "rename it")
+
+
+def _source(contents: Contents, where: str, mapping: ColumnMapping) -> Source:
+    group = mapping.group
+    if group is not None and not any(is_under(name, group) for name in contents.signals):
+        got = f"nothing under {group!r} among {listed(list(contents.signals))}"
+        raise BadInput("group", where, got, "a group of the file", "name another with --group")
+    return source(contents, where, group, mapping.per_turn, mapping.columns.get(TIME))
+
+
+def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[dict[str, Column], list[str]]:
+    """The columns by name, and what is said of optional ones that had to be left out."""
+    needed = (*columns.inputs, *columns.outputs)
+    texts: dict[str, str] = {}
+    several: dict[str, Ambiguous] = {}
+    for name in (*columns.outputs, *columns.inputs):
+        try:
+            text = mapping.columns.get(name) or automatic(name, of)
+        except Ambiguous as error:
+            several[name] = error
+            continue
+        if text is not None:
+            texts[name] = text
+    if several:
+        raise ambiguous(several, of)
+    if len(texts) < len(needed):
+        raise _incomplete([name for name in needed if name not in texts], of, columns, mapping)
+    found = {name: column(name, text, of) for name in needed for text in [texts[name]]}
+    left_out: list[str] = []
+    for name in columns.optional:
+        if name in mapping.columns:
+            found[name] = column(name, mapping.columns[name], of)
+            continue
+        try:
+            text = automatic(name, of)
+            if text is not None:
+                found[name] = column(name, text, of)
+        except Ambiguous as error:
+            left_out.append(f"{name} is left out: it could be {' or '.join(error.candidates[:4])}")
+        except BadInput as error:
+            left_out.append(f"{name} is left out: {error.what}: got {error.got}, expected {error.expected}")
+    return found, left_out
+
+
+def _incomplete(missing: list[str], of: Source, columns: LogColumns, mapping: ColumnMapping) -> BadInput:
+    """What is said where columns are not found: the file's signals, and a mapping to begin with."""
+    if of.contents.unread and not of.signals:
+        told = "; ".join(f"{name} is {what}" for name, what in list(of.contents.unread.items())[:3])
+        return BadInput("signals", of.where, told, "vectors of numbers", "save them as plain vectors")
+    if mapping.columns.get(TIME) is None and not any(signal.clock for signal in of.signals.values()):
+        missing = [TIME, *missing]
+    there = listed([_named(name, of) for name in of.signals])
+    found = "; ".join(of.contents.found)[:500]
+    got = f"{there}{f' ({found})' if found else ''}"
+    remedy = f"say which is which, for example {' '.join(proposed(of.contents, columns, mapping.columns))}"
+    return BadInput(f"columns {', '.join(missing)}", of.where, got, "a signal for each", remedy)
+
+
+def _named(name: str, of: Source) -> str:
+    unit = of.signals[name].unit
+    return f"{name} [{unit}]" if unit else name
+
+
+def _time(mapping: ColumnMapping) -> dict[str, str]:
+    return {TIME: mapping.columns[TIME]} if TIME in mapping.columns else {}
+
+
+def _facts(contents: Contents, where: str, columns: LogColumns) -> Mapping[str, Any]:
+    """Loop, locked axes and table digest that the file states: in the sidecar that it holds, or as texts of these names."""
+    if "sidecar" in contents.texts:
+        return facts_of_sidecar(contents.texts["sidecar"], f"{where}: sidecar", columns)
+    named = {name.rpartition(".")[2]: text for name, text in contents.texts.items()}
+    return {name: named[name] for name in ("loop", "table_digest") if name in named}
+
+
+def _from_the_first(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:
+    """Times of a calendar counted from the first of all."""
+    firsts = [np.nanmin(c.t_s) for c in channels.values() if c.t_s is not None and np.isfinite(c.t_s).any()]
+    first_s = min(firsts, default=0.0)
+    if first_s < EPOCH_S:
+        return dict(channels), []
+    moved = {n: c if c.t_s is None else Channel(c.t_s - first_s, c.values, c.faults) for n, c in channels.items()}
+    return moved, [f"times are counted from the first, {first_s:.3f} s of the file's clock"]
+
+
+def _range(log: RunLog, name: str) -> str:
+    """The least and the largest value of a column in the log."""
+    values = log.column(name)
+    finite = values[np.isfinite(values)]
+    unit = unit_of(name)
+    return (
+        f": {finite.min():.4g} to {finite.max():.4g}{f' {unit}' if unit else ''}"
+        if finite.size
+        else ": no number at all"
+    )
+
+
+def _missing(log: RunLog) -> list[str]:
+    """How many rows of an output have no sample."""
+    rows = [(name, int(np.isnan(log.column(name)).sum())) for name in log.columns.outputs]
+    return [f"{name} has no sample in {count} of {len(log.t_s)} rows" for name, count in rows if count]

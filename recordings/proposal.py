@@ -1,0 +1,116 @@
+"""A mapping to begin with, where none was given: which signal of a file looks most like each column of a plant."""
+
+import re
+import shlex
+from collections.abc import Mapping
+from difflib import SequenceMatcher
+
+import numpy as np
+
+from recordings.formats.clocks import is_time_name
+from recordings.signals import Contents, Signal
+from recordings.units import known, suffix_of, unit_of_suffix
+from records.log import LogColumns
+from records.text.units import unit_of, unit_suffix
+
+# Words for one thing: columns bear the symbol, logs mostly the word.
+SYNONYMS = (
+    frozenset(("psi", "elevation", "el", "elev", "pitch")),
+    frozenset(("phi", "azimuth", "az", "azim", "yaw", "heading")),
+    frozenset(("theta", "pitch", "angle", "position", "pos", "arm")),
+    frozenset(("u", "voltage", "volt", "input", "cmd", "command", "control", "motor", "pwm", "v")),
+    frozenset(("m", "main", "motor1", "front", "1")),
+    frozenset(("t", "tail", "motor2", "side", "2")),
+    frozenset(("ref", "reference", "setpoint", "sp", "des", "desired", "target", "wanted")),
+    frozenset(("omega", "speed", "rate", "velocity", "w")),
+    frozenset(("dot", "rate", "velocity", "d")),
+    frozenset(("i", "current")),
+    frozenset(("q", "position", "rate")),
+    frozenset(("tau", "torque")),
+)
+LEAST = 0.35  # likeness below which nothing is proposed: by then names share a letter or two
+
+
+def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -> list[str]:
+    """Options `--column NAME=SIGNAL` as a shell takes them, one for each column that was not said; SIGNAL where nothing is alike."""
+    free = dict(_vectors(contents))
+    options = []
+    needed = [name for name in (*columns.inputs, *columns.outputs) if name not in said]
+    if "t_s" not in said and (time := _time(contents, free)):
+        options.append(_option("t_s", time))
+        free.pop(time, None)
+    if len(free) == len(needed) and all(re.fullmatch(r"c\d+|.*\)", name) for name in free):
+        # a matrix or a table without a header: in the order of a run log
+        return [*options, *map(_option, needed, free)]
+    for name in needed:
+        best = max(free, key=lambda signal, column=name: likeness(column, signal, free[signal]), default=None)  # type: ignore[misc]
+        alike = best is not None and likeness(name, best, free[best]) >= LEAST
+        options.append(_option(name, best if alike and best else "SIGNAL"))
+        if alike and best:
+            free.pop(best)
+    return options
+
+
+def likeness(column: str, name: str, signal: Signal) -> float:
+    """How much a signal looks like a column, 0 to 1: by words, and by a unit that fits; 0 for a unit that does not."""
+    name = re.sub(r"\([:,\d]+\)$", "", name)
+    suffix = suffix_of(name)
+    unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if len(suffix) > 1 else None)
+    if unit is not None and unit.si != (unit_of(column) or "1"):
+        return 0.0
+    own = _words(column.removesuffix(f"_{unit_suffix(column)}"))
+    other = _words(f"{signal.heading} {name}" if signal.heading else name.removesuffix(f"_{suffix}"))
+    if not own or not other:
+        return 0.0
+    score = sum(max(_same(word, another) for another in other) for word in own) / max(len(own), 1)
+    reference = ("ref" in own) == any(_same("ref", word) == 1.0 for word in other)
+    return score * (0.9 if unit is None else 1.0) * (1.0 if reference else 0.4)
+
+
+def _same(word: str, other: str) -> float:
+    if word == other:
+        return 1.0
+    groups = [group for group in SYNONYMS if word in group]
+    if any(other in group for group in groups):
+        return 0.9
+    alike = (SequenceMatcher(None, one, other).ratio() for group in (*groups, {word}) for one in group if len(one) > 3)
+    return max((0.8 * ratio for ratio in alike if ratio > 0.75), default=0.0)  # azimut, elevtn
+
+
+def _words(name: str) -> list[str]:
+    """The words of a name in small letters: `Motor1Voltage`, `u_M` and `ScopeData.psi` fall apart where a person reads on."""
+    spaced = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name)
+    return [word.lower() for word in re.findall(r"[^\W_]+", spaced)]
+
+
+def _vectors(contents: Contents) -> list[tuple[str, Signal]]:
+    """Every vector, the rows or columns of a matrix one by one as a mapping names them."""
+    found = []
+    for name, signal in contents.signals.items():
+        if signal.values.ndim == 1:
+            found.append((name, signal))
+        elif signal.values.ndim == 2 and min(signal.values.shape) <= 32:
+            across = signal.values.shape[0] < signal.values.shape[1]
+            vectors = signal.values if across else signal.values.T
+            ends = (f"({i},:)" if across else f"(:,{i})" for i in range(1, len(vectors) + 1))
+            found += [
+                (f"{name}{end}", Signal(row, signal.unit, signal.clock)) for end, row in zip(ends, vectors, strict=True)
+            ]
+    return found
+
+
+def _time(contents: Contents, vectors: Mapping[str, Signal]) -> str | None:
+    """What looks like times where no signal has a clock: by its name, else the first vector that only increases."""
+    if any(signal.clock for signal in contents.signals.values()):
+        return None
+    named = [name for name in vectors if is_time_name(name)]
+    increasing = [
+        name
+        for name, signal in vectors.items()
+        if signal.values.size > 1 and bool(np.all(np.diff(signal.values) > 0.0))
+    ]
+    return next(iter([*named, *increasing]), "TIME")
+
+
+def _option(column: str, signal: str) -> str:
+    return f"--column {shlex.quote(f'{column}={signal}')}"

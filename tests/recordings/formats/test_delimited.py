@@ -1,0 +1,135 @@
+"""Tables of text as loggers and spreadsheets leave them: the same numbers come out of every layout, and the layout is told."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recordings.formats.delimited import read
+from recordings.layout import TextLayout
+from records.errors import BadInput
+
+T_S = np.arange(12) * 0.01
+NAMES = ("t_s", "u_V", "q_m")
+NUMBERS = np.column_stack([T_S, 1.5 + 0.25 * np.sin(9.0 * T_S), -0.125 * T_S])
+TEXTS = [[f"{value:.7f}" for value in row] for row in NUMBERS]
+
+
+def _rows(separator: str, rows: Sequence[Sequence[str]] = TEXTS, end: str = "\n") -> str:
+    return "".join(separator.join(row) + end for row in rows)
+
+
+def _comma(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    return [[cell.replace(".", ",") for cell in row] for row in rows]
+
+
+LAYOUTS = {
+    "comma": (_rows(",", [NAMES, *TEXTS]).encode(), "separated by comma"),
+    "semicolon": (_rows(";", [NAMES, *TEXTS]).encode(), "separated by semicolon"),
+    "decimal comma": (_rows(";", [NAMES, *_comma(TEXTS)]).encode(), "semicolon with decimal commas"),
+    "tab and decimal comma": (_rows("\t", [NAMES, *_comma(TEXTS)]).encode(), "tab with decimal commas"),
+    "blanks": (_rows("   ", [NAMES, *TEXTS]).encode(), "blanks"),
+    "bar": (_rows(" | ", [NAMES, *TEXTS]).encode(), "bar"),
+    "mark, line ends of Windows": (b"\xef\xbb\xbf" + _rows(",", [NAMES, *TEXTS], "\r\n").encode(), "utf-8 by its mark"),
+    "line ends of an old Mac": (_rows(",", [NAMES, *TEXTS], "\r").encode(), "comma"),
+    "UTF-16": (_rows("\t", [NAMES, *TEXTS]).encode("utf-16"), "utf-16 by its mark"),
+    "UTF-16 without a mark": (_rows("\t", [NAMES, *TEXTS]).encode("utf-16-le"), "tab"),
+    "sep=": (b"sep=;\n" + _rows(";", [NAMES, *_comma(TEXTS)]).encode(), "semicolon"),
+    "quotes": (_rows(",", [[f'"{cell}"' for cell in row] for row in [NAMES, *_comma(TEXTS)]]).encode(), "comma"),
+    "numpy.savetxt": (b"# t_s u_V q_m\n" + _rows(" ", TEXTS).encode(), "header in line 1"),
+    "comments between": (_rows(",", [NAMES]).encode() + b"% armed\n" + _rows(",").encode() + b"# end\n", "2 lines of comment"),
+    "preamble": (b"Rig;7\nDate;2024-05-22\nRate;100;;\n\n" + _rows(";", [NAMES, *TEXTS]).encode(), "before 5 are passed over"),
+    "units below the names": (_rows(",", [NAMES, ("s", "V", "m"), *TEXTS]).encode(), "units in line 2: s | V | m"),
+    "separators behind": (_rows(",", [(*NAMES, ""), *((*row, "") for row in TEXTS)]).encode(), "comma"),
+    "an index before": (_rows(",", [("", *NAMES), *((str(k), *row) for k, row in enumerate(TEXTS))]).encode(), "c1 | t_s"),
+    "a text beside": (_rows(",", [(*NAMES, "state"), *((*row, "FLY") for row in TEXTS)]).encode(), "comma"),
+    "a remark below": (_rows(",", [NAMES, *TEXTS]).encode() + b"END OF LOG\n", "from line 14 on: 'END OF LOG'"),
+    "cut short": (_rows(",", [NAMES, *TEXTS]).encode() + b"0.12,1.", "line 14, the last, is cut short (2 cells of 3)"),
+    "Windows letters": (_rows(",", [(*NAMES, "Höhe"), *((*row, "1") for row in TEXTS)]).encode("cp1252"), "Windows-1252"),
+    "names and rows split differently": (b"t_s, u_V, q_m\n" + _rows(" ", TEXTS).encode(), "blanks"),
+    "exponents of Fortran": (_rows(" ", [NAMES, *[[f"{float(c):.9E}".replace("E", "D") for c in r] for r in TEXTS]]).encode(), ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_every_layout_gives_the_same_numbers_and_is_told(name: str, tmp_path: Path) -> None:
+    content, told = LAYOUTS[name]
+    (tmp_path / "log.csv").write_bytes(content)
+    found = read(tmp_path / "log.csv", TextLayout())
+    for place, column in enumerate(NAMES):
+        np.testing.assert_allclose(found.signals[column].values, NUMBERS[:, place], atol=1e-7)
+        assert found.signals[column].clock == (None if column == "t_s" else "t_s")
+    assert told in "; ".join(found.found)
+
+
+@pytest.mark.parametrize(
+    ("heading", "name", "unit"),
+    [
+        ("psi [deg]", "psi", "deg"),
+        ("Time(s)", "Time", "s"),
+        ("U / V", "U", "V"),
+        ("angle in deg", "angle", "deg"),
+        ("angle, °", "angle", "°"),
+        ("speed [furlong]", "speed", "furlong"),
+        ("gain (old)", "gain (old)", ""),
+        ("psi_deg", "psi_deg", ""),
+    ],
+)  # fmt: skip
+def test_a_heading_is_a_name_and_a_unit(heading: str, name: str, unit: str, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(_rows(";", [("t_s", heading), *(row[:2] for row in TEXTS)]))
+    signal = read(tmp_path / "log.csv", TextLayout()).signals[name]
+    assert (signal.unit, signal.heading) == (unit, heading)
+
+
+def test_times_of_day_are_seconds_since_the_first_past_midnight_too(tmp_path: Path) -> None:
+    stamps = [
+        "2024-05-22 23:59:59.980",
+        "2024-05-22 23:59:59.990",
+        "2024-05-23 00:00:00.000",
+        "2024-05-23 00:00:00.010",
+    ]
+    (tmp_path / "log.csv").write_text("Time,q_m\n" + "".join(f"{stamp},1\n" for stamp in stamps))
+    np.testing.assert_allclose(read(tmp_path / "log.csv", TextLayout()).signals["Time"].values, T_S[:4], atol=1e-9)
+
+
+def test_a_bad_cell_and_a_row_of_another_width_are_faults_of_their_rows_with_their_lines(tmp_path: Path) -> None:
+    rows = [list(row) for row in TEXTS]
+    rows[3][2], rows[5], rows[7] = "0.1.2", rows[5][:2], [*rows[7], "9"]
+    rows[9][2] = "NaN"
+    (tmp_path / "log.csv").write_text(_rows(",", [NAMES, *rows]))
+    signal = read(tmp_path / "log.csv", TextLayout()).signals["q_m"]
+    assert signal.faults == {3: "line 5: '0.1.2'", 5: "line 7: 2 cells of 3", 7: "line 9: 4 cells of 3"}
+    assert np.flatnonzero(np.isnan(signal.values)).tolist() == [3, 5, 7, 9]
+
+
+def test_names_that_are_the_same_hide_nothing(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(_rows(",", [("t_s", "q_m", "q_m"), *TEXTS]))
+    assert list(read(tmp_path / "log.csv", TextLayout()).signals) == ["t_s", "c2.q_m", "c3.q_m"]
+
+
+def test_what_the_user_says_of_the_layout_is_taken(tmp_path: Path) -> None:
+    """Truth: by itself the comma would be found, with more cells a row."""
+    (tmp_path / "log.csv").write_text("9,9,9,9,9,9\n" + _rows(";", [("t_s", "q_m"), ("0,0", "1,5"), ("0,1", "2,5")]))
+    found = read(tmp_path / "log.csv", TextLayout(";", ",", 1)).signals
+    np.testing.assert_array_equal(found["q_m"].values, [1.5, 2.5])
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "an empty file"),
+        (b"t_s,u_V,q_m\n", "'t_s,u_V,q_m', and no row of numbers"),
+        (b"hello\nworld\n", "'hello'"),
+        (b"PK\x03\x04" + bytes(90), "zipped file"),
+        (bytes(range(256)) * 9, "no text"),
+        (None, "No such file"),
+    ],
+)
+def test_a_file_that_is_no_table_is_refused_with_what_it_begins_with(
+    content: bytes | None, told: str, tmp_path: Path
+) -> None:
+    if content is not None:
+        (tmp_path / "log.csv").write_bytes(content)
+    with pytest.raises(BadInput, match=told):
+        read(tmp_path / "log.csv", TextLayout())
