@@ -54,8 +54,8 @@ def import_file(path: Path, mapping: ColumnMapping, span: Span | None = None) ->
     used = replace(
         mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}
     )
-    times = dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told)
-    told = [*contents.found, *times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
+    times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
+    told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
     return Imported(log, used, (*told, *_missing(log)))
 
 

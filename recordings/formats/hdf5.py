@@ -35,10 +35,30 @@ def content(path: Path) -> dict[str, Any]:
         raise BadInput("HDF5 file", str(path), f"no whole HDF5 ({error})", "an HDF5 file", "save it again") from error
 
 
+def _is_field_of_several(node: Any) -> bool:
+    """Whether a field is one of an array of structures: references to each one's value, which is no cell array."""
+    return not hasattr(node, "keys") and node.dtype.kind == "O" and not _kind(node) and node.size > 1
+
+
+def _entries(fields: dict[str, Any]) -> Any:
+    """The structures of an array one by one, out of the values of each field."""
+    lengths = {len(values) if isinstance(values, list) else 0 for values in fields.values()}
+    if len(lengths) != 1 or lengths == {0}:
+        return fields
+    return [{name: values[index] for name, values in fields.items()} for index in range(lengths.pop())]
+
+
+def _kind(node: Any) -> str:
+    """MATLAB's class of a dataset, empty where another program wrote it."""
+    kind = node.attrs.get("MATLAB_class", b"")
+    return kind if isinstance(kind, str) else bytes(kind).decode(errors="replace")
+
+
 def _value(node: Any, file: Any) -> Any:
     if hasattr(node, "keys"):
-        return {name: _value(node[name], file) for name in node}
-    kind = bytes(node.attrs.get("MATLAB_class", b"")).decode(errors="replace")
+        fields = {name: _value(node[name], file) for name in node}
+        return _entries(fields) if all(_is_field_of_several(node[name]) for name in node) else fields
+    kind = _kind(node)
     if "MATLAB_object_decode" in node.attrs or kind in ("function_handle", "timeseries"):
         return Unreadable(_OBJECT)
     if node.attrs.get("MATLAB_empty"):

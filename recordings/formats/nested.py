@@ -47,7 +47,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
     if isinstance(value, Mapping):
         for name, inner in value.items():
             yield from _leaves(inner, f"{path}.{name}" if path else name)
-    elif isinstance(value, Sequence) and not isinstance(value, str):
+    elif isinstance(value, Sequence) and not isinstance(value, str | bytes):
         for index, inner in enumerate(value, start=1):
             yield from _leaves(inner, f"{path}({index})")
     elif isinstance(value, np.ndarray) and value.dtype == object:

@@ -35,7 +35,8 @@ FORMATS: Mapping[tuple[str, ...], Format] = {
     (".mf4", ".mdf"): Format("mdf", "ASAM MDF file", "mdf4"),
     (".ulg",): Format("ulog", "PX4 log", "px4"),
     (".parquet",): Format("parquet", "Parquet file", "parquet"),
-    (".mcap", ".db3", ".bag"): Format("ros_bag", "ROS bag or MCAP file", "ros"),
+    (".mcap",): Format("mcap", "MCAP file", "ros"),
+    (".db3", ".bag"): Format("ros_bag", "ROS bag", "ros"),
 }
 _BY_SUFFIX = {suffix: entry for suffixes, entry in FORMATS.items() for suffix in suffixes}
 SUFFIXES = tuple(_BY_SUFFIX)

@@ -268,7 +268,7 @@ def _times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array
             if clock is None or not set(error.candidates) <= clocks:
                 raise ambiguous({TIME: error}, of) from error
             meant = clock
-        own = clock is not None and (meant in clocks or (meant is None and reference.text == TIME))
+        own = clock is not None and (meant in clocks or (meant is None and reference.text in (TIME, "time")))
         if own:
             assert clock is not None
             used, values = clock, of.signals[clock].values

@@ -1,0 +1,50 @@
+"""Parquet files, by way of the optional package pyarrow."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recordings.formats.clocks import with_clocks
+from recordings.formats.headings import name_and_unit
+from recordings.formats.optional import package
+from recordings.layout import TextLayout
+from recordings.signals import Contents, Signal
+from records.errors import BadInput
+
+_NS = 1e-9
+
+
+def read(path: Path, asked: TextLayout) -> Contents:
+    """The columns of numbers, dates in seconds from the first; raises BadInput when pyarrow is not installed, and for no Parquet file."""
+    package("pyarrow", "parquet", path)
+    parquet = package("pyarrow.parquet", "parquet", path)
+    try:
+        table = parquet.read_table(path)
+    except FileNotFoundError as error:
+        raise BadInput("Parquet file", str(path), "no such file", "a readable file", "check the path") from error
+    except Exception as error:  # as many classes as the package has parts
+        raise BadInput(
+            "Parquet file", str(path), f"no Parquet ({error})", "a .parquet file", "export it again"
+        ) from error
+    signals: dict[str, Signal] = {}
+    unread: dict[str, str] = {}
+    for heading, column in zip(table.column_names, table.columns, strict=True):
+        name, unit = name_and_unit(heading)
+        values, stated = _numbers(column)
+        if values is None:
+            unread[name] = f"of the type {column.type}, no numbers"
+        else:
+            signals[name] = Signal(values, stated or unit, heading=heading)
+    return Contents(with_clocks(signals), unread=unread)
+
+
+def _numbers(column: Any) -> tuple[np.ndarray | None, str]:
+    """The values as floats, NaN where there is none, and the unit that their type has."""
+    values = column.to_numpy()
+    if values.dtype.kind == "M":
+        there = values[~np.isnat(values)]
+        values = values - (there.min() if there.size else 0)
+    if values.dtype.kind == "m":
+        return np.where(np.isnat(values), np.nan, values.astype("timedelta64[ns]").astype(np.int64) * _NS), "s"
+    return (values.astype(float), "") if values.dtype.kind in "biuf" else (None, "")
