@@ -20,7 +20,11 @@ def read(path: Path, asked: TextLayout) -> Contents:
 
     Raises BadInput when asammdf is not installed, and for a file that is missing or no MDF.
     """
-    groups = _groups(path)
+    return contents_of(_groups(path))
+
+
+def contents_of(groups: Sequence[Group]) -> Contents:
+    """The channels of groups as signals."""
     filled = [group for group in groups if group.t_s.size]
     counts = Counter(channel.name for group in filled for channel in group.channels)
     signals: dict[str, Signal] = {}

@@ -49,6 +49,7 @@ def test_what_was_exported_reads_back_exactly(tmp_path: Path) -> None:
     np.testing.assert_array_equal(channels["seq"].values, [7, 8, 9, 11])
 
 
+@pytest.mark.soak
 def test_the_way_back_keeps_digest_loop_and_locked_axes(tmp_path: Path) -> None:
     """Truth: the sidecar of the log that was exported; a comment of another tool says nothing."""
     pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
@@ -83,6 +84,7 @@ def test_without_asammdf_it_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -
         mdf4_bytes(log())
 
 
+@pytest.mark.soak
 def test_a_file_that_was_cut_short_is_one_clear_line(tmp_path: Path) -> None:
     """Truth: the error alone; the package complains a second time when it collects what it had half opened."""
     pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")

@@ -1,0 +1,193 @@
+"""HDF5, PX4, Parquet, MCAP and ROS files as their own packages write them, through the command's own path to a run log."""
+
+import json
+import struct
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from recordings.channels import Span
+from recordings.formats.table import FORMATS
+from recordings.importing import import_file
+from recordings.mapping.mapping import ColumnMapping
+from records.errors import BadInput
+from records.log import RunLog
+
+N = 40
+T_S = np.arange(N) * 0.01
+RUN = {"u_V": 1.0 + T_S, "q_m": np.sin(T_S)}
+STAMPS_NS = [1_716_398_564_000_000_000 + 10_000_000 * k for k in range(N)]
+
+
+def _log(path: Path, **columns: str) -> RunLog:
+    return import_file(path, ColumnMapping(columns=columns, plant="emps"), Span(from_s=0.0)).log
+
+
+def _is_the_run(log: RunLog, rows: slice = slice(None)) -> None:
+    for name, values in RUN.items():
+        np.testing.assert_allclose(log.column(name), values[rows], rtol=1e-6)
+    np.testing.assert_allclose(log.t_s - log.t_s[0], T_S[rows] - T_S[rows][0], atol=1e-9)
+
+
+def _matlab(node: Any, values: Any, kind: str = "double") -> Any:
+    node.attrs["MATLAB_class"] = np.bytes_(kind)
+    return node
+
+
+def _hdf5(path: Path, *, scope: bool) -> None:
+    """As MATLAB writes version 7.3: turned arrays, texts as numbers, an array of structures by references."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w", userblock_size=512) as file:
+        references = file.create_group("#refs#")
+        top = file.create_group("Scope") if scope else file
+        _matlab(top.create_dataset("time" if scope else "t_s", data=T_S[None, :]), T_S)
+        kept: dict[str, list[Any]] = {"values": [], "label": []}
+        for name, values in RUN.items():
+            if not scope:
+                _matlab(top.create_dataset(name, data=values[None, :]), values)
+                continue
+            kept["values"].append(_matlab(references.create_dataset(name, data=values[None, :]), values).ref)
+            text = np.array([[ord(letter)] for letter in name], dtype="u2")
+            kept["label"].append(_matlab(references.create_dataset(f"{name}_l", data=text), text, "char").ref)
+        if scope:
+            signals = top.create_group("signals")
+            for field, entries in kept.items():
+                signals.create_dataset(
+                    field, data=np.array([[e] for e in entries], dtype=h5py.ref_dtype), dtype=h5py.ref_dtype
+                )
+        else:
+            _matlab(top.create_dataset("K", data=np.eye(3)), 0)
+            _matlab(top.create_dataset("ts", data=np.ones((1, 6), "u4")), 0, "timeseries").attrs[
+                "MATLAB_object_decode"
+            ] = 3
+    head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM"
+    path.write_bytes(head + path.read_bytes()[128:])
+
+
+def _ulog(path: Path) -> None:
+    """Two topics of 4 ms and 10 ms, one of them in two instances, by the published definition of the format."""
+
+    def message(kind: str, body: bytes) -> bytes:
+        return struct.pack("<HB", len(body), ord(kind)) + body
+
+    stamps_us = [int(5e6 + 1e6 * t) for t in T_S]
+    out = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0) + message("B", bytes(40))
+    out += message("F", b"drive:uint64_t timestamp;float[2] control;") + message(
+        "F", b"encoder:uint64_t timestamp;float x;"
+    )
+    for number, (name, instance) in enumerate([("drive", 0), ("encoder", 0), ("encoder", 1)]):
+        out += message("A", struct.pack("<BH", instance, number) + name.encode())
+    for k, stamp in enumerate(stamps_us):
+        out += message("D", struct.pack("<HQff", 0, stamp, RUN["u_V"][k], 0.0))
+        out += message("D", struct.pack("<HQf", 1, stamp, 0.0)) + message(
+            "D", struct.pack("<HQf", 2, stamp, RUN["q_m"][k])
+        )
+    path.write_bytes(out + message("O", struct.pack("<H", 7)))
+
+
+def _parquet(path: Path) -> None:
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    stamps = pa.array(STAMPS_NS, type=pa.timestamp("ns"))
+    columns = {"stamp": stamps, "u [mV]": 1e3 * RUN["u_V"], "q_mm": 1e3 * RUN["q_m"], "mode": ["fly"] * N}
+    parquet.write_table(pa.table(columns), path)
+
+
+def _mcap_json(path: Path) -> None:
+    writer_module = pytest.importorskip("mcap.writer")
+    with path.open("wb") as stream:
+        writer = writer_module.Writer(stream, chunk_size=400)
+        writer.start()
+        schema = writer.register_schema("rig", "jsonschema", b"{}")
+        rig, blob = writer.register_channel("/rig", "json", schema), writer.register_channel("/blob", "cbor", schema)
+        for k, ns in enumerate(STAMPS_NS):
+            content = {"u_V": RUN["u_V"][k], "arm": {"q": [0.0, RUN["q_m"][k]]}, "mode": "fly", "on": True}
+            writer.add_message(rig, ns, json.dumps(content).encode(), ns)
+            writer.add_message(blob, ns, b"\x00", ns)
+        writer.finish()
+
+
+def _bag(path: Path) -> None:
+    """A ROS 2 bag: numbers by topic, and a stamped vector that is recorded 3 ms late."""
+    rosbag2, typesys = pytest.importorskip("rosbags.rosbag2"), pytest.importorskip("rosbags.typesys")
+    store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
+    number, vector = store.types["std_msgs/msg/Float64"], store.types["geometry_msgs/msg/Vector3Stamped"]
+    header, time, xyz = (
+        store.types[f"{name}"]
+        for name in ("std_msgs/msg/Header", "builtin_interfaces/msg/Time", "geometry_msgs/msg/Vector3")
+    )
+    with rosbag2.Writer(path, version=9) as writer:
+        topics = [
+            writer.add_connection(name, kind.__msgtype__, typestore=store)
+            for name, kind in (("/u_V", number), ("/arm", vector))
+        ]
+        for k, ns in enumerate(STAMPS_NS):
+            arm = vector(header(time(ns // 10**9, ns % 10**9), "base"), xyz(0.0, RUN["q_m"][k], 0.0))
+            writer.write(topics[0], ns, store.serialize_cdr(number(RUN["u_V"][k]), number.__msgtype__))
+            writer.write(topics[1], ns + 3_000_000, store.serialize_cdr(arm, vector.__msgtype__))
+
+
+CASES: Mapping[str, tuple[str, Callable[[Path], None], dict[str, str]]] = {
+    "version 7.3": ("run.mat", lambda path: _hdf5(path, scope=False), {}),
+    "version 7.3, a scope": ("run.mat", lambda path: _hdf5(path, scope=True), {}),
+    "PX4": ("run.ulg", _ulog, {"u_V": "drive.control[0]", "q_m": "encoder[1].x"}),
+    "Parquet": ("run.parquet", _parquet, {}),
+    "MCAP of JSON": ("run.mcap", _mcap_json, {"q_m": "/rig.arm.q[1]"}),
+    "ROS 2 bag": ("run", _bag, {"q_m": "arm.vector.y"}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_format_gives_the_run_in_si_units(case: str, tmp_path: Path) -> None:
+    name, write, columns = CASES[case]
+    write(tmp_path / name)
+    _is_the_run(_log(tmp_path / name, **columns))
+
+
+def test_a_topic_in_two_instances_is_asked_for(tmp_path: Path) -> None:
+    _ulog(tmp_path / "run.ulg")
+    with pytest.raises(BadInput, match=r"encoder\[0\]\.x .* or encoder\[1\]\.x"):
+        _log(tmp_path / "run.ulg", u_V="drive.control[0]", q_m="encoder.x")
+
+
+def test_an_mcap_file_that_ends_early_gives_what_it_has(tmp_path: Path) -> None:
+    _mcap_json(tmp_path / "run.mcap")
+    whole = (tmp_path / "run.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) // 2])
+    done = import_file(tmp_path / "cut.mcap", ColumnMapping(columns={"q_m": "q[1]"}, plant="emps"))
+    _is_the_run(done.log, slice(0, len(done.log.t_s)))
+    assert any("ends early" in told for told in done.found)
+
+
+@pytest.mark.parametrize("suffix", [".mat", ".h5", ".ulg", ".parquet", ".mcap", ".bag", ".db3"])
+@pytest.mark.parametrize("content", [b"", b"no such format at all" * 20, bytes(range(256)) * 4, None])
+def test_a_file_of_another_kind_is_one_clear_line(suffix: str, content: bytes | None, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / f"run{suffix}").write_bytes(content)
+    with pytest.raises(BadInput) as refused:
+        _log(tmp_path / f"run{suffix}")
+    assert f"run{suffix}" in str(refused.value) or str(tmp_path) in str(refused.value)
+
+
+PACKAGES = {
+    ".h5": "h5py",
+    ".mf4": "asammdf",
+    ".ulg": "pyulog",
+    ".parquet": "pyarrow",
+    ".mcap": "mcap",
+    ".bag": "rosbags",
+}
+
+
+@pytest.mark.parametrize("suffix", PACKAGES)
+def test_a_package_that_is_not_installed_is_named_with_its_extra(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    extra = next(entry.extra for suffixes, entry in FORMATS.items() if suffix in suffixes)
+    monkeypatch.setitem(sys.modules, PACKAGES[suffix], None)
+    (tmp_path / f"run{suffix}").write_bytes(b"x")
+    with pytest.raises(BadInput, match=rf"no package {PACKAGES[suffix]} .*twinlaw\[{extra}\]"):
+        _log(tmp_path / f"run{suffix}")
