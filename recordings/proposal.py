@@ -51,6 +51,17 @@ def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -
     return options
 
 
+def overview(contents: Contents) -> list[tuple[str, ...]]:
+    """Each signal as a row for a person: name, unit, how many samples, least and greatest value, its clock."""
+    rows = []
+    for name, signal in _vectors(contents):
+        finite = signal.values[np.isfinite(signal.values)]
+        ends = (f"{finite.min():.5g}", f"{finite.max():.5g}") if finite.size else ("no number", "")
+        rows.append((name, signal.unit, str(signal.values.size), *ends, signal.clock or ""))
+    rows += [(name, "", "", told, "", "") for name, told in contents.unread.items()]
+    return rows
+
+
 def likeness(column: str, name: str, signal: Signal) -> float:
     """How much a signal looks like a column, 0 to 1: by words, and by a unit that fits; 0 for a unit that does not."""
     name = re.sub(r"\([:,\d]+\)$", "", name)

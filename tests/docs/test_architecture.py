@@ -59,6 +59,7 @@ EXAMPLES = {
     "threshold of the log check": Example("MOST_READINGS = ", searched=("logcheck",)),
     "threshold of the replay": Example("OLDEST_ANGLES = ", searched=("replay",)),
     "importer of a data set": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, ("recordings",)),
+    "file format that `import` reads": Example("ulog", {"NAME": "ulog"}, ("recordings",)),
     "page": Example("faults.md", {"NAME": "faults"}, ("mkdocs.yml", "README.md")),
     "identification experiment": Example("reaction_balance", {"PLANT": "ce150", "NAME": "azimuth"}),
     "search for a start": Example("differential_evolution", {"NAME": "evolution"}, ("identification/search",)),

@@ -28,6 +28,10 @@ EXTRAS: Mapping[str, str] = {
     "test": "make test",
     "docs": "make docs",
     "mdf4": "import, export: logs in MDF4",
+    "hdf5": "import: MATLAB 7.3, HDF5",
+    "px4": "import: PX4 logs",
+    "parquet": "import: Parquet files",
+    "ros": "import: MCAP and ROS bags",
     "cluster": "--cluster: sweeps on Dask",
     "proofs": "verify --proofs",
 }
@@ -90,6 +94,8 @@ def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
 def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterator[Finding]:
     for requirement in requirements:
         name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
+        if name == "twinlaw":  # an extra that is made of others
+            continue
         try:
             yield Finding(name, purpose, version(name), remedy)
         except PackageNotFoundError:

@@ -11,6 +11,8 @@ plant moves; an input that changed between two kept rows is then late by up to f
 
 import argparse
 import json
+import shlex
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,12 +22,13 @@ import numpy as np
 from recordings.channels import Span
 from recordings.datasets.library import IMPORTERS, import_record, records
 from recordings.formats import table
-from recordings.importing import Imported, import_file
+from recordings.importing import DEFAULT_PLANT, Imported, columns_of, import_file
 from recordings.layout import TextLayout
 from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
+from recordings.proposal import overview, proposed
 from records.errors import BadInput
 from records.log import LOOPS, RunLog, save_log
-from twinlaw.cli import options
+from twinlaw.cli import console, options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -91,9 +94,19 @@ def _import_file(chosen: argparse.Namespace) -> int:
     out = _out(chosen, chosen.dataset)
     if out.resolve() == path.resolve():
         raise BadInput("--out", str(out), "the recording itself", "another name", "name the log with --out NAME.csv")
+    if chosen.mapping is not None and chosen.mapping.resolve() == out.with_suffix(".toml").resolve():
+        raise BadInput(
+            "--mapping", str(chosen.mapping), "the log's own sidecar", "another name", "call it NAME-mapping.toml"
+        )
     there = chosen.mapping is not None and chosen.mapping.exists()
     mapping = _said(chosen).over(load_mapping(chosen.mapping) if there else ColumnMapping())
-    imported = import_file(path, mapping, _span(chosen))
+    try:
+        imported = import_file(path, mapping, _span(chosen))
+    except BadInput as error:
+        unmapped = error.what.startswith(("columns ", "names ", "column 't_s'")) and not mapping.columns
+        if unmapped and sys.stdout.isatty() and not chosen.json:
+            _show(path, mapping)
+        raise
     log = _every(imported.log, chosen.every)
     save_log(out, log)
     kept = (
@@ -103,6 +116,16 @@ def _import_file(chosen: argparse.Namespace) -> int:
     )
     _tell(out, log, (*imported.found, *kept), imported.mapping.columns, chosen.json)
     return 0
+
+
+def _show(path: Path, mapping: ColumnMapping) -> None:
+    """The file's signals with their ranges, and a command that maps them, for a person who has not seen the file from inside."""
+    contents, plant = table.read(path, mapping.layout), mapping.plant or DEFAULT_PLANT
+    print(*contents.found, "", sep="\n")
+    print(console.table(overview(contents), ("signal", "unit", "samples", "least", "greatest", "clock")))
+    lines = [f"twinlaw import {shlex.quote(str(path))} --plant {shlex.quote(plant)}"]
+    lines += [*proposed(contents, columns_of(plant), {}), f"--mapping {shlex.quote(f'{path.stem}-mapping.toml')}"]
+    print("\na mapping to begin with:\n\n  " + " \\\n    ".join(lines) + "\n", flush=True)
 
 
 def _to_keep(imported: Imported, mapping: ColumnMapping) -> ColumnMapping:
