@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import SequenceMatcher
 
 import numpy as np
@@ -25,7 +25,7 @@ SYNONYMS = (
     frozenset(("omega", "speed", "rate", "velocity", "w")),
     frozenset(("dot", "rate", "velocity", "d")),
     frozenset(("i", "current")),
-    frozenset(("q", "position", "rate")),
+    frozenset(("q", "position", "pos", "rate")),
     frozenset(("tau", "torque")),
 )
 LEAST = 0.35  # likeness below which nothing is proposed: by then names share a letter or two
@@ -33,22 +33,37 @@ LEAST = 0.35  # likeness below which nothing is proposed: by then names share a 
 
 def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -> list[str]:
     """Options `--column NAME=SIGNAL` as a shell takes them, one for each column that was not said; SIGNAL where nothing is alike."""
-    free = dict(_vectors(contents))
-    options = []
+    clocks = {signal.clock for signal in contents.signals.values()}
+    free = {name: signal for name, signal in _vectors(contents) if name not in clocks}
     needed = [name for name in (*columns.inputs, *columns.outputs) if name not in said]
-    if "t_s" not in said and (time := _time(contents, free)):
-        options.append(_option("t_s", time))
-        free.pop(time, None)
+    time = None if "t_s" in said else _time(contents, free)
+    free.pop(time or "", None)
     if len(free) == len(needed) and all(re.fullmatch(r"c\d+|.*\)", name) for name in free):
-        # a matrix or a table without a header: in the order of a run log
-        return [*options, *map(_option, needed, free)]
-    for name in needed:
-        best = max(free, key=lambda signal, column=name: likeness(column, signal, free[signal]), default=None)  # type: ignore[misc]
-        alike = best is not None and likeness(name, best, free[best]) >= LEAST
-        options.append(_option(name, best if alike and best else "SIGNAL"))
-        if alike and best:
-            free.pop(best)
-    return options
+        chosen = dict(zip(needed, free, strict=True))  # a matrix or a table without a header: in the order of a run log
+    else:
+        chosen = _most_alike(needed, free)
+    return [*([_option("t_s", time)] if time else []), *(_option(name, chosen.get(name, "SIGNAL")) for name in needed)]
+
+
+def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, str]:
+    """The signal of each column, the likest pair first; a last column takes the only signal that is left in a unit of its own."""
+    pairs = [(likeness(column, name, signal), column, name) for column in needed for name, signal in free.items()]
+    chosen: dict[str, str] = {}
+    for score, column, name in sorted(pairs, key=lambda pair: -pair[0]):
+        if score >= LEAST and column not in chosen and name not in chosen.values():
+            chosen[column] = name
+    for column in needed:
+        fitting = [name for name, signal in free.items() if name not in chosen.values() and _fits(column, name, signal)]
+        if column not in chosen and len(fitting) == 1:
+            chosen[column] = fitting[0]
+    return chosen
+
+
+def _fits(column: str, name: str, signal: Signal) -> bool | None:
+    """Whether the signal's unit is one of the column's; None where it has none."""
+    suffix = suffix_of(name)
+    unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if len(suffix) > 1 else None)
+    return None if unit is None else unit.si == (unit_of(column) or "1")
 
 
 def overview(contents: Contents) -> list[tuple[str, ...]]:
@@ -57,7 +72,7 @@ def overview(contents: Contents) -> list[tuple[str, ...]]:
     for name, signal in _vectors(contents):
         finite = signal.values[np.isfinite(signal.values)]
         ends = (f"{finite.min():.5g}", f"{finite.max():.5g}") if finite.size else ("no number", "")
-        rows.append((name, signal.unit, str(signal.values.size), *ends, signal.clock or ""))
+        rows.append((name, signal.unit or suffix_of(name), str(signal.values.size), *ends, signal.clock or ""))
     rows += [(name, "", "", told, "", "") for name, told in contents.unread.items()]
     return rows
 
@@ -66,8 +81,8 @@ def likeness(column: str, name: str, signal: Signal) -> float:
     """How much a signal looks like a column, 0 to 1: by words, and by a unit that fits; 0 for a unit that does not."""
     name = re.sub(r"\([:,\d]+\)$", "", name)
     suffix = suffix_of(name)
-    unit = known(signal.unit) if signal.unit else (unit_of_suffix(suffix) if len(suffix) > 1 else None)
-    if unit is not None and unit.si != (unit_of(column) or "1"):
+    fits = _fits(column, name, signal)
+    if fits is False:
         return 0.0
     own = _words(column.removesuffix(f"_{unit_suffix(column)}"))
     other = _words(f"{signal.heading} {name}" if signal.heading else name.removesuffix(f"_{suffix}"))
@@ -75,7 +90,7 @@ def likeness(column: str, name: str, signal: Signal) -> float:
         return 0.0
     score = sum(max(_same(word, another) for another in other) for word in own) / max(len(own), 1)
     reference = ("ref" in own) == any(_same("ref", word) == 1.0 for word in other)
-    return score * (0.9 if unit is None else 1.0) * (1.0 if reference else 0.4)
+    return score * (1.0 if fits else 0.9) * (1.0 if reference else 0.4)
 
 
 def _same(word: str, other: str) -> float:
