@@ -22,6 +22,9 @@ from sim.columns import log_columns
 from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
+MOST_TURNS = (
+    3  # of an angle that is told without a remark: no axis of a rig here turns more in a log, degrees do at once
+)
 EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
 
 
@@ -56,7 +59,7 @@ def import_file(path: Path, mapping: ColumnMapping, span: Span | None = None) ->
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
-    return Imported(log, used, (*told, *_missing(log)))
+    return Imported(log, used, (*told, *_missing(log), *_doubtful(log)))
 
 
 def columns_of(plant: str) -> LogColumns:
@@ -101,7 +104,7 @@ def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[d
     if several:
         raise ambiguous(several, of)
     if len(texts) < len(needed):
-        raise _incomplete([name for name in needed if name not in texts], of, columns, mapping)
+        raise _incomplete([name for name in needed if name not in texts], of, columns, {**_time(mapping), **texts})
     found = {name: column(name, text, of) for name in needed for text in [texts[name]]}
     left_out: list[str] = []
     for name in columns.optional:
@@ -119,17 +122,19 @@ def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[d
     return found, left_out
 
 
-def _incomplete(missing: list[str], of: Source, columns: LogColumns, mapping: ColumnMapping) -> BadInput:
+def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mapping[str, str]) -> BadInput:
     """What is said where columns are not found: the file's signals, and a mapping to begin with."""
     if of.contents.unread and not of.signals:
         told = "; ".join(f"{name} is {what}" for name, what in list(of.contents.unread.items())[:3])
         return BadInput("signals", of.where, told, "vectors of numbers", "save them as plain vectors")
-    if mapping.columns.get(TIME) is None and not any(signal.clock for signal in of.signals.values()):
+    if TIME not in said and not any(signal.clock for signal in of.signals.values()):
         missing = [TIME, *missing]
-    there = listed([_named(name, of) for name in of.signals])
+    there = listed(
+        [*(_named(name, of) for name in of.signals), *(f"{name} ({told})" for name, told in of.contents.unread.items())]
+    )
     found = "; ".join(of.contents.found)[:500]
     got = f"{there}{f' ({found})' if found else ''}"
-    remedy = f"say which is which, for example {' '.join(proposed(of.contents, columns, mapping.columns))}"
+    remedy = f"say which is which, for example {' '.join(proposed(of.contents, columns, said))}"
     return BadInput(f"columns {', '.join(missing)}", of.where, got, "a signal for each", remedy)
 
 
@@ -170,6 +175,16 @@ def _range(log: RunLog, name: str) -> str:
         if finite.size
         else ": no number at all"
     )
+
+
+def _doubtful(log: RunLog) -> list[str]:
+    """Angles that look like degrees or counts which nothing said to be such."""
+    reach = {name: float(np.nanmax(np.abs(log.column(name)), initial=0.0)) for name in log.columns.outputs}
+    return [
+        f"{name} reaches {reached:.4g} rad, more than {MOST_TURNS} turns: if these are degrees or counts, say so"
+        for name, reached in reach.items()
+        if unit_of(name) == "rad" and reached > MOST_TURNS * 2.0 * np.pi
+    ]
 
 
 def _missing(log: RunLog) -> list[str]:

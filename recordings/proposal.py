@@ -19,8 +19,8 @@ SYNONYMS = (
     frozenset(("phi", "azimuth", "az", "azim", "yaw", "heading")),
     frozenset(("theta", "pitch", "angle", "position", "pos", "arm")),
     frozenset(("u", "voltage", "volt", "input", "cmd", "command", "control", "motor", "pwm", "v")),
-    frozenset(("m", "main", "motor1", "front", "1")),
-    frozenset(("t", "tail", "motor2", "side", "2")),
+    frozenset(("m", "main", "motor1", "front")),
+    frozenset(("t", "tail", "motor2", "side")),
     frozenset(("ref", "reference", "setpoint", "sp", "des", "desired", "target", "wanted")),
     frozenset(("omega", "speed", "rate", "velocity", "w")),
     frozenset(("dot", "rate", "velocity", "d")),
@@ -68,7 +68,7 @@ def _fits(column: str, name: str, signal: Signal) -> bool | None:
 
 def overview(contents: Contents) -> list[tuple[str, ...]]:
     """Each signal as a row for a person: name, unit, how many samples, least and greatest value, its clock."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name, signal in _vectors(contents):
         finite = signal.values[np.isfinite(signal.values)]
         ends = (f"{finite.min():.5g}", f"{finite.max():.5g}") if finite.size else ("no number", "")
@@ -90,7 +90,7 @@ def likeness(column: str, name: str, signal: Signal) -> float:
         return 0.0
     score = sum(max(_same(word, another) for another in other) for word in own) / max(len(own), 1)
     reference = ("ref" in own) == any(_same("ref", word) == 1.0 for word in other)
-    return score * (1.0 if fits else 0.9) * (1.0 if reference else 0.4)
+    return score * (1.0 if fits else 0.9) * (1.0 if reference else 0.3)
 
 
 def _same(word: str, other: str) -> float:

@@ -196,9 +196,10 @@ def _check_columns(names: tuple[str, ...], where: str, columns: LogColumns) -> N
     needed = ("t_s", *columns.inputs, *columns.outputs)
     for name in needed:
         if name not in names:
-            raise BadInput(
-                f"column {name!r}", where, "nothing", "a column", f"a log of {columns.plant} needs {','.join(needed)}"
-            )
+            shown = ",".join(names)
+            got = f"the header {shown if len(shown) < 200 else f'{shown[:197]}...'!r}, cells separated by commas"
+            remedy = f"a log of {columns.plant} needs {','.join(needed)}; `twinlaw import` makes one of any other table"
+            raise BadInput(f"column {name!r}", where, got, "a column of that name", remedy)
     for name in names:
         if name not in (*needed, *columns.optional, "seq"):
             known = ", ".join((*needed, "seq", *columns.optional))

@@ -27,7 +27,11 @@ def flat(content: Mapping[str, Any]) -> Flat:
             continue
         array = np.asarray(value)
         if array.dtype.kind not in "biuf":
-            found.unread[name] = str(value) if isinstance(value, Unreadable) else "no numbers"
+            found.unread[name] = (
+                str(value)
+                if isinstance(value, Unreadable)
+                else ("complex numbers" if array.dtype.kind == "c" else "no numbers")
+            )
         elif array.size > 1:
             found.signals[name] = Signal(np.squeeze(array).astype(float))
     return found

@@ -256,7 +256,7 @@ def _times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array
     """
     text = of.time or clock
     if text is None:
-        raise no_times(of)
+        raise no_times(of, name, length)
     clocks = {signal.clock for signal in of.signals.values()} - {None}
 
     def look_up(reference: Reference) -> Quantity:
@@ -295,7 +295,14 @@ def _times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array
     return times, f"{TIME} = {text}{told}"
 
 
-def no_times(of: Source) -> BadInput:
-    """What is said where no times are known."""
+def no_times(of: Source, name: str, length: int) -> BadInput:
+    """What is said where no times of a column are known: none in the file, or none as many as its values."""
+    clocks = {signal.clock for signal in of.signals.values() if signal.clock}
+    if clocks:
+        sizes = " or ".join(f"{of.signals[clock].values.size} of {clock}" for clock in sorted(clocks)[:4])
+        remedy = f"save one run, whole vectors, or name its own times with --column {TIME}=NAME"
+        return BadInput(
+            f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
+        )
     remedy = f"name them with --column {TIME}=NAME, or --column {TIME}=0.01*row for rows that are 10 ms apart"
     return BadInput(f"column {TIME!r}", of.where, listed(list(of.signals)), "the times of the samples", remedy)

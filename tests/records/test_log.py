@@ -74,7 +74,10 @@ def test_an_empty_cell_of_an_output_is_a_value_that_was_not_measured(files):
         ("", r"a\.csv: run log: got an empty file, expected a header and rows"),
         (HEADER, "got a header only"),
         (b"\xff\xfe\x00rubbish", "got no UTF-8 text"),
-        ("t_s,u_M_V,psi_rad,phi_rad\n0,5,0,0\n", "column 'u_T_V': got nothing"),
+        (
+            "t_s,u_M_V,psi_rad,phi_rad\n0,5,0,0\n",
+            "column 'u_T_V': got the header 't_s,u_M_V,psi_rad,phi_rad', cells separated by commas",
+        ),
         (
             HEADER.replace("phi_rad", "phi_rad,altitude_m") + "0,5,1,0,0,7\n",
             "column 'altitude_m': got an unknown column",

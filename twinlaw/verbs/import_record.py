@@ -27,6 +27,7 @@ from recordings.layout import TextLayout
 from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
 from recordings.proposal import overview, proposed
 from records.errors import BadInput
+from records.files import demand_writable
 from records.log import LOOPS, RunLog, save_log
 from twinlaw.cli import console, options
 
@@ -74,8 +75,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Import and write, or list."""
-    if chosen.record is None and chosen.dataset not in IMPORTERS and table.is_file(chosen.dataset):
-        return _import_file(chosen)
+    said = _said(chosen)
+    if chosen.dataset not in IMPORTERS and table.is_file(chosen.dataset):
+        if chosen.record is not None:
+            raise BadInput("RECORD", chosen.dataset, repr(chosen.record), "nothing behind a file", "leave it out")
+        return _import_file(chosen, said)
+    if said != ColumnMapping() or chosen.mapping is not None:
+        got = "an option of a file, such as --column or --mapping"
+        raise BadInput("option", f"data set {chosen.dataset}", got, "its record alone", "leave it out")
     if chosen.record is None:
         names = records(chosen.dataset)
         print(json.dumps(names) if chosen.json else "\n".join(names))
@@ -87,7 +94,7 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _import_file(chosen: argparse.Namespace) -> int:
+def _import_file(chosen: argparse.Namespace, said: ColumnMapping) -> int:
     path = Path(chosen.dataset)
     if not path.exists():
         raise BadInput("file", str(path), "no such file", "a readable file", "check the path")
@@ -99,7 +106,9 @@ def _import_file(chosen: argparse.Namespace) -> int:
             "--mapping", str(chosen.mapping), "the log's own sidecar", "another name", "call it NAME-mapping.toml"
         )
     there = chosen.mapping is not None and chosen.mapping.exists()
-    mapping = _said(chosen).over(load_mapping(chosen.mapping) if there else ColumnMapping())
+    if chosen.mapping is not None:
+        demand_writable(chosen.mapping)
+    mapping = said.over(load_mapping(chosen.mapping) if there else ColumnMapping())
     try:
         imported = import_file(path, mapping, _span(chosen))
     except BadInput as error:
@@ -134,7 +143,13 @@ def _to_keep(imported: Imported, mapping: ColumnMapping) -> ColumnMapping:
 
 
 def _said(chosen: argparse.Namespace) -> ColumnMapping:
-    """What the command line says of the mapping."""
+    """What the command line says of the mapping; raises BadInput for a column twice."""
+    names = [name for name, _ in chosen.column]
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise BadInput(
+            f"column {twice[0]!r}", "--column", f"{names.count(twice[0])} expressions", "one", "leave one out"
+        )
     return ColumnMapping(
         columns=dict(chosen.column),
         plant=chosen.plant,

@@ -106,6 +106,8 @@ def test_a_wrong_mapping_is_refused_by_its_key(text: str, told: str, tmp_path: P
         (["--mapping", "out.toml"], "own sidecar"),
         (["--separator", ","], "--separator"),
         (["--group", "run7"], "--group"),
+        (["--column", "u_V=3"], "2 expressions"),
+        (["--mapping", "/proc/m.toml"], "/proc/m.toml"),
         ([], "--column u_V=drive --column q_m=pos_mm"),
     ],
 )
@@ -148,3 +150,16 @@ def test_an_unknown_ending_is_told_with_those_that_are_read(tmp_path: Path, caps
     (tmp_path / "run.xlsx").write_bytes(b"PK")
     assert main(["import", str(tmp_path / "run.xlsx")]) == 2
     assert ".csv" in capsys.readouterr().err
+
+
+def test_options_of_a_file_are_no_options_of_a_data_set(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "emps", "DATA_EMPS", "--column", "q_m=qm"]) == 2
+    assert "an option of a file" in capsys.readouterr().err
+
+
+def test_an_angle_in_counts_that_nothing_said_to_be_counts_is_remarked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.csv").write_text("t_s,u_V,theta_rad\n" + "".join(f"{t:.2f},1,{-4000 * t}\n" for t in T_S))
+    assert main(["import", str(tmp_path / "a.csv"), "--plant", "aeroshield", "--out", str(tmp_path / "b.csv")]) == 0
+    assert "theta_rad reaches 760 rad" in capsys.readouterr().out
