@@ -22,9 +22,8 @@ from sim.columns import log_columns
 from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
-MOST_TURNS = (
-    3  # of an angle that is told without a remark: no axis of a rig here turns more in a log, degrees do at once
-)
+SLOW_S = 1.0  # between rows: a rig that moves within seconds is sampled faster
+MOST_TURNS = 3  # of an angle that nothing is said of: no axis here turns more in a log, degrees and counts do at once
 EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
 
 
@@ -178,13 +177,17 @@ def _range(log: RunLog, name: str) -> str:
 
 
 def _doubtful(log: RunLog) -> list[str]:
-    """Angles that look like degrees or counts which nothing said to be such."""
-    reach = {name: float(np.nanmax(np.abs(log.column(name)), initial=0.0)) for name in log.columns.outputs}
-    return [
-        f"{name} reaches {reached:.4g} rad, more than {MOST_TURNS} turns: if these are degrees or counts, say so"
-        for name, reached in reach.items()
-        if unit_of(name) == "rad" and reached > MOST_TURNS * 2.0 * np.pi
-    ]
+    """Times that look like milliseconds, and angles like degrees or counts, which nothing said to be such."""
+    told = []
+    if log.sample_period_s >= SLOW_S:
+        told.append(f"rows are {log.sample_period_s:g} s apart: if times are in ms, say --column t_s=...*0.001")
+    for name in log.columns.outputs:
+        reached = float(np.nanmax(np.abs(log.column(name)), initial=0.0))
+        if unit_of(name) == "rad" and reached > MOST_TURNS * 2.0 * np.pi:
+            told.append(
+                f"{name} reaches {reached:.4g} rad, {reached / (2.0 * np.pi):.3g} turns: say if it is in degrees or counts"
+            )
+    return told
 
 
 def _missing(log: RunLog) -> list[str]:

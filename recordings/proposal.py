@@ -33,8 +33,8 @@ LEAST = 0.35  # likeness below which nothing is proposed: by then names share a 
 
 def proposed(contents: Contents, columns: LogColumns, said: Mapping[str, str]) -> list[str]:
     """Options `--column NAME=SIGNAL` as a shell takes them, one for each column that was not said; SIGNAL where nothing is alike."""
-    clocks = {signal.clock for signal in contents.signals.values()}
-    free = {name: signal for name, signal in _vectors(contents) if name not in clocks}
+    taken = {*(signal.clock for signal in contents.signals.values()), *said.values()}
+    free = {name: signal for name, signal in _vectors(contents) if name not in taken}
     needed = [name for name in (*columns.inputs, *columns.outputs) if name not in said]
     time = None if "t_s" in said else _time(contents, free)
     free.pop(time or "", None)

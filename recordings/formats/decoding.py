@@ -37,6 +37,11 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
             raise BadInput("text file", str(path), "bytes that are no text", "a table of text", "export it as CSV")
     try:
         text = content.decode(encoding or "utf-8")
-        return text, (f"encoding {encoding.removesuffix('-sig')} by its mark",) if encoding else ()
+        return _plain(text), (f"encoding {encoding.removesuffix('-sig')} by its mark",) if encoding else ()
     except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace"), ("encoding Windows-1252, as it is no UTF-8",)
+        return _plain(content.decode("cp1252", errors="replace")), ("encoding Windows-1252, as it is no UTF-8",)
+
+
+def _plain(text: str) -> str:
+    """The text with a typesetter's minus and blanks as numbers are written."""
+    return text.replace("\u2212", "-").replace("\u00a0", " ").replace("\u202f", " ")

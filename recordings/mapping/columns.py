@@ -18,6 +18,11 @@ from records.text.units import unit_of, unit_suffix
 Array = NDArray[np.float64]
 
 TIME = "t_s"
+CALENDAR = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+CALENDAR_S = (
+    1e9,
+    4e9,
+)  # 2001 to 2096, since 1970: no run lasts as long, and no rig counts from then in seconds of thousandths
 ROW = "row"  # in an expression of times, of a file that has none: 0, 1, 2, ...
 
 
@@ -286,13 +291,23 @@ def _times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array
             f"--column {TIME}=0.01*row for 10 ms between rows",
         )
     quantity = _evaluated(TIME, text, node, look_up, of)
-    factor, told = _factor(TIME, text, quantity, of)
+    factor, told = _calendar(quantity) or _factor(TIME, text, quantity, of)
     times: Array = quantity.values * factor
     if times.size != length:
         got = f"{length} values at {times.size} times"
         remedy = "save one run, whole vectors, or name its own times with --column t_s=NAME"
         raise BadInput(f"column {name!r}", of.where, got, "one value at each time", remedy)
     return times, f"{TIME} = {text}{told}"
+
+
+def _calendar(quantity: Quantity) -> tuple[float, str] | None:
+    """The factor of times without a unit that are dates in ms, us or ns since 1970, and what is to be said of it; None for others."""
+    if quantity.unit != "" or not np.isfinite(quantity.values).any():
+        return None
+    first = float(np.nanmin(quantity.values))
+    return next(
+        ((f, f", dates in {unit}") for unit, f in CALENDAR.items() if CALENDAR_S[0] <= first * f < CALENDAR_S[1]), None
+    )
 
 
 def no_times(of: Source, name: str, length: int) -> BadInput:

@@ -291,6 +291,19 @@ def test_times_of_a_calendar_are_counted_from_the_first(tmp_path: Path) -> None:
     assert any("counted from the first" in told for told in done.found)
 
 
+@pytest.mark.parametrize("per_second", [1e3, 1e6, 1e9])
+def test_dates_in_parts_of_a_second_are_told_by_their_size(per_second: float, tmp_path: Path) -> None:
+    done = import_file(
+        _saved(tmp_path / "run.mat", t_s=None, stamp=np.round((T_S + 1_716_398_564.0) * per_second)), ColumnMapping()
+    )
+    np.testing.assert_allclose(done.log.t_s, T_S, atol=1e-3 if per_second == 1e3 else 1e-6)
+
+
+def test_times_that_look_like_milliseconds_are_remarked(tmp_path: Path) -> None:
+    done = import_file(_saved(tmp_path / "run.mat", t_s=1e3 * T_S), ColumnMapping())
+    assert any("rows are 10 s apart" in told for told in done.found)
+
+
 def test_counts_convert_by_the_turn(tmp_path: Path) -> None:
     changes = {"psi_rad": None, "psi_counts": np.arange(50.0)}
     path = _saved(tmp_path / "run.mat", **changes)
