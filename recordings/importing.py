@@ -42,16 +42,22 @@ def import_file(path: Path, mapping: ColumnMapping, span: Span | None = None) ->
     The loop is what the mapping says, else what the file does, else closed where it holds references. Raises BadInput.
     """
     columns = columns_of(mapping.plant or DEFAULT_PLANT)
+    return log_of_contents(table.read(path, mapping.layout), str(path), mapping, columns, span)
+
+
+def log_of_contents(
+    contents: Contents, where: str, mapping: ColumnMapping, columns: LogColumns, span: Span | None = None
+) -> Imported:
+    """What a file holds as a run log of the plant that `columns` describes; `where` names the file. Raises BadInput."""
     _check_columns(mapping, columns)
-    contents = table.read(path, mapping.layout)
-    facts = _facts(contents, str(path), columns)
-    of = _source(contents, str(path), mapping)
+    facts = _facts(contents, where, columns)
+    of = _source(contents, where, mapping)
     found, left_out = _columns(of, mapping, columns)
     channels, shift = _from_the_first({name: entry.channel for name, entry in found.items()})
     stated = mapping.loop or facts.get("loop")
     if stated not in (None, *LOOPS):
-        raise BadInput("text 'loop'", str(path), repr(stated), " or ".join(LOOPS), "say it with --loop")
-    log = log_of_channels(channels, columns, str(path), span=span, loop=stated)
+        raise BadInput("text 'loop'", where, repr(stated), " or ".join(LOOPS), "say it with --loop")
+    log = log_of_channels(channels, columns, where, span=span, loop=stated)
     log = replace(log, locked=tuple(facts.get("locked", ())), table_digest=facts.get("table_digest"))
     used = replace(
         mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}

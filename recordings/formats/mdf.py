@@ -1,18 +1,41 @@
 """ASAM MDF recordings (.mf4, .mdf) of measurement and calibration tools, by way of the optional package asammdf."""
 
-import pickle
-import subprocess
-import sys
 from collections import Counter
 from collections.abc import Sequence
-from importlib.util import find_spec
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from recordings.formats.mdf_reading import Group
-from recordings.formats.optional import missing
+import numpy as np
+from numpy.typing import NDArray
+
+from recordings.formats.optional import package
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 from records.errors import BadInput
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """A channel of numbers: samples (n,) or (n, k), NaN where the file marks them as invalid, and its unit."""
+
+    name: str
+    values: Array
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Channels on one clock: the group's number in the file, name, comment, times (n,) in s, channels, names of those without numbers."""
+
+    number: int
+    name: str
+    comment: str
+    t_s: Array
+    channels: tuple[Channel, ...]
+    unread: tuple[str, ...]
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
@@ -20,7 +43,14 @@ def read(path: Path, asked: TextLayout) -> Contents:
 
     Raises BadInput when asammdf is not installed, and for a file that is missing or no MDF.
     """
-    return contents_of(_groups(path))
+    asammdf = package("asammdf", "mdf4", path)
+    if not path.is_file():
+        raise BadInput("MDF file", str(path), "no such file", "a readable file", "check the path")
+    try:
+        recording = asammdf.MDF(path)
+        return contents_of([_group(recording, number) for number in range(len(recording.groups))])
+    except Exception as error:  # the package has no class of its own for a file that is no MDF
+        raise BadInput("MDF file", str(path), f"no MDF ({error})"[:300], "an MDF file", "export it again") from error
 
 
 def contents_of(groups: Sequence[Group]) -> Contents:
@@ -56,15 +86,23 @@ def _told(groups: Sequence[Group], filled: Sequence[Group]) -> tuple[str, ...]:
     return (*told, *((f"{empty} groups without samples are passed over",) if empty else ()))
 
 
-def _groups(path: Path) -> list[Group]:
-    if not path.is_file():
-        raise BadInput("MDF file", str(path), "no such file", "a readable file", "check the path")
-    if find_spec("asammdf") is None:
-        raise missing("asammdf", "mdf4", path)
-    command = [sys.executable, "-P", "-m", "recordings.formats.mdf_reading", str(path)]
-    done = subprocess.run(command, capture_output=True, check=False)
-    if done.returncode == 0:
-        groups: list[Group] = pickle.loads(done.stdout)
-        return groups
-    told = done.stdout.decode(errors="replace").strip() or f"its reader ended with status {done.returncode}"
-    raise BadInput("MDF file", str(path), f"no MDF ({told[:200]})", "an MDF file", "export it again")
+def _group(recording: Any, number: int) -> Group:
+    group, master = recording.groups[number], recording.masters_db.get(number)
+    source = getattr(group.channel_group, "acq_name", "") or ""
+    channels, unread = [], []
+    for index, channel in enumerate(group.channels):
+        if index == master:
+            continue
+        signal = recording.get(group=number, index=index, ignore_invalidation_bits=True)
+        values = np.asarray(signal.samples)
+        if values.dtype.kind not in "biuf":
+            unread.append(str(channel.name))
+            continue
+        values = values.astype(float)
+        invalid = getattr(signal, "invalidation_bits", None)
+        if invalid is not None:
+            values[np.asarray(invalid, dtype=bool)] = np.nan
+        channels.append(Channel(str(channel.name), values, str(signal.unit or "")))
+    t_s = np.asarray(recording.get_master(number), dtype=float)
+    comment = str(getattr(group.channel_group, "comment", "") or "")
+    return Group(number, str(source), comment, t_s, tuple(channels), tuple(unread))

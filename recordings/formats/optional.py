@@ -1,6 +1,7 @@
 """The optional packages that read some formats."""
 
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,14 @@ def package(name: str, extra: str, path: Path | str) -> Any:
         return import_module(name)
     except ImportError as error:
         raise missing(name, extra, path) from error
+
+
+def is_installed(name: str) -> bool:
+    """Whether a package can be imported, without doing it."""
+    try:
+        return find_spec(name) is not None
+    except ValueError:  # it is there as what cannot be imported
+        return False
 
 
 def missing(name: str, extra: str, path: Path | str) -> BadInput:

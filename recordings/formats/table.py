@@ -6,6 +6,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Protocol, cast
 
+from recordings.formats import apart
+from recordings.formats.optional import is_installed, missing
 from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
@@ -21,22 +23,27 @@ class Reader(Protocol):
 
 @dataclass(frozen=True)
 class Format:
-    """A file format: the module that reads it, what it is called, and the extra of pyproject.toml that it needs, if any."""
+    """A file format: the module that reads it, what it is called, the package that it needs with the extra that installs it, if any.
+
+    `apart`: it is read in a program of its own, as its package is partly in C.
+    """
 
     module: str
     called: str
-    extra: str | None = None
+    package: str | None = None
+    extra: str = ""
+    apart: bool = False
 
 
 FORMATS: Mapping[tuple[str, ...], Format] = {
     (".csv", ".tsv", ".txt", ".dat", ".log"): Format("delimited", "table of text"),
-    (".mat",): Format("matlab", "MATLAB file; version 7.3 needs the extra hdf5"),
-    (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "hdf5"),
-    (".mf4", ".mdf"): Format("mdf", "ASAM MDF file", "mdf4"),
-    (".ulg",): Format("ulog", "PX4 log", "px4"),
-    (".parquet",): Format("parquet", "Parquet file", "parquet"),
-    (".mcap",): Format("mcap", "MCAP file", "ros"),
-    (".db3", ".bag"): Format("ros_bag", "ROS bag", "ros"),
+    (".mat",): Format("matlab", "MATLAB file", apart=True),  # version 7.3 as HDF5
+    (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", apart=True),
+    (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", apart=True),
+    (".ulg",): Format("ulog", "PX4 log", "pyulog", "px4"),
+    (".parquet",): Format("parquet", "Parquet file", "pyarrow", "parquet", apart=True),
+    (".mcap",): Format("mcap", "MCAP file", "mcap", "ros"),
+    (".db3", ".bag"): Format("ros_bag", "ROS bag", "rosbags", "ros"),
 }
 _BY_SUFFIX = {suffix: entry for suffixes, entry in FORMATS.items() for suffix in suffixes}
 SUFFIXES = tuple(_BY_SUFFIX)
@@ -56,6 +63,10 @@ def read(path: Path, asked: TextLayout) -> Contents:
         raise BadInput("file", str(path), got, f"one of {', '.join(SUFFIXES)}", "export it as one of these")
     entry = _BY_SUFFIX[suffix]
     if asked != TextLayout() and entry.module != "delimited":
-        got = f"--separator, --decimal or --skip for a {entry.called.split(';')[0]}"
+        got = f"--separator, --decimal or --skip for a {entry.called}"
         raise BadInput("option", str(path), got, "these for tables of text alone", "leave them out")
+    if entry.package and not is_installed(entry.package):
+        raise missing(entry.package, entry.extra, path)
+    if entry.apart:
+        return apart.read(entry.module, path, entry.called)
     return cast(Reader, import_module(f"recordings.formats.{entry.module}")).read(path, asked)

@@ -10,12 +10,12 @@ import pytest
 from scipy.io import savemat
 
 from recordings.channels import Channel, Span, log_of_channels
-from recordings.importing import import_file
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from records.log import load_log
 from sim.columns import log_columns
 from sim.plants import MODELS
+from tests.recordings.here import imported_here
 from twinlaw.command import main
 
 CE150 = log_columns(MODELS["ce150"]())
@@ -93,7 +93,7 @@ def _without(name: str) -> dict[str, Any]:
 )
 def test_a_wrong_matlab_file_is_refused_by_name(tmp_path: Path, changes: dict[str, Any], message: str) -> None:
     with pytest.raises(BadInput, match=message):
-        import_file(_saved(tmp_path / "run.mat", **changes), ColumnMapping())
+        imported_here(_saved(tmp_path / "run.mat", **changes), ColumnMapping())
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_a_file_that_is_no_matlab_file_is_refused(tmp_path: Path, content: bytes
     if content is not None:
         (tmp_path / "run.mat").write_bytes(content)
     with pytest.raises(BadInput, match=message):
-        import_file(tmp_path / "run.mat", ColumnMapping())
+        imported_here(tmp_path / "run.mat", ColumnMapping())
 
 
 def test_a_truncated_matlab_file_is_refused_at_every_length(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_truncated_matlab_file_is_refused_at_every_length(tmp_path: Path) -> N
     for length in range(0, len(whole), 97):
         (tmp_path / "cut.mat").write_bytes(whole[:length])
         with pytest.raises(BadInput):
-            import_file(tmp_path / "cut.mat", ColumnMapping())
+            imported_here(tmp_path / "cut.mat", ColumnMapping())
 
 
 def test_an_input_that_begins_too_late_is_refused() -> None:
@@ -199,7 +199,7 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
 def test_every_kind_of_matlab_file_gives_the_run(kind: str, tmp_path: Path) -> None:
     saved, said = KINDS[kind]
     savemat(tmp_path / "run.mat", saved)
-    log = import_file(tmp_path / "run.mat", _mapped(**said)).log
+    log = imported_here(tmp_path / "run.mat", _mapped(**said)).log
     for name, values in RUN.items():
         np.testing.assert_allclose(log.column(name), values, rtol=1e-14, atol=1e-15)
     assert log.sample_period_s == 0.01
@@ -208,7 +208,7 @@ def test_every_kind_of_matlab_file_gives_the_run(kind: str, tmp_path: Path) -> N
 def test_version_4_is_read(tmp_path: Path) -> None:
     savemat(tmp_path / "run.mat", RUN, format="4")
     np.testing.assert_array_equal(
-        import_file(tmp_path / "run.mat", ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"]
+        imported_here(tmp_path / "run.mat", ColumnMapping()).log.column("psi_rad"), RUN["psi_rad"]
     )
 
 
@@ -219,12 +219,12 @@ def test_structures_with_the_same_fields_are_named_and_a_group_is_taken(tmp_path
     with pytest.raises(
         BadInput, match=r"run1\.psi_rad .* or run2\.psi_rad .*--column psi_rad=run1\.psi_rad, or --group run1"
     ):
-        import_file(tmp_path / "two.mat", ColumnMapping())
-    second = import_file(tmp_path / "two.mat", ColumnMapping(group="run2")).log
+        imported_here(tmp_path / "two.mat", ColumnMapping())
+    second = imported_here(tmp_path / "two.mat", ColumnMapping(group="run2")).log
     np.testing.assert_array_equal(second.column("psi_rad"), half["psi_rad"])
     assert second.t_s[0] == 5.0  # its own times with it
     with pytest.raises(BadInput, match="nothing under 'run3'"):
-        import_file(tmp_path / "two.mat", ColumnMapping(group="run3"))
+        imported_here(tmp_path / "two.mat", ColumnMapping(group="run3"))
 
 
 def test_an_expression_of_times_takes_each_columns_own_times(tmp_path: Path) -> None:
@@ -234,7 +234,7 @@ def test_an_expression_of_times_takes_each_columns_own_times(tmp_path: Path) -> 
         name: {"Time": 1e3 * (late if name == "phi_rad" else T_S), "Data": RUN[name], "Name": name} for name in FOUR
     }
     savemat(tmp_path / "run.mat", stamped)
-    log = import_file(
+    log = imported_here(
         tmp_path / "run.mat", _mapped(t_s="psi_rad.Time*0.001", phi_rad="phi_rad.Data", psi_rad="psi_rad.Data")
     ).log
     rows = ~np.isnan(log.column("phi_rad"))
@@ -263,44 +263,44 @@ def test_an_expression_of_times_takes_each_columns_own_times(tmp_path: Path) -> 
 def test_a_mapping_that_gives_no_column_is_refused(said: dict[str, str], told: str, tmp_path: Path) -> None:
     savemat(tmp_path / "run.mat", {**RUN, "K": np.arange(6.0), "gains": np.eye(3)})
     if not told:  # one letter at a name's end is no unit where it does not fit
-        assert import_file(tmp_path / "run.mat", _mapped(**said)).log.column("psi_rad")[0] == 5.0
+        assert imported_here(tmp_path / "run.mat", _mapped(**said)).log.column("psi_rad")[0] == 5.0
         return
     with pytest.raises(BadInput, match=told):
-        import_file(tmp_path / "run.mat", _mapped(**said))
+        imported_here(tmp_path / "run.mat", _mapped(**said))
 
 
 def test_a_part_is_cut_before_anything_is_checked(tmp_path: Path) -> None:
     """Truth: rows 30 on are unusable in four ways; up to 0.2 s nothing of that counts."""
     bad = {**RUN, "u_M_V": np.where(T_S > 0.3, np.nan, RUN["u_M_V"]), "t_s": np.where(T_S > 0.4, 0.0, T_S)}
-    log = import_file(
+    log = imported_here(
         _saved(tmp_path / "run.mat", **{**bad, "t_s": np.where(T_S > 0.4, 1.0, T_S)}), ColumnMapping(), Span(0.05, 0.2)
     ).log
     np.testing.assert_allclose(log.t_s, T_S[5:21])
     rows = [f"{t:.2f},5,1,{'x' if t > 0.3 else 0.1 * t:},0" for t in T_S]
     (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(rows))
-    assert len(import_file(tmp_path / "run.csv", ColumnMapping(), Span(until_s=0.2)).log.t_s) == 21
+    assert len(imported_here(tmp_path / "run.csv", ColumnMapping(), Span(until_s=0.2)).log.t_s) == 21
     with pytest.raises(BadInput, match=r"line 33.*'psi_rad': got 'x' \(and 18 more\).* it is at 0\.31 s"):
-        import_file(tmp_path / "run.csv", ColumnMapping())
+        imported_here(tmp_path / "run.csv", ColumnMapping())
     with pytest.raises(BadInput, match=r"--from, --until.*0 rows.*0 s to 0\.49 s"):
-        import_file(tmp_path / "run.csv", ColumnMapping(), Span(7.0))
+        imported_here(tmp_path / "run.csv", ColumnMapping(), Span(7.0))
 
 
 def test_times_of_a_calendar_are_counted_from_the_first(tmp_path: Path) -> None:
-    done = import_file(_saved(tmp_path / "run.mat", t_s=T_S + 1_716_398_564.0), ColumnMapping(), Span(until_s=0.205))
+    done = imported_here(_saved(tmp_path / "run.mat", t_s=T_S + 1_716_398_564.0), ColumnMapping(), Span(until_s=0.205))
     np.testing.assert_allclose(done.log.t_s, T_S[:21], atol=1e-6)
     assert any("counted from the first" in told for told in done.found)
 
 
 @pytest.mark.parametrize("per_second", [1e3, 1e6, 1e9])
 def test_dates_in_parts_of_a_second_are_told_by_their_size(per_second: float, tmp_path: Path) -> None:
-    done = import_file(
+    done = imported_here(
         _saved(tmp_path / "run.mat", t_s=None, stamp=np.round((T_S + 1_716_398_564.0) * per_second)), ColumnMapping()
     )
     np.testing.assert_allclose(done.log.t_s, T_S, atol=1e-3 if per_second == 1e3 else 1e-6)
 
 
 def test_times_that_look_like_milliseconds_are_remarked(tmp_path: Path) -> None:
-    done = import_file(_saved(tmp_path / "run.mat", t_s=1e3 * T_S), ColumnMapping())
+    done = imported_here(_saved(tmp_path / "run.mat", t_s=1e3 * T_S), ColumnMapping())
     assert any("rows are 10 s apart" in told for told in done.found)
 
 
@@ -308,8 +308,8 @@ def test_counts_convert_by_the_turn(tmp_path: Path) -> None:
     changes = {"psi_rad": None, "psi_counts": np.arange(50.0)}
     path = _saved(tmp_path / "run.mat", **changes)
     with pytest.raises(BadInput, match="--per-turn N"):
-        import_file(path, ColumnMapping())
-    log = import_file(path, ColumnMapping(per_turn=4096.0)).log
+        imported_here(path, ColumnMapping())
+    log = imported_here(path, ColumnMapping(per_turn=4096.0)).log
     np.testing.assert_allclose(log.column("psi_rad"), np.arange(50.0) * 2.0 * np.pi / 4096.0)
 
 
@@ -318,10 +318,10 @@ def test_without_a_mapping_the_columns_are_named_and_one_is_proposed_that_works(
     rows = "".join(f"{1e3 * t:g};{5e3 + t};1800;{10 * t};{-5 * t}\n" for t in T_S)
     (tmp_path / "rig.csv").write_text(table + rows)
     with pytest.raises(BadInput, match=r"Elevation \[deg\].*separated by semicolon") as refused:
-        import_file(tmp_path / "rig.csv", ColumnMapping())
+        imported_here(tmp_path / "rig.csv", ColumnMapping())
     words = shlex.split(refused.value.remedy.partition("for example ")[2])
     said = dict(word.split("=", 1) for word in words if word != "--column")
-    log = import_file(tmp_path / "rig.csv", ColumnMapping(columns=said)).log
+    log = imported_here(tmp_path / "rig.csv", ColumnMapping(columns=said)).log
     np.testing.assert_allclose(log.column("psi_rad"), np.radians(10.0 * T_S), atol=1e-9)
     np.testing.assert_allclose(log.column("u_M_V"), 5.0 + 1e-3 * T_S, atol=1e-9)
     np.testing.assert_allclose(log.t_s, T_S, atol=1e-9)

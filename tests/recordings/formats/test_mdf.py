@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from recordings.formats.mdf import contents_of
-from recordings.formats.mdf_reading import Channel, Group
+from recordings.formats.mdf import Channel, Group, contents_of
 from recordings.mapping.names import Ambiguous, find
 
 T_S = np.arange(5) * 0.01

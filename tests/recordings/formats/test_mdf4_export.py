@@ -1,6 +1,5 @@
 """A run log as MDF4: every number, time and unit comes back through the importer's own reader."""
 
-import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,7 +10,6 @@ import pytest
 
 from recordings.formats.mdf import read
 from recordings.formats.mdf4_export import mdf4_bytes
-from recordings.importing import import_file
 from recordings.layout import FOUND
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
@@ -19,6 +17,7 @@ from records.log import RunLog, facts_of_sidecar, save_log
 from records.text.units import unit_of
 from sim.columns import log_columns
 from sim.plants import MODELS
+from tests.recordings.here import imported_here
 from twinlaw.command import main
 
 T_S = np.array([0.0, 0.01, 0.0203, 0.04])
@@ -49,16 +48,15 @@ def test_what_was_exported_reads_back_exactly(tmp_path: Path) -> None:
     np.testing.assert_array_equal(channels["seq"].values, [7, 8, 9, 11])
 
 
-@pytest.mark.soak
 def test_the_way_back_keeps_digest_loop_and_locked_axes(tmp_path: Path) -> None:
     """Truth: the sidecar of the log that was exported; a comment of another tool says nothing."""
     pytest.importorskip("asammdf", reason="the optional extra mdf4 is not installed")
     held = replace(log(), locked=("azimuth",), loop="open")
     (tmp_path / "run.mf4").write_bytes(mdf4_bytes(held))
-    back = import_file(tmp_path / "run.mf4", ColumnMapping()).log
+    back = imported_here(tmp_path / "run.mf4", ColumnMapping()).log
     assert (back.table_digest, back.loop, back.locked) == (held.table_digest, "open", ("azimuth",))
     with pytest.raises(BadInput, match="give the log and the plant of one rig"):
-        import_file(tmp_path / "run.mf4", ColumnMapping(plant="quanser_aero"))
+        imported_here(tmp_path / "run.mf4", ColumnMapping(plant="quanser_aero"))
 
 
 def test_a_comment_that_is_no_sidecar_says_nothing() -> None:
@@ -95,13 +93,3 @@ def test_a_file_that_was_cut_short_is_one_clear_line(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1, done.stderr
     assert not (tmp_path / "run.csv").exists()
-
-
-def test_a_file_at_which_the_reader_dies_is_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A damaged file makes asammdf 8.8 read beyond its memory about once in a hundred times."""
-    (tmp_path / "asammdf.py").write_text("import os, signal\ndef MDF(path): os.kill(os.getpid(), signal.SIGSEGV)\n")
-    (tmp_path / "run.mf4").write_bytes(b"MDF     ")
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", ""))))
-    with pytest.raises(BadInput, match="its reader ended with status -11"):
-        read(tmp_path / "run.mf4", FOUND)

@@ -1,8 +1,10 @@
 """HDF5, PX4, Parquet, MCAP and ROS files as their own packages write them, through the command's own path to a run log."""
 
 import json
+import re
 import struct
 import sys
+import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -11,11 +13,14 @@ import numpy as np
 import pytest
 
 from recordings.channels import Span
-from recordings.formats.table import FORMATS
+from recordings.formats.table import FORMATS, Format
 from recordings.importing import import_file
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from records.log import RunLog
+from tests.recordings.here import imported_here
+from tests.test_project import ROOT
+from twinlaw.verbs.doctor import EXTRAS
 
 N = 40
 T_S = np.arange(N) * 0.01
@@ -24,7 +29,7 @@ STAMPS_NS = [1_716_398_564_000_000_000 + 10_000_000 * k for k in range(N)]
 
 
 def _log(path: Path, **columns: str) -> RunLog:
-    return import_file(path, ColumnMapping(columns=columns, plant="emps"), Span(from_s=0.0)).log
+    return imported_here(path, ColumnMapping(columns=columns, plant="emps"), Span(from_s=0.0)).log
 
 
 def _is_the_run(log: RunLog, rows: slice = slice(None)) -> None:
@@ -157,7 +162,7 @@ def test_an_mcap_file_that_ends_early_gives_what_it_has(tmp_path: Path) -> None:
     _mcap_json(tmp_path / "run.mcap")
     whole = (tmp_path / "run.mcap").read_bytes()
     (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) // 2])
-    done = import_file(tmp_path / "cut.mcap", ColumnMapping(columns={"q_m": "q[1]"}, plant="emps"))
+    done = imported_here(tmp_path / "cut.mcap", ColumnMapping(columns={"q_m": "q[1]"}, plant="emps"))
     _is_the_run(done.log, slice(0, len(done.log.t_s)))
     assert any("ends early" in told for told in done.found)
 
@@ -172,22 +177,25 @@ def test_a_file_of_another_kind_is_one_clear_line(suffix: str, content: bytes | 
     assert f"run{suffix}" in str(refused.value) or str(tmp_path) in str(refused.value)
 
 
-PACKAGES = {
-    ".h5": "h5py",
-    ".mf4": "asammdf",
-    ".ulg": "pyulog",
-    ".parquet": "pyarrow",
-    ".mcap": "mcap",
-    ".bag": "rosbags",
-}
+NEEDING = [(suffixes[0], entry) for suffixes, entry in FORMATS.items() if entry.package]
 
 
-@pytest.mark.parametrize("suffix", PACKAGES)
+@pytest.mark.parametrize(("suffix", "entry"), NEEDING, ids=[suffix for suffix, _ in NEEDING])
 def test_a_package_that_is_not_installed_is_named_with_its_extra(
-    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    suffix: str, entry: Format, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    extra = next(entry.extra for suffixes, entry in FORMATS.items() if suffix in suffixes)
-    monkeypatch.setitem(sys.modules, PACKAGES[suffix], None)
+    monkeypatch.setitem(sys.modules, entry.package or "", None)
     (tmp_path / f"run{suffix}").write_bytes(b"x")
-    with pytest.raises(BadInput, match=rf"no package {PACKAGES[suffix]} .*twinlaw\[{extra}\]"):
-        _log(tmp_path / f"run{suffix}")
+    for read in (imported_here, import_file):
+        with pytest.raises(BadInput, match=rf"no package {entry.package} .*twinlaw\[{entry.extra}\]"):
+            read(tmp_path / f"run{suffix}", ColumnMapping())
+
+
+def test_the_extras_of_the_table_are_declared_installed_for_the_tests_and_known_to_the_doctor() -> None:
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    extras = {entry.extra for _, entry in NEEDING}
+    assert set(re.findall(r"\w+", declared["logs"][0])) == {"twinlaw", *extras}
+    assert "twinlaw[logs]" in declared["test"]
+    for _, entry in NEEDING:
+        assert any(requirement.startswith(entry.package or "?") for requirement in declared[entry.extra])
+    assert extras <= set(EXTRAS)
