@@ -65,11 +65,9 @@ def log_of_channels(
         sample_period_s=float(f"{min(float(np.median(np.diff(t))) for t, _ in clocked.values() if t.size > 1):.9g}"),
         loop=loop or ("closed" if any("_ref" in name for name in extra) else "open"),
         t_s=t_s,
-        u=np.column_stack(
-            [_finite(_held(channels[name], t_s, name, where), t_s, name, where) for name in columns.inputs]
-        ),
+        u=np.column_stack([_input(channels[name], t_s, name, where) for name in columns.inputs]),
         y=np.column_stack([_sampled(outputs[name], t_s) for name in columns.outputs]),
-        extra={name: _numbers(_held(channels[name], t_s, name, where)) for name in extra},
+        extra={name: _held(channels[name], t_s) for name in extra},
     )
 
 
@@ -137,24 +135,37 @@ def _numbers(values: Array) -> Array:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def _held(channel: Channel, t_s: Array, name: str, where: str) -> Array:
-    """The channel's last value at each row; raises BadInput when it begins after the first row, and for a fault among those used."""
+def _held(channel: Channel, t_s: Array) -> Array:
+    """The channel's last value at each row, NaN before its first and where there is no number."""
     if channel.t_s is None:
         return np.full(t_s.shape, float(channel.values))
-    timed = np.flatnonzero(np.isfinite(channel.t_s))
-    order = timed[np.argsort(channel.t_s[timed], kind="stable")]
-    index = np.searchsorted(channel.t_s[order], t_s + SAME_INSTANT_S, side="right") - 1
-    if index[0] < 0:
-        first_s = channel.t_s[order][0] if order.size else np.inf
-        remedy = f"cut the recording's beginning: --from {first_s:.9g}"
-        got = f"its first sample at {first_s:.9g} s"
-        raise BadInput(f"column {name!r}", where, got, f"one by {t_s[0]:.9g} s", remedy)
-    rows = order[index]
-    if channel.faults:
-        used = set(rows.tolist())
+    rows = _last_rows(channel.t_s, t_s)
+    return (
+        np.where(rows < 0, np.nan, _numbers(channel.values)[rows]) if channel.t_s.size else np.full(t_s.shape, np.nan)
+    )
+
+
+def _last_rows(clock: Array, t_s: Array) -> NDArray[np.intp]:
+    """The row of a clock, in whatever order it is, that was the last at each time; -1 before the first."""
+    timed = np.flatnonzero(np.isfinite(clock))
+    order = timed[np.argsort(clock[timed], kind="stable")]
+    places = np.searchsorted(clock[order], t_s + SAME_INSTANT_S, side="right") - 1
+    return np.where(places < 0, -1, order[places]) if order.size else np.full(t_s.shape, -1)
+
+
+def _input(channel: Channel, t_s: Array, name: str, where: str) -> Array:
+    """The channel's last value at each row; raises BadInput when it begins after the first row, and where it is no number."""
+    values = _held(channel, t_s)
+    if channel.t_s is not None:
+        rows = _last_rows(channel.t_s, t_s)
+        if rows[0] < 0:
+            first_s = float(np.nanmin(channel.t_s, initial=np.inf))
+            remedy = f"cut the recording's beginning: --from {first_s:.9g}"
+            got = f"its first sample at {first_s:.9g} s"
+            raise BadInput(f"column {name!r}", where, got, f"one by {t_s[0]:.9g} s", remedy)
+        used = set(rows.tolist()) if channel.faults else set()
         _without_faults({row: told for row, told in channel.faults.items() if row in used}, channel.t_s, name, where)
-    values: Array = channel.values[rows]
-    return values
+    return _finite(values, t_s, name, where)
 
 
 def _without_faults(faults: Mapping[int, str], t_s: Array, name: str, where: str) -> None:

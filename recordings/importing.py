@@ -197,6 +197,6 @@ def _doubtful(log: RunLog) -> list[str]:
 
 
 def _missing(log: RunLog) -> list[str]:
-    """How many rows of an output have no sample."""
-    rows = [(name, int(np.isnan(log.column(name)).sum())) for name in log.columns.outputs]
+    """How many rows of an output, or of a column besides, have no sample."""
+    rows = [(name, int(np.isnan(log.column(name)).sum())) for name in (*log.columns.outputs, *log.extra)]
     return [f"{name} has no sample in {count} of {len(log.t_s)} rows" for name, count in rows if count]

@@ -4,6 +4,7 @@ import re
 import shlex
 from collections.abc import Mapping, Sequence
 from difflib import SequenceMatcher
+from functools import cache
 
 import numpy as np
 
@@ -93,6 +94,7 @@ def likeness(column: str, name: str, signal: Signal) -> float:
     return score * (1.0 if fits else 0.9) * (1.0 if reference else 0.3)
 
 
+@cache
 def _same(word: str, other: str) -> float:
     if word == other:
         return 1.0

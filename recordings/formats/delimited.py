@@ -105,7 +105,7 @@ def _one_by_one(lines: Sequence[Line], layout: Layout) -> list[Signal | str]:
     width = len(layout.headings)
     rows = [split(line.text, layout.separator) for line in lines]
     filled = [(line, row) for line, row in zip(lines, rows, strict=True) if not all(map(is_missing, row))]
-    short = [f"line {line.number}: {len(row)} cells of {width}" for line, row in filled]
+    short = [f"line {line.number}: {len(row)} cells of {width}, {layout.found[0]}" for line, row in filled]
     whole = [[] if any(row[width:]) else row for _, row in filled]
     return [
         _column(
@@ -140,20 +140,22 @@ def _column(cells: Sequence[str | None], lines: Sequence[Line], short: Sequence[
     times = [None if cell is None else time_of_day_s(cell) for cell in cells]
     if sum(time is not None for time in times) > 0.5 * len(cells):
         values = from_the_first_s([np.nan if time is None else time for time in times])
-        faults = {row: _told(cells[row], lines[row], short[row]) for row, time in enumerate(times) if time is None}
+        faults = {
+            row: _told(cells[row], lines[row], short[row], layout) for row, time in enumerate(times) if time is None
+        }
         return Signal(values, "s", faults=faults)
     values = np.array([np.nan if cell is None else _value(cell, layout.decimal) for cell in cells])
     nan = map(int, np.flatnonzero(np.isnan(values)))
     odd = [row for row in nan if (cell := cells[row]) is None or not is_missing(cell)]
-    faults = {row: _told(cells[row], lines[row], short[row]) for row in odd}
+    faults = {row: _told(cells[row], lines[row], short[row], layout) for row in odd}
     filled = sum(cell is not None and not is_missing(cell) for cell in cells)
     if filled and sum(cells[row] is not None for row in odd) > MOST_TEXT * filled:
         return f"text, as {next(iter(faults.values()))}"
     return Signal(values, faults=faults)
 
 
-def _told(cell: str | None, line: Line, short: str) -> str:
-    return short if cell is None else f"line {line.number}: {cell[:30]!r}"
+def _told(cell: str | None, line: Line, short: str, layout: Layout) -> str:
+    return short if cell is None else f"line {line.number}: {cell[:30]!r} among {layout.found[0]}"
 
 
 def _value(cell: str, decimal: str) -> float:

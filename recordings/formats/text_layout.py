@@ -121,9 +121,9 @@ def _headings(
         units = [cell.strip("[](){}") for cell in cells]
         line, cells = wide[-2]
     names = tuple(cell or f"c{index}" for index, cell in enumerate(cells, start=1))
-    told = [f"header in line {line.number}: {separator_text(names)}"]
+    told = [f"header in line {line.number}: {shown(line.text)}"]
     if any(units):
-        told.append(f"units in line {wide[-1][0].number}: {separator_text(units)}")
+        told.append(f"units in line {wide[-1][0].number}: {shown(wide[-1][0].text)}")
     if line.number > 1 and before[0].number < line.number:
         told.append(f"lines before {line.number} are passed over")
     return names, tuple(units), tuple(told)
@@ -140,10 +140,9 @@ def _passed_over(before: Sequence[Line], separator: str, width: int) -> tuple[st
     return (f"line {last.number} and those before it are passed over: {last.text[:60]!r}, {cells} cells{hint}",)
 
 
-def separator_text(cells: Sequence[str], most: int = 160) -> str:
-    """Cells in a row as a person reads them, cut at `most` characters."""
-    text = " | ".join(cells)
-    return text if len(text) <= most else f"{text[: most - 3]}..."
+def shown(text: str, most: int = 160) -> str:
+    """A line as it stands, cut at `most` characters."""
+    return text.strip() if len(text.strip()) <= most else f"{text.strip()[: most - 3]}..."
 
 
 def _cells_of_heading(text: str, separator: str, width: int) -> list[str] | None:

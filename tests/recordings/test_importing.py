@@ -279,10 +279,28 @@ def test_a_part_is_cut_before_anything_is_checked(tmp_path: Path) -> None:
     rows = [f"{t:.2f},5,1,{'x' if t > 0.3 else 0.1 * t:},0" for t in T_S]
     (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad\n" + "\n".join(rows))
     assert len(imported_here(tmp_path / "run.csv", ColumnMapping(), Span(until_s=0.2)).log.t_s) == 21
-    with pytest.raises(BadInput, match=r"line 33.*'psi_rad': got 'x' \(and 18 more\).* it is at 0\.31 s"):
+    with pytest.raises(
+        BadInput, match=r"line 33.*'psi_rad': got 'x' among cells separated by comma \(and 18 more\).* it is at 0\.31 s"
+    ):
         imported_here(tmp_path / "run.csv", ColumnMapping())
     with pytest.raises(BadInput, match=r"--from, --until.*0 rows.*0 s to 0\.49 s"):
         imported_here(tmp_path / "run.csv", ColumnMapping(), Span(7.0))
+
+
+def test_a_column_that_nobody_asked_for_does_not_stand_in_the_way(tmp_path: Path) -> None:
+    """Truth: the reference begins late and has a text in it; it is NaN there, and said to be."""
+    rows = [f"{t:.2f},5,1,{t},0,{'-' if t < 0.1 else 'x' if t > 0.45 else 1}" for t in T_S]
+    (tmp_path / "run.csv").write_text("t_s,u_M_V,u_T_V,psi_rad,phi_rad,psi_ref_rad\n" + "\n".join(rows))
+    done = imported_here(tmp_path / "run.csv", ColumnMapping())
+    assert np.flatnonzero(np.isnan(done.log.extra["psi_ref_rad"])).tolist() == [*range(10), 46, 47, 48, 49]
+    assert "psi_ref_rad has no sample in 14 of 50 rows" in done.found
+    savemat(
+        tmp_path / "run.mat", {**RUN, "a": {"psi_ref_rad": T_S}, "b": {"psi_ref_rad": T_S}, "phi_ref_rad": np.zeros(7)}
+    )
+    done = imported_here(tmp_path / "run.mat", ColumnMapping())
+    assert not done.log.extra
+    assert any("psi_ref_rad is left out: it could be a.psi_ref_rad or b.psi_ref_rad" in told for told in done.found)
+    assert any("phi_ref_rad is left out" in told for told in done.found)
 
 
 def test_times_of_a_calendar_are_counted_from_the_first(tmp_path: Path) -> None:
