@@ -38,7 +38,7 @@ class Span:
         if self == Span():
             return np.ones(t_s.shape, dtype=bool)
         times = _last_known(t_s)
-        return np.asarray((times >= self.from_s) & (times <= self.until_s))
+        return np.asarray((times >= self.from_s - SAME_INSTANT_S) & (times <= self.until_s + SAME_INSTANT_S))
 
 
 def log_of_channels(
@@ -160,7 +160,7 @@ def _input(channel: Channel, t_s: Array, name: str, where: str) -> Array:
         rows = _last_rows(channel.t_s, t_s)
         if rows[0] < 0:
             first_s = float(np.nanmin(channel.t_s, initial=np.inf))
-            remedy = f"cut the recording's beginning: --from {first_s:.9g}"
+            remedy = f"cut the recording's beginning: --from {first_s:.12g}"
             got = f"its first sample at {first_s:.9g} s"
             raise BadInput(f"column {name!r}", where, got, f"one by {t_s[0]:.9g} s", remedy)
         used = set(rows.tolist()) if channel.faults else set()
