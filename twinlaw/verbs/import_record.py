@@ -57,7 +57,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SIGN",
         help="of a table of text: between cells, a sign or `tab`, `blanks`; default: found",
     )
-    parser.add_argument("--decimal", choices=(".", ","), help="of a table of text; default: found")
+    parser.add_argument(
+        "--decimal", choices=(".", ","), metavar="SIGN", help="of a table of text: point or comma; default: found"
+    )
     parser.add_argument(
         "--skip",
         type=options.count,
@@ -69,7 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", dest="from_s", type=float, metavar="S", help="leave out all before this time")
     parser.add_argument("--until", dest="until_s", type=float, metavar="S", help="leave out all after this time")
     parser.add_argument("--every", type=options.count, default=1, metavar="N", help="keep one row in N; default: all")
-    parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: RECORD.csv here")
+    parser.add_argument("--out", type=Path, metavar="NAME.csv", help="default: the record's or file's own name, here")
     options.as_json(parser)
 
 
