@@ -9,9 +9,12 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
-from recordings.mapping.columns import TIME, Column, Source, ambiguous, automatic, column, source
+from recordings.mapping.automatic import ambiguous, automatic
+from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
-from recordings.mapping.names import Ambiguous, is_under
+from recordings.mapping.names import Ambiguous
+from recordings.mapping.source import Source, source
+from recordings.mapping.times import TIME
 from recordings.proposal import proposed
 from recordings.signals import Contents, listed
 from records.errors import BadInput
@@ -51,7 +54,7 @@ def log_of_contents(
     """What a file holds as a run log of the plant that `columns` describes; `where` names the file. Raises BadInput."""
     _check_columns(mapping, columns)
     facts = _facts(contents, where, columns)
-    of = _source(contents, where, mapping)
+    of = source(contents, where, mapping.group, mapping.per_turn, mapping.columns.get(TIME))
     found, left_out = _columns(of, mapping, columns)
     channels, shift = _from_the_first({name: entry.channel for name, entry in found.items()})
     stated = mapping.loop or facts.get("loop")
@@ -83,14 +86,6 @@ def _check_columns(mapping: ColumnMapping, columns: LogColumns) -> None:
         if name not in known:
             where = f"plant {columns.plant}"
             raise BadInput(f"column {name!r}", where, "an unknown column", f"one of {', '.join(known)}", "rename it")
-
-
-def _source(contents: Contents, where: str, mapping: ColumnMapping) -> Source:
-    group = mapping.group
-    if group is not None and not any(is_under(name, group) for name in contents.signals):
-        got = f"nothing under {group!r} among {listed(list(contents.signals))}"
-        raise BadInput("group", where, got, "a group of the file", "name another with --group")
-    return source(contents, where, group, mapping.per_turn, mapping.columns.get(TIME))
 
 
 def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[dict[str, Column], list[str]]:
@@ -132,7 +127,7 @@ def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mappi
     if of.contents.unread and not of.signals:
         told = "; ".join(f"{name} is {what}" for name, what in list(of.contents.unread.items())[:3])
         return BadInput("signals", of.where, told, "vectors of numbers", "save them as plain vectors")
-    if TIME not in said and not any(signal.clock for signal in of.signals.values()):
+    if TIME not in said and not of.clocks:
         missing = [TIME, *missing]
     there = listed(
         [*(_named(name, of) for name in of.signals), *(f"{name} ({told})" for name, told in of.contents.unread.items())]

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from recordings.mapping.expression import BadExpression, Quantity, Reference, evaluate, parse, references
+from recordings.mapping.evaluation import BadExpression, Quantity, Reference, evaluate, references
+from recordings.mapping.expression import parse
 
 X = np.array([1.0, 2.0, 4.0])
 

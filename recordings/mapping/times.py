@@ -1,0 +1,86 @@
+"""The times of a column's samples: the clock of its signals, or an expression of it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recordings.mapping.automatic import ambiguous
+from recordings.mapping.evaluation import Number, Quantity, Reference
+from recordings.mapping.names import Ambiguous, find
+from recordings.mapping.source import Source
+from recordings.mapping.values import evaluated, factor_of, parsed, picked, unit_for
+from recordings.signals import listed
+from records.errors import BadInput
+
+Array = NDArray[np.float64]
+
+TIME = "t_s"
+ROW = "row"  # in an expression of times, of a file that has none: 0, 1, 2, ...
+CALENDAR = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+CALENDAR_S = (1e9, 4e9)  # 2001 to 2096 since 1970: no run lasts as long
+
+
+def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array, str]:
+    """The times [s] of a column's samples: its own clock, or the expression of times with its own clock in place of the file's.
+
+    And what is to be said of them.
+    """
+    text = of.time or clock
+    if text is None:
+        raise _no_times(of, name, length)
+
+    def look_up(reference: Reference) -> Quantity:
+        if reference.text == ROW and find(ROW, of.signals) is None:
+            return Quantity(np.arange(length, dtype=float))
+        try:
+            meant = find(reference.text, of.signals, of.group)
+        except Ambiguous as error:
+            if clock is None or not set(error.candidates) <= of.clocks:
+                raise ambiguous({TIME: error}, of) from error
+            meant = clock
+        own = clock is not None and (meant in of.clocks or (meant is None and reference.text in (TIME, "time")))
+        if own:
+            assert clock is not None
+            used, values = clock, of.signals[clock].values
+        else:
+            used, values = picked(reference, TIME, of)
+        return Quantity(values, unit_for(used, of.signals[used], "s"))
+
+    node = Reference(text) if of.time is None else parsed(TIME, text, of)
+    if isinstance(node, Number):
+        raise BadInput(
+            f"column {TIME!r}",
+            f"mapping {text!r}",
+            "a constant",
+            "the times of the samples",
+            f"--column {TIME}=0.01*row for 10 ms between rows",
+        )
+    quantity = evaluated(TIME, text, node, look_up, of)
+    factor, told = _calendar(quantity) or factor_of(TIME, text, quantity, of)
+    t_s: Array = quantity.values * factor
+    if t_s.size != length:
+        got = f"{length} values at {t_s.size} times"
+        remedy = "save one run, whole vectors, or name its own times with --column t_s=NAME"
+        raise BadInput(f"column {name!r}", of.where, got, "one value at each time", remedy)
+    return t_s, f"{TIME} = {text}{told}"
+
+
+def _calendar(quantity: Quantity) -> tuple[float, str] | None:
+    """The factor of times without a unit that are dates in ms, us or ns since 1970, and what is to be said of it; None for others."""
+    if quantity.unit != "" or not np.isfinite(quantity.values).any():
+        return None
+    first = float(np.nanmin(quantity.values))
+    return next(
+        ((f, f", dates in {unit}") for unit, f in CALENDAR.items() if CALENDAR_S[0] <= first * f < CALENDAR_S[1]), None
+    )
+
+
+def _no_times(of: Source, name: str, length: int) -> BadInput:
+    """What is said where no times of a column are known: none in the file, or none as many as its values."""
+    if of.clocks:
+        sizes = " or ".join(f"{of.signals[clock].values.size} of {clock}" for clock in sorted(of.clocks)[:4])
+        remedy = f"save one run, whole vectors, or name its own times with --column {TIME}=NAME"
+        return BadInput(
+            f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
+        )
+    remedy = f"name them with --column {TIME}=NAME, or --column {TIME}=0.01*row for rows that are 10 ms apart"
+    return BadInput(f"column {TIME!r}", of.where, listed(list(of.signals)), "the times of the samples", remedy)
