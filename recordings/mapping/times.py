@@ -1,5 +1,7 @@
 """The times of a column's samples: the clock of its signals, or an expression of it."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,46 +24,40 @@ CALENDAR_S = (1e9, 4e9)  # 2001 to 2096 since 1970: no run lasts as long
 def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array, str]:
     """The times [s] of a column's samples: its own clock, or the expression of times with its own clock in place of the file's.
 
-    And what is to be said of them.
+    And what is to be said of them. Raises BadInput where none are known, or none as many as the column has samples.
     """
     text = of.time or clock
     if text is None:
         raise _no_times(of, name, length)
-
-    def look_up(reference: Reference) -> Quantity:
-        if reference.text == ROW and find(ROW, of.signals) is None:
-            return Quantity(np.arange(length, dtype=float))
-        try:
-            meant = find(reference.text, of.signals, of.group)
-        except Ambiguous as error:
-            if clock is None or not set(error.candidates) <= of.clocks:
-                raise ambiguous({TIME: error}, of) from error
-            meant = clock
-        own = clock is not None and (meant in of.clocks or (meant is None and reference.text in (TIME, "time")))
-        if own:
-            assert clock is not None
-            used, values = clock, of.signals[clock].values
-        else:
-            used, values = picked(reference, TIME, of)
-        return Quantity(values, unit_for(used, of.signals[used], "s"))
-
     node = Reference(text) if of.time is None else parsed(TIME, text, of)
     if isinstance(node, Number):
-        raise BadInput(
-            f"column {TIME!r}",
-            f"mapping {text!r}",
-            "a constant",
-            "the times of the samples",
-            f"--column {TIME}=0.01*row for 10 ms between rows",
-        )
-    quantity = evaluated(TIME, text, node, look_up, of)
+        remedy = f"--column {TIME}=0.01*row for 10 ms between rows"
+        raise BadInput(f"column {TIME!r}", f"mapping {text!r}", "a constant", "the times of the samples", remedy)
+    quantity = evaluated(TIME, text, node, partial(_look_up, clock=clock, length=length, of=of), of)
     factor, told = _calendar(quantity) or factor_of(TIME, text, quantity, of)
     t_s: Array = quantity.values * factor
     if t_s.size != length:
         got = f"{length} values at {t_s.size} times"
-        remedy = "save one run, whole vectors, or name its own times with --column t_s=NAME"
+        remedy = f"save one run, whole vectors, or name its own times with --column {TIME}=NAME"
         raise BadInput(f"column {name!r}", of.where, got, "one value at each time", remedy)
     return t_s, f"{TIME} = {text}{told}"
+
+
+def _look_up(reference: Reference, *, clock: str | None, length: int, of: Source) -> Quantity:
+    """What a name in an expression of times means: a clock of the file stands for the column's own; ROW for its rows."""
+    if reference.text == ROW and find(ROW, of.signals) is None:
+        return Quantity(np.arange(length, dtype=float))
+    try:
+        meant = find(reference.text, of.signals, of.group)
+    except Ambiguous as error:
+        if clock is None or not set(error.candidates) <= of.clocks:
+            raise ambiguous({TIME: error}, of) from error
+        meant = clock
+    if clock is not None and (meant in of.clocks or (meant is None and reference.text in (TIME, "time"))):
+        used, values = clock, of.signals[clock].values
+    else:
+        used, values = picked(reference, TIME, of)
+    return Quantity(values, unit_for(used, of.signals[used], "s"))
 
 
 def _calendar(quantity: Quantity) -> tuple[float, str] | None:

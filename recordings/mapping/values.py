@@ -27,6 +27,7 @@ class Looked:
         self.used: list[tuple[str, Array]] = []
 
     def look_up(self, reference: Reference) -> Quantity:
+        """The vector that a reference means, in the unit that its signal has; raises BadInput."""
         name, values = picked(reference, self.name, self.of)
         self.used.append((name, values))
         return Quantity(values, unit_for(name, self.of.signals[name], self.si))
@@ -41,6 +42,7 @@ def unit_for(name: str, signal: Signal, si: str) -> str:
 
 
 def parsed(name: str, text: str, of: Source) -> Node:
+    """The tree of the expression for the column `name`; raises BadInput for what is none."""
     try:
         return parse(text, of.known_names)
     except BadExpression as error:
@@ -49,6 +51,7 @@ def parsed(name: str, text: str, of: Source) -> Node:
 
 
 def evaluated(name: str, text: str, node: Node, look_up: Callable[[Reference], Quantity], of: Source) -> Quantity:
+    """The quantity of a tree; raises BadInput where units or lengths differ."""
     try:
         return evaluate(node, look_up, lambda unit: 2.0 * np.pi / factor_to("rad", unit, of.per_turn))
     except (BadExpression, ValueError) as error:
