@@ -14,7 +14,8 @@ class Signal:
     """One recorded quantity: values (n,), or an array of which a mapping picks a row or column, as the file has them.
 
     `unit` is what the file states, empty where it states none; `clock` names the signal of the file that holds its times; `faults`
-    tells by row what stood there in place of a number; `heading` is the name with all that the file writes around it.
+    tells by row what stood there in place of a number; `heading` is the name with all that the file writes around it;
+    `instants`: its values are dates or times of day.
     """
 
     values: Array
@@ -22,6 +23,7 @@ class Signal:
     clock: str | None = None
     faults: Mapping[int, str] = field(default_factory=dict)
     heading: str = ""
+    instants: bool = False
 
 
 @dataclass(frozen=True, eq=False)

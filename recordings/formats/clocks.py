@@ -14,8 +14,12 @@ TIME_NAMES = frozenset(
 
 
 def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
-    """The signals with their clocks: in the innermost structure around one, the only vector of times as long as it is."""
-    clocks = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
+    """The signals with their clocks: in the innermost structure around one, the only vector of times as long as it is.
+
+    Times are what is named so; where nothing is, dates and times of day.
+    """
+    named = [name for name, signal in signals.items() if signal.values.ndim == 1 and is_time_name(name)]
+    clocks = named or [name for name, signal in signals.items() if signal.instants]
     return {name: replace(signal, clock=_clock_of(name, signal, signals, clocks)) for name, signal in signals.items()}
 
 

@@ -29,6 +29,9 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
                 "text file", str(path), what, "a table of text", "export it as CSV, or give it its own ending"
             )
     encoding = next((encoding for mark, encoding in MARKS if content.startswith(mark)), None)
+    whole = content.rstrip(b"\0")  # a logger that lost power leaves the rest of its block empty
+    if encoding is None and b"\0" not in whole:
+        content = whole
     if encoding is None and b"\0" in content[:4096]:
         encoding = next(
             (f"utf-16-{end}" for end, at in (("le", 1), ("be", 0)) if content[at:200:2].count(0) > 50), None

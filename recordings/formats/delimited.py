@@ -143,7 +143,7 @@ def _column(cells: Sequence[str | None], lines: Sequence[Line], short: Sequence[
         faults = {
             row: _told(cells[row], lines[row], short[row], layout) for row, time in enumerate(times) if time is None
         }
-        return Signal(values, "s", faults=faults)
+        return Signal(values, "s", faults=faults, instants=True)
     values = np.array([np.nan if cell is None else _value(cell, layout.decimal) for cell in cells])
     nan = map(int, np.flatnonzero(np.isnan(values)))
     odd = [row for row in nan if (cell := cells[row]) is None or not is_missing(cell)]

@@ -35,7 +35,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
         if values is None:
             unread[name] = f"of the type {column.type}, no numbers"
         else:
-            signals[name] = Signal(values, stated or unit, heading=heading)
+            signals[name] = Signal(values, stated or unit, heading=heading, instants=stated == "s")
     return Contents(with_clocks(signals), unread=unread)
 
 

@@ -13,6 +13,8 @@ from records.errors import BadInput
 
 SEPARATORS: dict[str, str | None] = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blanks": None}
 SAMPLE_LINES = 400  # by which the layout is told: enough to pass a preamble, few enough to be quick
+FOLLOWING = 3  # rows of numbers in a row, where the table is: a preamble has one or two
+HEADING_LINES = 8  # before the numbers, among which the header is: below it stand units and remarks, not more
 COMMENTS = ("#", "%", "//")
 
 
@@ -59,12 +61,20 @@ def find_layout(lines: Sequence[Line], comments: Sequence[Line], asked: TextLayo
     rows = [split(line.text, separator) for line in sample]
     counts = [sum(is_number(cell, decimal) for cell in row) for row in rows]
     least = max(1.0, 0.5 * median(count for count in counts if count))
-    width = mode(len(_trimmed(row)) for row, count in zip(rows, counts, strict=True) if count >= least)
-    first = next(index for index, count in enumerate(counts) if count >= least and len(rows[index]) >= width)
+    numbers = [row for row, count in zip(rows, counts, strict=True) if count >= least]
+    width = mode(len(_trimmed(row)) for row in numbers)
+    first = _first([count >= least and len(row) >= width for row, count in zip(rows, counts, strict=True)])
     before = [*(line for line in comments if line.number < sample[first].number), *sample[:first]]
-    headings, units, told = _headings(sorted(before, key=lambda line: line.number), separator, width)
+    before = sorted(before, key=lambda line: line.number)
+    headings, units, told = _headings(before, separator, width, mode(map(len, numbers)), _are_counted(numbers))
     comma = " with decimal commas" if decimal == "," else ""
     return Layout(separator, decimal, headings, units, first, (f"cells separated by {separator}{comma}", *told))
+
+
+def _first(are_numbers: Sequence[bool]) -> int:
+    """The first row of numbers that others follow, as a line of a preamble may look like one; else the first of all."""
+    firsts = [index for index, is_row in enumerate(are_numbers) if is_row]
+    return next((index for index in firsts if all(are_numbers[index : index + FOLLOWING])), firsts[0])
 
 
 def _scores(sample: Sequence[Line], asked: TextLayout) -> list[tuple[str, str, float]]:
@@ -82,7 +92,8 @@ def _scores(sample: Sequence[Line], asked: TextLayout) -> list[tuple[str, str, f
 
 
 def _worth(row: Sequence[str], decimal: str) -> float:
-    return sum(is_number(cell, decimal) for cell in row) ** 2 / len(row) if row else 0.0
+    filled = sum(not is_missing(cell) for cell in row)
+    return sum(is_number(cell, decimal) for cell in row) ** 2 / filled if filled else 0.0
 
 
 def _name(separator: str) -> str:
@@ -103,10 +114,14 @@ def _trimmed(row: list[str]) -> list[str]:
 
 
 def _headings(
-    before: Sequence[Line], separator: str, width: int
+    before: Sequence[Line], separator: str, width: int, widest: int, counted: bool
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    """Headings and units by column out of the lines before the numbers, and what is to be said of them."""
-    candidates = [(line, _cells_of_heading(line.text, separator, width)) for line in before]
+    """Headings and units by column out of the lines before the numbers, and what is to be said of them.
+
+    Rows have `width` cells, or `widest` with empty ones behind them; `counted` rows begin with their number, which may have no heading.
+    """
+    near = before[-HEADING_LINES:]
+    candidates = [(line, _cells_of_heading(line.text, separator, width, widest, counted)) for line in near]
     wide = [(line, cells) for line, cells in candidates if cells is not None]
     if not wide:
         names = tuple(f"c{index}" for index in range(1, width + 1))
@@ -145,12 +160,19 @@ def shown(text: str, most: int = 160) -> str:
     return text.strip() if len(text.strip()) <= most else f"{text.strip()[: most - 3]}..."
 
 
-def _cells_of_heading(text: str, separator: str, width: int) -> list[str] | None:
+def _are_counted(rows: Sequence[Sequence[str]]) -> bool:
+    """Whether the rows begin with 0, 1, 2, ... or 1, 2, 3, ..., as R and pandas write them."""
+    firsts = [row[0] for row in rows]
+    return any(firsts == [str(number) for number in range(start, start + len(rows))] for start in (0, 1))
+
+
+def _cells_of_heading(text: str, separator: str, width: int, widest: int, counted: bool) -> list[str] | None:
     """The cells of a line as wide as the rows, split as these or, as some loggers do, in another way; None for another line."""
     bare = text.lstrip("".join(COMMENTS) + " ") if text.startswith(COMMENTS) else text
     for way in (separator, *SEPARATORS):
         cells = [cell.rstrip(",;") if way == "blanks" else cell for cell in split(bare, way)]
-        cells = cells[:width] if len(cells) > width and not any(cells[width:]) else cells
+        cells = cells[:width] if width < len(cells) <= widest or not any(cells[width:]) else cells
+        cells = ["", *cells] if counted and len(cells) == width - 1 else cells
         if len(cells) == width and any(cells):
             return cells
     return None

@@ -1,5 +1,6 @@
 """The times of a column's samples: the clock of its signals, or an expression of it."""
 
+import shlex
 from functools import partial
 
 import numpy as np
@@ -78,5 +79,7 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
         return BadInput(
             f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
         )
-    remedy = f"name them with --column {TIME}=NAME, or --column {TIME}=0.01*row for rows that are 10 ms apart"
+    rising = (n for n, s in of.signals.items() if s.values.shape == (length,) and bool(np.all(np.diff(s.values) > 0.0)))
+    first = next(rising, "NAME")
+    remedy = f"name them with --column {shlex.quote(f'{TIME}={first}')}, or --column {TIME}=0.01*row for rows that are 10 ms apart"
     return BadInput(f"column {TIME!r}", of.where, listed(list(of.signals)), "the times of the samples", remedy)

@@ -48,6 +48,13 @@ LAYOUTS = {
     "cut short": (_rows(",", [NAMES, *TEXTS]).encode() + b"0.12,1.", "line 14, the last, is cut short (2 cells of 3)"),
     "Windows letters": (_rows(",", [(*NAMES, "Höhe"), *((*row, "1") for row in TEXTS)]).encode("cp1252"), "Windows-1252"),
     "names and rows split differently": (b"t_s, u_V, q_m\n" + _rows(" ", TEXTS).encode(), "blanks"),
+    "LabVIEW": (
+        b"LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nSamples\t12\t12\t\n***End_of_Header***\t\t\t\n"
+        + _rows("\t", [(*NAMES, "Comment"), *((*row, "") for row in _comma(TEXTS))]).encode(),
+        "header in line 7",
+    ),
+    "R": (_rows(" ", [NAMES, *((str(k), *row) for k, row in enumerate(TEXTS, start=1))]).encode(), "header in line 1"),
+    "a logger without power": (_rows(",", [NAMES, *TEXTS]).encode() + bytes(70), "comma"),
     "exponents of Fortran": (_rows(" ", [NAMES, *[[f"{float(c):.9E}".replace("E", "D") for c in r] for r in TEXTS]]).encode(), ""),
 }  # fmt: skip
 
@@ -89,8 +96,10 @@ def test_times_of_day_are_seconds_since_the_first_past_midnight_too(tmp_path: Pa
         "2024-05-23 00:00:00.000",
         "2024-05-23 00:00:00.010",
     ]
-    (tmp_path / "log.csv").write_text("Time,q_m\n" + "".join(f"{stamp},1\n" for stamp in stamps))
-    np.testing.assert_allclose(read(tmp_path / "log.csv", TextLayout()).signals["Time"].values, T_S[:4], atol=1e-9)
+    (tmp_path / "log.csv").write_text("When,q_m\n" + "".join(f"{stamp},1\n" for stamp in stamps))
+    found = read(tmp_path / "log.csv", TextLayout()).signals
+    np.testing.assert_allclose(found["When"].values, T_S[:4], atol=1e-9)
+    assert found["q_m"].clock == "When"
 
 
 def test_a_bad_cell_and_a_row_of_another_width_are_faults_of_their_rows_with_their_lines(tmp_path: Path) -> None:
