@@ -11,7 +11,8 @@ from recordings.mapping.evaluation import Number, Quantity, Reference
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.mapping.values import evaluated, factor_of, parsed, picked, unit_for
-from recordings.signals import listed
+from recordings.signals import Signal, listed
+from recordings.units import known, suffix_of
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
@@ -79,7 +80,14 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
         return BadInput(
             f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
         )
-    rising = (n for n, s in of.signals.items() if s.values.shape == (length,) and bool(np.all(np.diff(s.values) > 0.0)))
+    rising = (signal for signal in of.signals if _may_be_times(signal, of.signals[signal], length))
     first = next(rising, "NAME")
     remedy = f"name them with --column {shlex.quote(f'{TIME}={first}')}, or --column {TIME}=0.01*row for rows that are 10 ms apart"
     return BadInput(f"column {TIME!r}", of.where, listed(list(of.signals)), "the times of the samples", remedy)
+
+
+def _may_be_times(name: str, signal: Signal, length: int) -> bool:
+    """Whether a signal only increases and bears no unit of anything else."""
+    unit = known(signal.unit or suffix_of(name))
+    increases = signal.values.shape == (length,) and bool(np.all(np.diff(signal.values) > 0.0))
+    return increases and (unit is None or unit.si == "s")
