@@ -4,7 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 PLANT ?= plants/ce150.toml
 OUT ?= build
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# What is imported is compiled then, once; most of what is installed never is imported, and a suite is hundreds of processes.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help run test docs soak check lint types layers bench clean
 
@@ -21,7 +23,7 @@ docs: $(VENV)/.docs  ## the documentation as a site that needs no network, build
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 	@echo build/site/index.html
 
-soak: $(VENV)/.test  ## the suite at full length: every case, byte and seed, whole notebooks and data sets, a million frames
+soak: $(VENV)/.soak  ## the suite at full length: every case, byte and seed, whole notebooks and data sets, a million frames
 	TWINLAW_SOAK=1 $(BIN)/python -m pytest
 
 check: lint types layers  ## style, types and import order alone
@@ -42,14 +44,23 @@ clean:  ## remove what can be made again; the virtual environment stays
 	rm -rf $(OUT) .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # A stamp is written last, so that a broken download is tried again; nothing is fetched while pyproject.toml stays as it is.
-$(VENV)/.run: pyproject.toml
+# The pip that comes with an old Python takes twice as long to choose among releases.
+$(VENV)/.pip:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "twinlaw needs Python 3.11 or newer, this is " + sys.version.split()[0] + "; set PYTHON=/path/to/python3")'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(PIP) --upgrade pip
+	touch $@
+
+$(VENV)/.run: pyproject.toml | $(VENV)/.pip
 	$(PIP) --editable .
 	touch $@
 
-$(VENV)/.test: $(VENV)/.run
+$(VENV)/.test: pyproject.toml | $(VENV)/.pip
 	$(PIP) --editable '.[test]'
+	touch $(VENV)/.run $@
+
+$(VENV)/.soak: $(VENV)/.test
+	$(PIP) --editable '.[soak]'
 	touch $@
 
 $(VENV)/.docs: $(VENV)/.run

@@ -30,9 +30,9 @@ def test_a_notebook_is_kept_without_output(path: Path) -> None:
 @pytest.mark.soak
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_to_its_end_and_draws(path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    nbformat = pytest.importorskip("nbformat", reason="no nbformat: pip install --editable '.[test]'")
-    nbclient = pytest.importorskip("nbclient", reason="no nbclient: pip install --editable '.[test]'")
-    pytest.importorskip("ipykernel", reason="no ipykernel: pip install --editable '.[test]'")
+    nbformat = pytest.importorskip("nbformat", reason="no nbformat: pip install --editable '.[soak]'")
+    nbclient = pytest.importorskip("nbclient", reason="no nbclient: pip install --editable '.[soak]'")
+    pytest.importorskip("ipykernel", reason="no ipykernel: pip install --editable '.[soak]'")
     if "quanser" in path.stem and not (datasets_folder() / "quanser_aero").is_dir():
         pytest.skip(f"no recordings of the Quanser Aero in {datasets_folder()}: see recordings/datasets/registry.toml")
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
