@@ -2,12 +2,14 @@
 
 import fcntl
 import os
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 
 import twinlaw as twinlaw  # before NumPy, whose threads it counts
 from tests.soak import SOAK
+from toolchain.cache import CACHE_DIR
 
 
 @pytest.fixture(scope="session")
@@ -23,6 +25,20 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         if not printed.exists():
             printed.write_text(readme.told(folder), encoding="utf-8")
     return folder, printed.read_text(encoding="utf-8")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """In a fresh checkout one worker imports everything after the other: the first compiles it, the second finds it compiled."""
+    compiled = CACHE_DIR / "compiled"
+    if "PYTEST_XDIST_WORKER" not in os.environ or compiled.exists():
+        return (yield)
+    CACHE_DIR.mkdir(parents=True, exist_ok=True)
+    with (CACHE_DIR / "compiled.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        found = yield
+        compiled.touch()
+        return found
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
