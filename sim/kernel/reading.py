@@ -16,12 +16,11 @@ Array = NDArray[np.float64]
 def reading(model: Model) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
     """A function of t_s (n,), x (n, states), p (k,) that gives the outputs and their rates, both (n, outputs).
 
-    The rates follow from the rates of the states that are no axis' velocity; an output that is a velocity has none here (0).
+    The rates follow from the rates of the states that are no axis' velocity; an output that is a velocity has none here (0), nor one
+    whose rate jumps with an input.
     """
     outputs = list(model.outputs.values())
-    rates = [
-        sum((sympy.diff(y, state) * rate for state, rate in model.rates.items()), sympy.Integer(0)) for y in outputs
-    ]
+    rates = [_rate(y, model) for y in outputs]
     function = sympy.lambdify(
         [TIME, *model.states, *model.parameter_symbols], [*outputs, *rates], modules="numpy", cse=True
     )
@@ -32,3 +31,8 @@ def reading(model: Model) -> Callable[[Array, Array, Array], tuple[Array, Array]
         return both[:, : len(outputs)].copy(), both[:, len(outputs) :].copy()
 
     return evaluate
+
+
+def _rate(y: sympy.Expr, model: Model) -> sympy.Expr:
+    rate = sum((sympy.diff(y, state) * rate for state, rate in model.rates.items()), sympy.Integer(0))
+    return sympy.Integer(0) if rate.free_symbols & set(model.inputs) else rate

@@ -213,3 +213,15 @@ def test_a_loop_with_ways_is_flown_once_and_without_noise(table: ControllerTable
         )
     with pytest.raises(BadInput, match="reference: got nothing"):
         simulate(bound, manoeuvre.t_s, manoeuvre.x0, table)
+
+
+def test_a_reading_whose_rate_jumps_with_the_input_is_late_by_its_delay() -> None:
+    """The current of a coil, which the voltage changes at once, 20 ms late: two rows later, to the last bit but three."""
+    coil = bind(load_plant(PLANTS / "maglev_coil.toml"))
+    t_s = 0.01 * np.arange(60)
+    u = np.where(t_s < 0.3, 0.2, 0.4)[:, None]
+    late = with_effects(coil, {"i_sensor.delay": {"tau": 0.02}})
+    plain, behind = (simulate(bound, t_s, [0.0], u, resolution=[0.0], keep="y").y for bound in (coil, late))
+    assert plain is not None
+    assert behind is not None
+    np.testing.assert_allclose(behind[2:], plain[:-2], rtol=1e-12, atol=1e-15)
