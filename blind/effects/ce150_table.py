@@ -4,13 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from blind.effects import ce150_formulas as formulas
-from blind.effects.ce150_formulas import Formula, Sized, Start, Term
+from blind.effects.ce150_formulas import Formula, Start, Term
 from blind.effects.draws import Source
-from blind.effects.effect import SCALAR, Effect, Shape, Size
-from blind.effects.equivalent import Equivalents
-from blind.effects.visited import Visited
+from blind.effects.effect import Effect, Size
+from blind.effects.row import Judged, known, outside
 
-Judged = Callable[[float, Shape, Visited], Equivalents]
 # What the words in braces are for index 0 and 1.
 WORDS: tuple[Mapping[str, str], ...] = (
     {"rotor": "main", "axis": "elevation", "angle": "psi", "letter": "M", "other": "T"},
@@ -88,39 +86,25 @@ def in_table(
     """
     entry = TABLE[name]
     words = WORDS[indices[0]] if indices else {}
-    own = name.format(**words)
-    return Effect(
-        name=own,
-        places=(own.partition(".")[0],),
-        depends=entry.depends.format(**words),
-        size=size,
-        drawn=drawn or {},
-        fixed=fixed or {},
-        signed=signed,
-        indices=indices or (SCALAR,),
-        single=single,
+    return known(
+        name.format(**words),
+        entry.depends.format(**words),
+        size,
+        entry.formula,
+        *indices,
         bounds=bounds,
-        equivalent=equivalent or _by_formula(entry, size, signed, indices, term, start),
-        known=True,
+        term=term,
+        start=start,
+        equivalent=equivalent,
+        drawn=drawn,
+        fixed=fixed,
+        signed=signed,
+        single=single,
         sensor=entry.sensor,
         needs=entry.needs,
         hides=hides,
         loses_frames=loses_frames,
     )
-
-
-def _by_formula(
-    entry: Entry, size: Size, signed: bool, indices: tuple[int, ...], term: Term | None, start: Start | None
-) -> Judged:
-    formula = entry.formula
-    if formula is None:
-        raise ValueError(f"{entry.depends}: the table has no formula, and the rig's row gives no equivalent")
-
-    def judged(m: float, shape: Shape, visited: Visited) -> Equivalents:
-        a = size.at(m) * shape["sign"] if signed else size.at(m)
-        return formula(Sized(a, shape, visited, indices[0] if indices else SCALAR, term, start))
-
-    return judged
 
 
 def outside_table(
@@ -143,19 +127,19 @@ def outside_table(
     def told(text: str) -> str:
         return text.format(**words)
 
-    return Effect(
-        name=told(name),
-        places=tuple(told(places).split()),
-        depends=told(depends),
-        size=size,
-        drawn=drawn or {},
-        fixed=fixed or {},
-        signed=signed,
-        indices=indices or (SCALAR,),
+    return outside(
+        told(name),
+        told(places),
+        told(depends),
+        size,
+        *indices,
         bounds=bounds,
+        drawn=drawn,
+        fixed=fixed,
+        signed=signed,
+        keywords=keywords,
+        twins=told(twins),
         sensor=sensor,
-        keywords=tuple(keywords.split()),
-        twins=tuple(told(twins).split()),
     )
 
 

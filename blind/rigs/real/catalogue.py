@@ -4,12 +4,14 @@ Sizes go by what is usual on a plant: an input's size, an axis' torque, rate and
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from blind.effects import ce150_formulas as formulas
-from blind.effects.ce150_formulas import Formula, Sized, Start, Term
+from blind.effects import row
+from blind.effects.ce150_formulas import Formula
 from blind.effects.draws import Fixed, OneOf, Source, Uniform
-from blind.effects.effect import SCALAR, Catalogue, Effect, Shape, Size, over
-from blind.effects.equivalent import Equivalents, relative
+from blind.effects.effect import Catalogue, Effect, Size, over
+from blind.effects.equivalent import relative
 from blind.effects.visited import Visited
 from blind.rigs.real import formulas as own
 from blind.rigs.real.plants import CE150, PLANTS, RealPlant
@@ -17,47 +19,7 @@ from blind.rigs.real.plants import CE150, PLANTS, RealPlant
 BOUNDS = (0.003, 30.0)
 
 
-def known(
-    name: str,
-    depends: str,
-    size: Size,
-    formula: Formula,
-    *indices: int,
-    term: Term | None = None,
-    start: Start | None = None,
-    drawn: Mapping[str, Source] | None = None,
-    fixed: Mapping[str, float] | None = None,
-    signed: bool = False,
-    bounds: tuple[float, float] = BOUNDS,
-    sensor: bool = False,
-    hides: str = "",
-    twins: str = "",
-    loses_frames: bool = False,
-) -> Effect:
-    """An effect that the diagnosis' library has, with its size there."""
-
-    def judged(m: float, shape: Shape, visited: Visited) -> Equivalents:
-        a = size.at(m) * shape["sign"] if signed else size.at(m)
-        whole = {**shape, **(fixed or {})}
-        return formula(Sized(a, whole, visited, indices[0] if indices else SCALAR, term, start))
-
-    return Effect(
-        name=name,
-        places=(name.partition(".")[0],),
-        depends=depends,
-        size=size,
-        drawn=drawn or {},
-        fixed=fixed or {},
-        signed=signed,
-        indices=indices or (SCALAR,),
-        bounds=bounds,
-        equivalent=judged,
-        known=True,
-        sensor=sensor,
-        hides=hides,
-        twins=tuple(twins.split()),
-        loses_frames=loses_frames,
-    )
+known = partial(row.known, bounds=BOUNDS)
 
 
 def outside(
@@ -73,18 +35,19 @@ def outside(
     more: str = "",
 ) -> Effect:
     """An effect that the contract's table does not hold; `more`: further places that are right."""
-    return Effect(
-        name=name,
-        places=(name.partition(".")[0], *more.split()),
-        depends=depends,
-        size=size,
-        drawn=drawn or {},
-        signed=signed,
-        indices=(i,),
+    places = f"{name.partition('.')[0]} {more}"
+    return row.outside(
+        name,
+        places,
+        depends,
+        size,
+        i,
         bounds=BOUNDS,
+        drawn=drawn,
+        signed=signed,
+        keywords=keywords,
+        twins=twins,
         sensor=sensor,
-        keywords=tuple(keywords.split()),
-        twins=tuple(twins.split()),
     )
 
 

@@ -14,7 +14,7 @@ from blind.effects.effect import effects_struct
 from blind.rigs.real.catalogue import ALL
 from blind.rigs.real.plants import RealPlant
 from blind.simulation.ce150 import Rig
-from blind.simulation.native import FLAGS, pointer, set_fields
+from blind.simulation.native import COMMON_DIR, DECLARATIONS, FLAGS, FREE_RUNS, pointer, set_fields
 from blind.simulation.record import Model, Record
 from toolchain.host import CText, build_shared, load_shared
 
@@ -70,14 +70,16 @@ def opened() -> tuple[Any, Any]:
 
 def declarations() -> str:
     """Text of simulation.h, for the compiler and for cffi."""
-    rig, state = (FOLDER.joinpath(name).read_text(encoding="utf-8") for name in ("rig.h", "state.h"))
-    return "\n".join([rig, effects_struct(ALL), "", state])
+    headers = (COMMON_DIR / "line.h", FOLDER / "rig.h", FOLDER / "state.h", COMMON_DIR / "predict.h")
+    line, rig, state, predict = (path.read_text(encoding="utf-8") for path in headers)
+    return "\n".join([line, rig, effects_struct(ALL), "", state, predict])
 
 
 @cache
 def _opened() -> tuple[Any, Any]:
     text = declarations()
-    sources: list[Path | CText] = [CText("simulation.h", text), *(FOLDER / name for name in SOURCES)]
+    common = [COMMON_DIR / name for name in FREE_RUNS]
+    sources: list[Path | CText] = [CText(DECLARATIONS, text), *(FOLDER / name for name in SOURCES), *common]
     return load_shared(text, build_shared("blind_real", sources, flags=FLAGS))
 
 

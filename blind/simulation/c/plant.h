@@ -18,18 +18,10 @@ typedef struct {
 } rig_t;
 
 typedef struct {
-    double sent_s[64], luck[64], u_V[64];          /* commands under way, oldest first at `tail` */
-    int head, tail;
-    double now_V;
-} line_t;
-
-typedef struct {
     double angle[1024], rate[1024];                /* what an encoder shaft showed, one entry per step */
     int index;
 } past_t;
 
 double rotor_damping(const rig_t *rig, int rotor, double speed);
-void line_send(line_t *line, double t_s, double luck, double u_V);
-double line_arrived(line_t *line, double t_s, double delay_s, double spread);
 void past_fill(past_t *past, double angle, double rate);
 void past_delay(past_t *past, double delay_s, double dt, double *angle, double *rate);

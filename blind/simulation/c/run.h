@@ -23,16 +23,11 @@ typedef struct {
     int failed;                /* 1: a number was lost */
 } record_t;
 
-/* A rig's own, in its order: a new state in the motion x (psi psi' phi phi' omega_M omega_T), a state put into that motion, the
- * motion of a state; all steps of a row, one step; a command that is sent, one that has been there for ever; the number that an
- * encoder gives; the controller. */
-void state_begin(const model_t *m, const double x[6], double t_s, state_t *s);
+/* A rig's own besides what free runs need, in its order: a state put into a motion; all steps of a row; a command that is sent; the
+ * number that an encoder gives; the controller. */
 void state_place(const model_t *m, const double x[6], state_t *s);
-void state_motion(const state_t *s, double x[6]);
 void state_advance(const model_t *m, state_t *s, const inputs_t *in, int row, int windy);
-void plant_step(const model_t *m, state_t *s, const double gust[2], double dt);
 void commands_send(state_t *s, const double u_V[2]);
-void commands_settle(state_t *s, const double u_V[2]);
 double sensor_count(const rig_t *rig, const effects_t *fx, state_t *s, int axis);
 void control_start(const control_t *c, const double r_rad[2], const double y_rad[2], control_state_t *k);
 void control_step(const control_t *c, const rig_t *nominal, const double r_rad[2], const double y_rad[2],
@@ -41,5 +36,3 @@ void control_step(const control_t *c, const rig_t *nominal, const double r_rad[2
 /* Of all rigs. */
 void fly(const model_t *own, const rig_t *nominal, const control_t *control, const inputs_t *in, const double start[6],
          int shadows, const model_t *other, const unsigned char *mode, int window, record_t *out);
-void predict(const model_t *m, int rows, const double *t_s, const double *u_V, const double *apparent, int window,
-             double dt, double *out);

@@ -3,33 +3,16 @@
 
 #include "simulation.h"
 
-enum { RING = 2048 };
-
 void commands_send(state_t *s, const double u_V[2])
 {
-    wire_t *w = &s->wire;
-    w->sent_s[w->head] = s->t_s;
     for (int i = 0; i < 2; i++)
-        w->value_V[w->head][i] = u_V[i];
-    w->head = (w->head + 1) % RING;
+        line_send(&s->line[i], s->t_s, 0.0, u_V[i]);
 }
 
 void commands_settle(state_t *s, const double u_V[2])
 {
-    for (int i = 0; i < 2; i++) {
-        s->wire.tail[i] = s->wire.head;
-        s->wire.arrived_V[i] = s->followed_V[i] = s->lagged_V[i] = s->played_V[i] = s->volts[i] = u_V[i];
-    }
-}
-
-static double arrived(const model_t *m, state_t *s, int i)
-{
-    wire_t *w = &s->wire;
-    while (w->tail[i] != w->head && w->sent_s[w->tail[i]] + m->effects.delay_s[i] <= s->t_s + 1e-9) {
-        w->arrived_V[i] = w->value_V[w->tail[i]][i];
-        w->tail[i] = (w->tail[i] + 1) % RING;
-    }
-    return fmin(fmax(w->arrived_V[i], m->rig.low_V[i]), m->rig.high_V[i]);
+    for (int i = 0; i < 2; i++)
+        s->line[i].now_V = s->followed_V[i] = s->lagged_V[i] = s->played_V[i] = s->volts[i] = u_V[i];
 }
 
 /* log(1 + exp(x)) bends at the band's edge; what it would pass at rest is taken off. */
@@ -80,7 +63,8 @@ void driver_step(const model_t *m, state_t *s, double dt)
     const effects_t *fx = &m->effects;
     double came[2] = {0.0, 0.0}, load = 0.0;
     for (int i = 0; i < m->rig.inputs; i++) {
-        came[i] = arrived(m, s, i);
+        double newest = line_arrived(&s->line[i], s->t_s, fx->delay_s[i], 0.0);
+        came[i] = fmin(fmax(newest, m->rig.low_V[i]), m->rig.high_V[i]);
         load += fabs(came[i]) / 10.0;
     }
     for (int i = 0; i < m->rig.inputs; i++) {

@@ -80,6 +80,16 @@ void state_begin(const model_t *m, const double x[6], double t_s, state_t *s)
     state_place(m, x, s);
 }
 
+void state_motion(const state_t *s, double x[6])
+{
+    memcpy(x, s->x, 6 * sizeof *x);
+}
+
+double bristle_width(const model_t *m, int axis)
+{
+    return m->width[axis];
+}
+
 static void measure(const model_t *m, const state_t *s, const run_t *run, int row, record_t *out)
 {
     double *apparent = out->apparent + 6 * row;
@@ -165,31 +175,6 @@ void fly(const model_t *own, const run_t *run, const double start[6], int shadow
         for (int axis = 0; axis < own->rig.axes; axis++)
             out->at_stop += own->rig.stop[axis] > 0.0 && fabs(s->x[2 * axis]) >= own->rig.stop[axis];
         out->failed = !isfinite(s->x[0] + s->x[2] + s->x[4] + s->x[5]) || fabs(s->x[0]) > 100.0 || fabs(s->x[2]) > 100.0;
-    }
-    free(s);
-}
-
-/* Free runs of an effect-free model over recorded rows, anew from the recorded state at the head of each window; out (rows, 2). */
-void predict(const model_t *m, int rows, const double *t_s, const double *u_V, const double *apparent, int window,
-             double dt, double *out)
-{
-    static const double calm[2] = {0.0, 0.0};
-    state_t *s = malloc(sizeof *s);
-    for (int row = 0; row < rows && s; row++) {
-        if (row % window == 0) {
-            state_begin(m, apparent + 6 * row, 0.0, s);
-            for (int i = 0; i < 2; i++)
-                s->bristle[i] = s->x[1 + 2 * i] == 0.0 ? 0.0 : copysign(m->width[i], s->x[1 + 2 * i]);
-        }
-        out[2 * row] = s->x[0];
-        out[2 * row + 1] = s->x[2];
-        if (row + 1 == rows)
-            break;
-        double span = t_s[row + 1] - t_s[row];
-        int steps = (int)(span / dt + 0.5) > 0 ? (int)(span / dt + 0.5) : 1;
-        commands_settle(s, u_V + 2 * row);
-        for (int step = 0; step < steps; step++)
-            plant_step(m, s, calm, span / steps);
     }
     free(s);
 }

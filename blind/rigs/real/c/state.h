@@ -8,16 +8,10 @@ typedef struct {
 } model_t;
 
 typedef struct {
-    double sent_s[2048], value_V[2048][2];         /* commands under way, in a ring */
-    int head, tail[2];
-    double arrived_V[2];
-} wire_t;
-
-typedef struct {
     double t_s;
     double x[6];               /* angle, rate of axis 0, of axis 1; speeds of rotors 0 and 1 */
     double bristle[2];
-    wire_t wire;
+    line_t line[2];
     double followed_V[2], lagged_V[2], played_V[2], volts[2];
     double seen[2], seen_rate[2], slow[2], held[2], filtered[2], lost_angle[2];
     double past[1024][2];      /* angles as shown, one entry per step */
@@ -47,7 +41,6 @@ typedef struct {
 
 void driver_step(const model_t *m, state_t *s, double dt);
 void commands_send(state_t *s, const double u_V[2]);
-void commands_settle(state_t *s, const double u_V[2]);
 void torques(const model_t *m, const state_t *s, const double x[6], double torque[2], double inertia[2], double spin[2]);
 double dry_level(const model_t *m, const state_t *s, int axis, double rate);
 double shared_torque(const model_t *m, const state_t *s, int axis, double angle, double rate);
@@ -55,10 +48,6 @@ double motor_factor(const model_t *m, const state_t *s, int rotor);
 void sensor_rest(const model_t *m, state_t *s);
 void sensor_step(const model_t *m, state_t *s, double dt);
 double sensor_count(const model_t *m, double shown, double resolution, int axis);
-void state_begin(const model_t *m, const double x[6], double t_s, state_t *s);
 void state_place(const model_t *m, const double x[6], state_t *s);
-void plant_step(const model_t *m, state_t *s, const double push[2], double dt);
 void fly(const model_t *own, const run_t *run, const double start[6], int shadows, const model_t *other,
          const unsigned char *mode, int window, record_t *out);
-void predict(const model_t *m, int rows, const double *t_s, const double *u_V, const double *apparent, int window,
-             double dt, double *out);
