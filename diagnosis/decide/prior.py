@@ -3,10 +3,10 @@
 What is believed of each effect stands with it (sim/effects, `Prior` and `Unlikely`).
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from diagnosis.fit.evidence import FittedHypothesis
-from sim.effect import Effect, Role
+from sim.effect import Effect, EffectParameter, Role
 
 AT_ITS_END = (
     -4.5
@@ -39,7 +39,7 @@ def _odds(effect: Effect, fitted: FittedHypothesis, losses: bool) -> float:
         unlikely = parameter.unlikely
         if unlikely and (losses or not unlikely.beside_losses) and unlikely.holds(values[parameter.symbol]):
             odds += unlikely.log_odds
-    return odds + AT_ITS_END if at_its_end(effect.name, fitted) else odds
+    return odds + AT_ITS_END if _at_its_end(effect.name, fitted) else odds
 
 
 def _rounding(effect: Effect, fitted: FittedHypothesis, step: float) -> float:
@@ -52,14 +52,15 @@ def _rounding(effect: Effect, fitted: FittedHypothesis, step: float) -> float:
 
 def size_at_its_end(name: str, fitted: FittedHypothesis) -> bool:
     """Whether a fitted size of an effect went as far from zero as it may."""
-    values = fitted.fit.hypothesis.effects[name]
-    sizes = [entry.parameter for entry in fitted.fit.free if entry.effect == name and entry.parameter.is_size]
-    return any(values[size.symbol] in {size.lower, size.upper} - {size.zero} for size in sizes)
+    return _at_an_end(name, fitted, lambda parameter: parameter.is_size)
 
 
-def at_its_end(name: str, fitted: FittedHypothesis) -> bool:
+def _at_its_end(name: str, fitted: FittedHypothesis) -> bool:
     """Whether a fitted size of an effect went as far from zero as it may, or a sine has as few waves or as many as it may."""
+    return _at_an_end(name, fitted, lambda parameter: parameter.is_size or parameter.role is Role.WAVES)
+
+
+def _at_an_end(name: str, fitted: FittedHypothesis, counts: Callable[[EffectParameter], bool]) -> bool:
     values = fitted.fit.hypothesis.effects[name]
     own = [entry.parameter for entry in fitted.fit.free if entry.effect == name]
-    numbers = [parameter for parameter in own if parameter.is_size or parameter.role is Role.WAVES]
-    return any(values[number.symbol] in {number.lower, number.upper} - {number.zero} for number in numbers)
+    return any(values[p.symbol] in {p.lower, p.upper} - {p.zero} for p in own if counts(p))
