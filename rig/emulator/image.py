@@ -87,7 +87,7 @@ class Image:
     @cached_property
     def ram_end(self) -> int:
         """First address behind everything the image places in RAM."""
-        ends = [
+        ends: list[int] = [
             s["sh_addr"] + s["sh_size"]
             for s in (self._elf.iter_sections() if self._elf else ())
             if s["sh_flags"] & 2 and s["sh_addr"] >= self.chip.ram.start
