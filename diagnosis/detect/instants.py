@@ -53,6 +53,7 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, floa
     norm = gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
     power = (score[first] - score[last]) ** 2 / np.maximum(norm, 1e-12)
     power[times_s[last] - times_s[first] > 0.5 * times_s[-1]] = 0.0
+    power[times_s[last] <= decisions.UNTOLD_S] = 0.0  # over before readings count: all that is left of it is a start
     order = np.argsort(-power)
     found: list[tuple[float, float]] = []
     for index in order[:200]:
