@@ -1,4 +1,8 @@
-"""Readings that stop for a while: an output that stands though its axis goes on, as the jump shows when it is read again."""
+"""Readings that stop for a while: an output that stands though its axis goes on, as the jump shows when it is read again.
+
+An axis that slows down, rests and leaves its rest starts by less than it moves next. Where the first move behind a stand is far more than
+those after it, the readings between were old.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -6,9 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.finding import Array, Finding, Found, Rows
+from logcheck.finding import EXCLUDE, Array, Finding, Found, Rows
 from records.log import RunLog
 from records.text.units import unit_suffix
+
+SHOWN = 3
 
 
 @dataclass(frozen=True)
@@ -34,21 +40,34 @@ def read_again(log: RunLog) -> Rows:
     return again
 
 
-def dead_findings(log: RunLog, name: str, again: Rows, steps: Mapping[str, float]) -> Iterator[Found]:
-    """A note for each stand that no axis makes: one that slows down, rests and leaves its rest makes no jump. `again` is `read_again`."""
+def dead_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterator[Found]:
+    """The stands of each output that no axis makes, whose readings are left out."""
     for column in log.columns.outputs:
-        for stand in _dead(log.t_s, log.column(column), log.sample_period_s, again):
-            start_s, end_s = float(log.t_s[stand.first]), float(log.t_s[stand.last])
-            place = f"{column} stands at {log.column(column)[stand.first]:.4g} from {start_s:.6g} s to {end_s:.6g} s"
-            how = ", ".join(_ways(stand, column, steps.get(column, 0.0)))
-            yield Found(
-                Finding("dead_stretch", name, column, start_s, end_s, f"{place}: {how}; the sensor was not read")
-            )
+        step = steps.get(column, 0.0)
+        present = np.flatnonzero(np.isfinite(log.column(column)))
+        t_s, values = log.t_s[present], log.column(column)[present]
+        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step))
+        if not stands:
+            continue
+        unread: Rows = np.zeros(len(log.t_s), bool)
+        for stand in stands:
+            # The first reading of a stand into which nothing jumps is the last true one.
+            unread[present[stand.first + (stand.jump_in == 0.0) : stand.last + 1]] = True
+        span = (float(t_s[stands[0].first]), float(t_s[stands[-1].last]))
+        told = [_in_words(stand, t_s, values, column, step) for stand in stands[:SHOWN]]
+        more = f"; and so {len(stands) - SHOWN} times more, last until {span[1]:.6g} s" if len(stands) > SHOWN else ""
+        sentence = f"{column} stands {'; '.join(told)}{more}: the sensor was not read; left out"
+        yield Found(Finding("dead_stretch", name, column, *span, sentence, EXCLUDE, int(unread.sum())), unread)
 
 
 def amount(move: float, column: str, step: float) -> str:
     """A move in steps of the encoder, in the column's own unit where it has none."""
     return f"{move / step:.0f} steps" if step > 0.0 else f"{move:.3g} {unit_suffix(column) or ''}".rstrip()
+
+
+def _in_words(stand: Stand, t_s: Array, values: Array, column: str, step: float) -> str:
+    span = f"at {values[stand.first]:.4g} from {t_s[stand.first]:.6g} s to {t_s[stand.last]:.6g} s"
+    return f"{span} ({', '.join(_ways(stand, column, step))})"
 
 
 def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
@@ -59,53 +78,74 @@ def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
         yield f"it moved at {stand.speed_before:.2g} {unit_suffix(column) or ''}/s just before"
     if stand.jump_out:
         yield f"it jumps away by {amount(stand.jump_out, column, step)}"
+    if not stand.jump_in and not stand.jump_out:
+        yield "where it hardly ever reads the same twice"
 
 
-def _dead(t_s: Array, values: Array, period_s: float, again: Rows) -> list[Stand]:
-    stands, moves = _stands(t_s, values), np.abs(np.diff(values))
-    own = moves[moves > 0.0]
-    if not stands or not own.size:
-        return []
-    least = float(own.min())
-    jump = max(
-        thresholds.DEAD_JUMP * float(np.nanpercentile(moves, thresholds.USUAL_MOVE_PERCENT)),
-        thresholds.DEAD_JUMP_STEPS * least,
-    )
-    lengths_s = [float(t_s[last] - t_s[first]) for first, last in stands]
-    longest_s, second_s = sorted([0.0, thresholds.DEAD_S, *lengths_s])[:-3:-1]
-    found = []
-    for (first, last), length_s in zip(stands, lengths_s, strict=True):
-        into = _jump(t_s, values, first, period_s, jump)
-        out = _jump(t_s, values, last + 1, period_s, jump)
-        speed = 0.0 if into else _speed_before(t_s, values, first, least)
-        is_dead = (
-            length_s == longest_s > thresholds.LONGER_STAND * second_s
-            or bool(again[last + 1 : last + 2].any())
-            or speed > 0.0
-        )
-        if (into and out) or ((into or out) and is_dead):
-            found.append(Stand(first, last, into, out, speed))
-    return found
+def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float) -> Iterator[Stand]:
+    """Stands of at least DEAD_ROWS rows into which or out of which the column leaps, by far more than it moves there, though its axis was
+    under way, or the inputs u (n, inputs) moved it."""
+    moves = np.diff(values)
+    own = np.abs(moves[moves != 0.0])
+    if not own.size:
+        return
+    least, usual_u = max(float(own.min()), step), np.ptp(u, axis=0)
+    moves = moves * period_s / np.maximum(np.diff(t_s), period_s)  # as far as in one sample, where rows lie further apart
+    way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / period_s))
+    runs = _runs(values)
+    never_repeats = _repeats(values, runs) < thresholds.SELDOM and _is_noisy(moves)
+    for begin, end in runs:
+        into = float(moves[begin - 1]) if begin else 0.0
+        out = float(moves[end]) if end < len(moves) else 0.0
+        if never_repeats and values.min() < values[begin] < values.max():  # at an end of its range a sensor may rest
+            yield Stand(begin, end, 0.0, 0.0, 0.0)
+            continue
+        if max(abs(into), abs(out)) < thresholds.BROKEN_OFF_STEPS * least:
+            continue
+        before = moves[max(0, begin - 1 - way) : max(0, begin - 1)]
+        after = moves[end + 1 : end + 1 + way]
+        arrived = moves[max(0, begin - thresholds.AROUND_STAND_ROWS) : begin]
+        leaps_in = _is_leap(into, before[-thresholds.AROUND_STAND_ROWS :], least)
+        leaps_out = _is_leap(out, after[: thresholds.AROUND_STAND_ROWS], least)
+        arrives = _is_under_way(np.abs(arrived), least)
+        driven = bool(np.any(np.ptp(u[begin : end + 1], axis=0) > thresholds.DRIVEN_SHARE * usual_u))
+        goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
+        if (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (leaps_out and goes_on):
+            took_s = float(t_s[begin] - t_s[max(0, begin - len(arrived))])
+            speed = float(np.abs(arrived).sum()) / took_s if arrives and not leaps_in else 0.0
+            yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
+
+
+def _runs(values: Array) -> list[tuple[int, int]]:
+    """First and last rows of one value that is kept for DEAD_ROWS."""
+    changed = np.flatnonzero(np.diff(values) != 0.0)
+    first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
+    long = last - first >= thresholds.DEAD_ROWS - 1
+    return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
+
+
+def _repeats(values: Array, runs: list[tuple[int, int]]) -> float:
+    """Share of the readings that repeat the one before, outside stands."""
+    same = np.diff(values) == 0.0
+    for first, last in runs:
+        same[first:last] = False
+    return float(same.mean())
+
+
+def _is_noisy(moves: Array) -> bool:
+    """Whether readings go to and fro, as those of a noisy sensor, and not those of an encoder."""
+    return float(np.mean(moves[1:] * moves[:-1] < 0.0)) > thresholds.TO_AND_FRO
+
+
+def _is_leap(move: float, near: Array, least: float) -> bool:
+    usual = max(float(np.max(np.abs(near), initial=0.0)), least)
+    return abs(move) > thresholds.BROKEN_OFF * usual and abs(move) >= thresholds.BROKEN_OFF_STEPS * least
+
+
+def _is_under_way(moved: Array, least: float) -> bool:
+    return float(moved.sum()) >= thresholds.MOVED_STEPS * least
 
 
 def _stands(t_s: Array, values: Array) -> list[tuple[int, int]]:
     """First and last rows of one value that is kept for DEAD_S."""
-    changed = np.flatnonzero(np.diff(values) != 0.0)
-    first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
-    long = (t_s[last] - t_s[first] >= thresholds.DEAD_S) & (last - first >= thresholds.DEAD_ROWS)
-    return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
-
-
-def _jump(t_s: Array, values: Array, row: int, period_s: float, least: float) -> float:
-    """By how much the values jump into a row, in the time of a sample; 0 where they do not."""
-    if not 0 < row < len(values):
-        return 0.0
-    move = float(abs(values[row] - values[row - 1]))
-    return move if move * period_s > least * max(float(t_s[row] - t_s[row - 1]), period_s) else 0.0
-
-
-def _speed_before(t_s: Array, values: Array, row: int, least: float) -> float:
-    """How fast the values moved before they stood at `row`, per second; 0 where that is slow."""
-    start = int(np.searchsorted(t_s, t_s[row] - thresholds.BEFORE_STAND_S))
-    moved = float(abs(values[row] - values[start]))
-    return moved / float(t_s[row] - t_s[start]) if start < row and moved >= thresholds.MOVED_STEPS * least else 0.0
+    return [(first, last) for first, last in _runs(values) if t_s[last] - t_s[first] >= thresholds.DEAD_S]

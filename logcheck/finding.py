@@ -33,10 +33,14 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A finding with the rows (n,) that it leaves out; None where it leaves out none."""
+    """A finding with the rows (n,) that it leaves out, and those (n,) with which another log begins; None where there are none.
+
+    Of rows that are left out for what an output reads, only that reading is.
+    """
 
     finding: Finding
     excluded: Rows | None = None
+    begins: Rows | None = None
 
 
 def in_words(count: int, thing: str) -> str:

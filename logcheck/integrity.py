@@ -4,12 +4,13 @@ Rows that cannot be used are marked, everything odd is said, and what makes a lo
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
 
 from logcheck.between import duplicate_findings, plant_pair_findings
+from logcheck.breaks import break_findings
 from logcheck.finding import REFUSE, Finding, Found, Rows
 from logcheck.inputs import input_findings
 from logcheck.plant import PlantFacts, plant_facts, plant_findings
@@ -24,13 +25,16 @@ from sim.columns import log_columns
 
 @dataclass(frozen=True, eq=False)
 class LogIntegrity:
-    """One log: its timing, saturation by input, excitation by column, and which rows (n,) are left out."""
+    """One log: its timing, saturation by input, excitation by column, which rows (n,) are left out, which readings (n, outputs) beside
+    these, and which rows (n,) begin another log."""
 
     name: str
     timing: Timing
     saturation: Mapping[str, Saturation]
     excitation: Mapping[str, Excitation]
     excluded: Rows
+    unread: Rows
+    begins: Rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +106,7 @@ def _findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> I
     yield from own
     if any(entry.finding.severity == REFUSE for entry in own):
         return
+    yield from break_findings(log, name)
     own = list(value_findings(log, name, facts.steps))
     yield from own
     if any(entry.finding.severity == REFUSE for entry in own):
@@ -121,9 +126,15 @@ def _other_plant(log: RunLog, name: str, bound: BoundPlant) -> Found:
 
 
 def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts) -> LogIntegrity:
-    excluded = np.zeros(len(log.t_s), bool)
+    excluded, begins = (np.zeros(len(log.t_s), bool) for _ in range(2))
+    unread = np.zeros(log.y.shape, bool)
     for entry in found:
-        if entry.excluded is not None:
+        column = entry.finding.column
+        if entry.begins is not None:
+            begins |= entry.begins
+        if entry.excluded is not None and column in log.columns.outputs:
+            unread[:, log.columns.outputs.index(column)] |= entry.excluded
+        elif entry.excluded is not None:
             excluded |= entry.excluded
     is_other = any(entry.finding.kind in ("other_plant", "too_short") for entry in found)
     return LogIntegrity(
@@ -132,4 +143,11 @@ def _examined(log: RunLog, name: str, found: Sequence[Found], facts: PlantFacts)
         saturation={} if is_other else saturations(log, facts.limits),
         excitation={} if is_other else excitations(log, facts.steps),
         excluded=excluded,
+        unread=unread,
+        begins=begins,
     )
+
+
+def as_read(log: RunLog, looked: LogIntegrity) -> RunLog:
+    """The log with no reading where an output was not read, whatever stands there."""
+    return replace(log, y=np.where(looked.unread, np.nan, log.y)) if looked.unread.any() else log

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.dead import amount
-from logcheck.finding import REFUSE, Array, Finding, Found, Rows
+from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
 
 SHOWN = 3
 
 
 def seam_findings(log: RunLog, name: str, steps: Mapping[str, float], read_again: Rows) -> Iterator[Found]:
-    """Refuses a log in which all outputs that move leap at once; `read_again` (n,) are those after a dead stretch of all."""
+    """Where all outputs that move leap at once, and another recording begins; `read_again` (n,) are rows after a dead stretch of all."""
     if len(log.t_s) < 2:
         return
     moving = [column for column in log.columns.outputs if _moves(log.column(column))]
@@ -66,8 +66,9 @@ def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float
     again = f", and so at {', '.join(later)}{more}" if later else ""
     sentence = (
         f"all outputs leap at once between {log.t_s[first - 1]:.6g} s and {log.t_s[first]:.6g} s, {' and '.join(leaps)}, "
-        f"where they usually move by no more than {' and '.join(usual)} from row to row{again}: several recordings in one file"
+        f"where they usually move by no more than {' and '.join(usual)} from row to row{again}: several recordings in one file; cut apart there"
     )
     span = (float(log.t_s[first]), float(log.t_s[rows[-1]]))
-    remedy = "cut it there and give each recording as its own log"
-    return Found(Finding("seam", name, None, *span, sentence, REFUSE, 0, "one recording in a file", remedy))
+    begins: Rows = np.zeros(len(log.t_s), bool)
+    begins[rows] = True
+    return Found(Finding("seam", name, None, *span, sentence), begins=begins)

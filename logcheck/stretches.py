@@ -19,12 +19,16 @@ Rows = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Stretches:
-    """Parts of logs with their names and which of their rows (n,) may be used, and a note for each log that was cut."""
+    """Parts of logs with their names and which of their rows (n,) may be used, and a note for each log that was cut.
+
+    `of` are the names of the logs that they are parts of.
+    """
 
     logs: tuple[RunLog, ...]
     names: tuple[str, ...]
     used: tuple[Rows, ...]
     notes: tuple[Note, ...]
+    of: tuple[str, ...]
 
 
 def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]) -> Stretches:
@@ -34,11 +38,11 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
     and inputs travel furthest.
     """
     if sum(log.y.size for log in logs) <= thresholds.MOST_READINGS:
-        return Stretches(tuple(logs), tuple(names), tuple(used), ())
+        return Stretches(tuple(logs), tuple(names), tuple(used), (), tuple(names))
     every = [_every(log, rows) for log, rows in zip(logs, _shares(logs), strict=True)]
     kept = [_one_in(mask, factor) for mask, factor in zip(used, every, strict=True)]
     shown = [_thinned(log, rows) if factor > 1 else log for log, rows, factor in zip(logs, kept, every, strict=True)]
-    parts: list[tuple[RunLog, str, Rows]] = []
+    parts: list[tuple[RunLog, str, Rows, str]] = []
     notes = []
     for log, whole, mask, name, places, rows in zip(shown, logs, used, names, kept, _shares(shown), strict=True):
         left = mask[places]
@@ -47,14 +51,14 @@ def stretches(logs: Sequence[RunLog], used: Sequence[Rows], names: Sequence[str]
             said = f"{name}: {len(log.t_s)} of its {len(mask)} rows were looked at, spread evenly, as they are {apart}"
             notes.append(Note("thinned", name, {"rows": len(log.t_s), "of_rows": len(mask)}, said))
         if rows == len(log.t_s):
-            parts.append((log, name, left))
+            parts.append((log, name, left, name))
             continue
         chosen = _chosen(log, rows)
-        parts += [(_part(log, part), f"{name} from {log.t_s[part.start]:.6g} s", left[part]) for part in chosen]
-        spans_s = [(float(log.t_s[part.start]), float(log.t_s[part.stop - 1])) for part in chosen]
+        parts += [(part(log, span), f"{name} from {log.t_s[span.start]:.6g} s", left[span], name) for span in chosen]
+        spans_s = [(float(log.t_s[span.start]), float(log.t_s[span.stop - 1])) for span in chosen]
         notes.append(Note("stretches", name, {"spans_s": spans_s}, f"{name}: {_kept(log, chosen)}"))
-    cut, called, masks = zip(*parts, strict=True)
-    return Stretches(cut, called, masks, tuple(notes))
+    cut, called, masks, of = zip(*parts, strict=True)
+    return Stretches(cut, called, masks, tuple(notes), of)
 
 
 def _kept(log: RunLog, chosen: Sequence[slice]) -> str:
@@ -126,7 +130,8 @@ def _travelled(log: RunLog) -> Array:
     return np.asarray(np.concatenate([[0.0], np.cumsum(way.sum(axis=1))]))
 
 
-def _part(log: RunLog, rows: slice) -> RunLog:
+def part(log: RunLog, rows: slice) -> RunLog:
+    """Some consecutive rows of a log, as a log with its own times."""
     extra = {name: column[rows] for name, column in log.extra.items()}
     seq = None if log.seq is None else log.seq[rows]
     return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra=extra, seq=seq)

@@ -16,9 +16,15 @@ STEADY_RAD_S = Limit(0.05, "rad/s", "slower motion is quasi-steady")
 LEAST_HOLDING_INPUT = Limit(0.1, "share of the larger limit", "a holding input below says nothing")
 NOTE_RATIO = Limit(1.35, "ratio", "two logs hold one angle with inputs this much apart: a note")
 
+# breaks
+BRIDGED_ROWS = Count(3, "rows", "so few missing rows are bridged; a longer stretch without rows ends the log")
+AROUND_GAP_ROWS = Count(20, "rows", "on either side of a gap show how far apart rows are there")
+OFTEN_PERCENT = Limit(90.0, "percentile", "of the steps around: rows at random times often lie far apart")
+LONGER_THAN_OFTEN = Limit(2.0, "times that step", "a gap is longer than what often comes between rows at random times")
+
 # dead
 DEAD_S = Limit(0.2, "s", "an output that stands this long", "18 000 stands in honest logs")
-DEAD_ROWS = Count(5, "rows", "an output that stands this long", "18 000 stands in honest logs")
+DEAD_ROWS = Count(5, "rows of one value", "fewer are no stand")
 USUAL_MOVE_PERCENT = Limit(99.0, "percentile", "of moves from row to row")
 DEAD_JUMP = Limit(
     5.0,
@@ -27,9 +33,20 @@ DEAD_JUMP = Limit(
     "18 000 stands in honest logs",
 )
 DEAD_JUMP_STEPS = Limit(20.0, "least moves", "on a coarse grid one least move is no jump")
-BEFORE_STAND_S = Limit(0.05, "s", "motion this long before a stand tells whether the axis was under way")
 MOVED_STEPS = Limit(4.0, "least moves", "an axis is surely under way")
-LONGER_STAND = Limit(3.0, "factor", "than the column stands anywhere else")
+AROUND_STAND_ROWS = Count(5, "rows", "before or after a stand show how fast the axis is there")
+WAY_ROWS = Count(20, "rows", "in which an axis that is under way goes on")
+WAY_S = Limit(0.2, "s", "the same, where rows are denser")
+TO_AND_FRO = Limit(0.2, "share of all moves", "that are against the one before: a noisy sensor never rests")
+SELDOM = Limit(0.02, "share of rows", "that repeat the one before: then five rows of one value do not come by chance")
+BROKEN_OFF = Limit(
+    4.0,
+    "times the largest move near",
+    "an axis leaves its rest, or comes to it, by less",
+    "800 stands of axes under way in published recordings: 2.0 at most",
+)
+BROKEN_OFF_STEPS = Limit(5.0, "least moves", "the same stands: 3 at most", "800 stands in published recordings")
+DRIVEN_SHARE = Limit(0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis")
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
 # held
@@ -101,6 +118,9 @@ LEAST_MOVING_ROWS = Count(50, "rows", "fewer moving rows tell no unit")
 COPY_SHARE = Limit(0.999, "share of rows", "two columns are one number")
 GLITCH_FACTOR = Limit(30.0, "times the usual move", "a reading that leaps so far and comes back is left out")
 GLITCH_STEPS = Limit(20.0, "encoder steps", "on a coarse grid a leap is at least so far")
+
+# zeros
+BESIDE_ZERO_STEPS = Limit(1.5, "least moves", "an axis that passes zero reads it once")
 
 # stretches
 MOST_READINGS = Count(24_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")

@@ -1,7 +1,7 @@
 """What the numbers of a log's columns say by themselves: missing, constant, saturated, copied, out of line; and how much moves."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from logcheck.dead import dead_findings, read_again
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.held import held_findings
 from logcheck.seams import seam_findings
+from logcheck.zeros import zero_findings
 from records.log import RunLog
 from sim.columns import reference_name
 
@@ -73,12 +74,26 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     yield from _missing_numbers(log, name)
     yield from _constant(log, name)
     yield from _copies(log, name)
+    zeros = [
+        found for column in log.columns.outputs for found in zero_findings(log, name, column, steps.get(column, 0.0))
+    ]
+    yield from zeros
+    log = _without(log, zeros)
     again = read_again(log)
     yield from seam_findings(log, name, steps, again)
     held = list(held_findings(log, name))
-    yield from held or dead_findings(log, name, again, steps)
+    yield from held or dead_findings(log, name, steps)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
+
+
+def _without(log: RunLog, found: Sequence[Found]) -> RunLog:
+    """The log with nothing read where readings were found to be none."""
+    y = log.y.copy()
+    for entry in found:
+        if entry.finding.column is not None and entry.excluded is not None:
+            y[entry.excluded, log.columns.outputs.index(entry.finding.column)] = np.nan
+    return replace(log, y=y) if found else log
 
 
 def _missing_numbers(log: RunLog, name: str) -> Iterator[Found]:
@@ -155,6 +170,13 @@ def _is_copy(one: Array, other: Array) -> bool:
     return bool(np.mean(one == other) >= thresholds.COPY_SHARE)
 
 
+def _usual_move(off: Array) -> float:
+    """How far readings usually are from the nearer of their neighbours, whatever a glitch in twenty may add to that."""
+    some = off[np.isfinite(off)][:: max(1, len(off) // 20000)]
+    often, most = np.percentile(some, (90.0, 99.0)) if some.size else (0.0, 0.0)
+    return float(often if often > 0.0 else most)
+
+
 def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     """Single rows far off both neighbours, which agree with each other: no motion does that."""
     values = log.column(column)
@@ -163,11 +185,7 @@ def _glitches(log: RunLog, name: str, column: str, step: float) -> Iterator[Foun
     before, after = values[1:-1] - values[:-2], values[1:-1] - values[2:]
     off = np.minimum(np.abs(before), np.abs(after))
     across = np.abs(values[2:] - values[:-2])
-    usual = (
-        float(np.nanpercentile(np.abs(before[:: max(1, len(before) // 20000)]), 99.0))
-        if np.isfinite(before).any()
-        else 0.0
-    )
+    usual = _usual_move(off)
     bound = max(thresholds.GLITCH_FACTOR * usual, thresholds.GLITCH_STEPS * step)
     with np.errstate(invalid="ignore"):
         inner = (

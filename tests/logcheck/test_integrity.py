@@ -205,8 +205,9 @@ def test_missing_numbers_glitches_and_rows_beyond_the_stops_are_found_where_they
     y = log.y.copy()
     y[100:103, 0], y[700, 1], y[1200:1205, 0] = np.nan, y[700, 1] + 1.0, 1.2
     found = _examined(replace(log, y=y))
-    assert _kinds(found) == {"not_a_number", "glitch", "beyond_stops"}
-    assert np.flatnonzero(found.logs[0].excluded).tolist() == [700, 1200, 1201, 1202, 1203, 1204]
+    assert _kinds(found) == {"not_a_number", "glitch", "beyond_stops", "dead_stretch"}
+    unread = np.argwhere(found.logs[0].unread).tolist()
+    assert unread == [[700, 1], [1200, 0], [1201, 0], [1202, 0], [1203, 0], [1204, 0]]
 
 
 def test_saturation_and_inputs_beyond_the_limits_are_shares_of_the_rows() -> None:
@@ -307,7 +308,7 @@ def test_a_long_log_is_examined_and_its_defect_found() -> None:
     place = int(0.7777 * n)
     long.y[place, 0] += 1.0
     found = _examined(long)
-    assert np.flatnonzero(found.logs[0].excluded).tolist() == [place]
+    assert np.argwhere(found.logs[0].unread).tolist() == [[place, 0]]
     assert not found.refusals
 
 
@@ -317,15 +318,15 @@ def _one_after_another(*logs: RunLog) -> RunLog:
     return replace(logs[0], t_s=np.linspace(0.0, 0.01 * (len(y) - 1), len(y)), y=y, u=u, extra={})
 
 
-def test_several_recordings_in_one_file_are_refused_with_their_seams() -> None:
+def test_several_recordings_in_one_file_are_cut_apart_at_their_seams() -> None:
     log = clean()
-    (found,) = _examined(_one_after_another(log, log, log)).refusals
-    assert found.kind == "seam"
+    examined = _examined(_one_after_another(log, log, log))
+    (found,) = [finding for finding in examined.findings if finding.kind == "seam"]
+    assert np.flatnonzero(examined.logs[0].begins).tolist() == [2001, 4002]
     assert [found.start_s, found.end_s] == pytest.approx([20.01, 40.02])
     leaps = np.abs(log.y[0] - log.y[-1]) / TURN_STEP_RAD
     assert f"psi_rad by {leaps[0]:.0f} steps and phi_rad by {leaps[1]:.0f} steps" in found.sentence
     assert "and so at 40.02 s" in found.sentence
-    assert "cut it there" in found.remedy
 
 
 @pytest.mark.parametrize("columns", [[0], [1]])
@@ -342,7 +343,7 @@ def test_a_leap_of_all_outputs_over_missing_rows_or_repeated_readings_is_no_seam
     fastest = int(np.argmax(np.abs(log.y[20:] - log.y[:-20]).min(axis=1)))
     lost = (rows > fastest) & (rows < fastest + 20)
     assert (np.abs(log.y[fastest + 20] - log.y[fastest]) > 40 * TURN_STEP_RAD).all()
-    assert _kinds(_examined(rows_of(log, ~lost))) == {"missing_rows"}
+    assert _kinds(_examined(rows_of(log, ~lost))) == {"missing_rows", "break"}
     held = replace(log, y=log.y[np.where(lost, fastest, rows)])
     assert "seam" not in _kinds(_examined(held))
 
@@ -355,14 +356,14 @@ def test_noise_of_a_count_in_a_log_at_rest_is_no_seam() -> None:
 
 
 @pytest.mark.parametrize("rows", [30, 300])
-def test_a_reading_that_stops_is_noted_from_when_to_when_with_its_jumps(rows: int) -> None:
+def test_a_reading_that_stops_is_left_out_from_when_to_when_with_its_jumps(rows: int) -> None:
     log = clean()
     psi = log.y[:, 0].copy()
     psi[600 : 600 + rows] = 0.0
     jumps = [abs(psi[599]) / TURN_STEP_RAD, abs(psi[600 + rows]) / TURN_STEP_RAD]
     assert min(jumps) > 30.0
     (found,) = _examined(_column(log, "psi_rad", psi)).findings
-    assert (found.kind, found.column, found.severity) == ("dead_stretch", "psi_rad", "note")
+    assert (found.kind, found.column, found.severity) == ("dead_stretch", "psi_rad", "exclude")
     assert [found.start_s, found.end_s] == pytest.approx([6.0, 5.99 + 0.01 * rows])
     assert f"jumps there by {jumps[0]:.0f} steps, it jumps away by {jumps[1]:.0f} steps" in found.sentence
 

@@ -2,7 +2,10 @@
 
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from diagnosis.result import Result
 from diagnosis.validate.closed_loop import MODEL_VARIANTS
@@ -22,13 +25,27 @@ ANSWER = "diagnosis.json"
 def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
     """The predictions, plant.toml, diagnosis.json and the page by file name, in the order in which they are to be written."""
     outputs = list(result.case.library.bound.model.outputs)
-    predictions = {f"prediction-{flight.name}.csv": prediction_text(flight, outputs) for flight in result.predicted}
+    predictions = {f"prediction-{log.name}.csv": prediction_text(log, outputs) for log in _by_log(result.predicted)}
     return {
         **predictions,
         "plant.toml": plant_text(result.plant),
         ANSWER: diagnosis_text(result.diagnosis),
         "report.html": page_text(_page(result, logs)),
     }
+
+
+def _by_log(predicted: Sequence[Predicted]) -> list[Predicted]:
+    """The predictions of each log as one, whatever stretches it was taken in."""
+    found: dict[str, Predicted] = {}
+    for later in predicted:
+        first = found.get(later.name)
+        found[later.name] = later if first is None else _joined(first, later)
+    return list(found.values())
+
+
+def _joined(one: Predicted, other: Predicted) -> Predicted:
+    by = {variant: np.concatenate([values, other.by[variant]]) for variant, values in one.by.items()}
+    return replace(one, t_s=np.append(one.t_s, other.t_s), y=np.concatenate([one.y, other.y]), by=by)
 
 
 def _page(result: Result, logs: Sequence[str]) -> Page:
@@ -46,7 +63,7 @@ def _page(result: Result, logs: Sequence[str]) -> Page:
                 for variant in MODEL_VARIANTS
             },
         )
-        for flight in result.predicted
+        for flight in _by_log(result.predicted)
     ]
     stories = {name: effect.story for name, effect in library(bound).items()}
     places = bound.model.places

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from diagnosis.diagnose import Material
+from logcheck.breaks import unbroken
 from logcheck.clock import from_their_start
-from logcheck.integrity import demand, examine
+from logcheck.integrity import as_read, demand, examine
 from logcheck.stretches import stretches
 from records.diagnosis import Firmware
 from records.errors import BadInput
@@ -42,18 +43,23 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     paths = (*logs, *holdout)
     replays = [replay_log(log, path) for log, path in zip(read, paths, strict=True)]
     firmware, told = _firmware(paths, replays)
-    used = [~entry.excluded for entry in integrity.logs]
-    timed, counted = from_their_start(read, names)
-    parts = stretches(timed[:split], used[:split], names[:split])
+    timed, counted = from_their_start([as_read(*entry) for entry in zip(read, integrity.logs, strict=True)], names)
+    used, begins = [~entry.excluded for entry in integrity.logs], [entry.begins for entry in integrity.logs]
+    whole = unbroken(timed[:split], used[:split], begins[:split], names[:split])
+    checked = unbroken(timed[split:], used[split:], begins[split:], names[split:])
+    parts = stretches(whole.logs, whole.used, whole.names)
+    flown = {
+        name: _flown(*entry) for name, *entry in zip(names[split:], read[split:], holdout, replays[split:], strict=True)
+    }
     return Material(
         logs=parts.logs,
         names=parts.names,
-        holdout=timed[split:],
-        holdout_names=names[split:],
-        used=[*parts.used, *used[split:]],
+        holdout=checked.logs,
+        holdout_names=checked.of,
+        used=[*parts.used, *checked.used],
         firmware=firmware,
-        notes=(*integrity.notes, *told, *counted, *parts.notes),
-        tables=[_flown(*entry) for entry in zip(read[split:], holdout, replays[split:], strict=True)],
+        notes=(*integrity.notes, *told, *counted, *whole.notes, *checked.notes, *parts.notes),
+        tables=[flown.get(name) for name in checked.names],  # behind a break nobody knows the law's state
     )
 
 

@@ -1,0 +1,81 @@
+"""A log is a list of stretches without a break: where rows are missing, or another recording begins, what follows is another log.
+
+Who uses a log takes its stretches as logs of their own; how far the plant went in between, and by what inputs, nobody knows.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from logcheck import thresholds
+from logcheck.finding import Array, Finding, Found, Rows, in_words
+from logcheck.stretches import Stretches, part
+from records.errors import BadInput
+from records.log import RunLog
+from records.reasons import Note
+
+SHOWN = 3
+
+
+def gaps(t_s: Array) -> Rows:
+    """Rows (n,) in front of which more samples are missing than a filter can bridge; none where rows come at random times."""
+    begins: Rows = np.zeros(len(t_s), bool)
+    steps = np.diff(t_s)
+    if not steps.size:
+        return begins
+    for row in np.flatnonzero(steps > (thresholds.BRIDGED_ROWS + 1.5) * float(np.median(steps))).tolist():
+        around = steps[max(0, row - thresholds.AROUND_GAP_ROWS) : row + thresholds.AROUND_GAP_ROWS + 1]
+        usual_s = (thresholds.BRIDGED_ROWS + 1.5) * float(np.median(around))
+        often_s = thresholds.LONGER_THAN_OFTEN * float(np.percentile(around, thresholds.OFTEN_PERCENT))
+        begins[row + 1] = steps[row] > max(usual_s, often_s)
+    return begins
+
+
+def break_findings(log: RunLog, name: str) -> Iterator[Found]:
+    """A note on the stretches without rows behind which the log goes on as another one."""
+    begins = gaps(log.t_s)
+    rows = np.flatnonzero(begins)
+    if not rows.size:
+        return
+    spans = [f"{log.t_s[row - 1]:.6g} s to {log.t_s[row]:.6g} s" for row in rows[:SHOWN]]
+    more = f" and in {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
+    sentence = f"no rows from {', '.join(spans)}{more}: what follows is used as another log"
+    span = (float(log.t_s[rows[0] - 1]), float(log.t_s[rows[-1]]))
+    yield Found(Finding("break", name, "t_s", *span, sentence), begins=begins)
+
+
+def unbroken(logs: Sequence[RunLog], used: Sequence[Rows], begins: Sequence[Rows], names: Sequence[str]) -> Stretches:
+    """The stretches of all logs; `begins` (n,) are the rows of each that begin another one, `used` (n,) those that may be used.
+
+    A log without a break stays as it is. Stretches that are too short for a log are left out, with a note; raises BadInput for a log
+    that has no others.
+    """
+    parts: list[tuple[RunLog, str, Rows, str]] = []
+    notes: list[Note] = []
+    for log, mask, marked, name in zip(logs, used, begins, names, strict=True):
+        whole = [slice(*ends) for ends in pairwise([0, *np.flatnonzero(marked).tolist(), len(log.t_s)])]
+        kept = [rows for rows in whole if len(whole) == 1 or _is_a_log(log, rows)]
+        if not kept:
+            got = f"{in_words(len(whole), 'stretch')} between breaks, none of which is a log by itself"
+            least = f"one of {thresholds.LEAST_ROWS} rows over {thresholds.LEAST_DURATION_S:g} s at least"
+            raise BadInput("log", name, got, least, "record the run again, without losing rows")
+        if len(kept) < len(whole):
+            lost = len(log.t_s) - sum(rows.stop - rows.start for rows in kept)
+            said = f"{name}: {in_words(lost, 'row')} between breaks, too few for a log of their own; left out"
+            notes.append(Note("short_stretches", name, {"rows": lost}, said))
+        parts += [
+            (log if len(whole) == 1 else part(log, rows), _called(log, name, rows), mask[rows], name) for rows in kept
+        ]
+    cut, called, masks, of = zip(*parts, strict=True) if parts else ((), (), (), ())
+    return Stretches(cut, called, masks, tuple(notes), of)
+
+
+def _called(log: RunLog, name: str, rows: slice) -> str:
+    return name if rows.start == 0 else f"{name} from {log.t_s[rows.start]:.6g} s"
+
+
+def _is_a_log(log: RunLog, rows: slice) -> bool:
+    enough = rows.stop - rows.start >= thresholds.LEAST_ROWS
+    lasts = bool(log.t_s[rows.stop - 1] - log.t_s[rows.start] >= thresholds.LEAST_DURATION_S)
+    return enough and lasts and bool(np.isfinite(log.y[rows]).any())
