@@ -395,6 +395,13 @@ WIRING_NOISE = Limit(-1.3, "log10 rad/s per sqrt(s)", "or the process noise is s
 WIRING_GAIN = Limit(
     200.0, "nats", "another reading of the columns must be likelier by so much", "honest and rewired logs"
 )
+ROWS_S = Limit(60.0, "s", "of each log: time")
+ROWS_GAIN = Limit(
+    20.0,
+    "nats",
+    "commands moved by whole rows must be likelier by so much",
+    "flights of the CE150 with late commands gained 60 to 210, fourteen published recordings 4 at most",
+)
 
 # What is told beside it (explain)
 MOVED_FAR = Limit(3.0, "standard deviations", "a parameter further from its stated value is worth a sentence")

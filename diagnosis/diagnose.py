@@ -14,6 +14,7 @@ from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
+from diagnosis.decide.rows import demand_rows, early_note
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -41,9 +42,11 @@ from sim.bind import BoundPlant
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
+    demand_rows(seen.case, plain_fit, "the logs to explain")
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
+    material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
     seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)

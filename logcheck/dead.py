@@ -40,13 +40,13 @@ def read_again(log: RunLog) -> Rows:
     return again
 
 
-def dead_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterator[Found]:
-    """The stands of each output that no axis makes, whose readings are left out."""
+def dead_findings(log: RunLog, name: str, steps: Mapping[str, float], begins: Rows) -> Iterator[Found]:
+    """The stands of each output that no axis makes, whose readings are left out; with the rows `begins` (n,) another log begins."""
     for column in log.columns.outputs:
         step = steps.get(column, 0.0)
         present = np.flatnonzero(np.isfinite(log.column(column)))
         t_s, values = log.t_s[present], log.column(column)[present]
-        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step))
+        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step, begins[present]))
         if not stands:
             continue
         unread: Rows = np.zeros(len(log.t_s), bool)
@@ -82,10 +82,10 @@ def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
         yield "where it hardly ever reads the same twice"
 
 
-def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float) -> Iterator[Stand]:
+def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, begins: Rows) -> Iterator[Stand]:
     """Stands of at least DEAD_ROWS rows into which or out of which the column leaps, by far more than it moves there, though its axis was
     under way, or the inputs u (n, inputs) moved it."""
-    moves = np.diff(values)
+    moves = np.where(begins[1:], 0.0, np.diff(values))
     own = np.abs(moves[moves != 0.0])
     if not own.size:
         return

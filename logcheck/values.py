@@ -80,9 +80,11 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     yield from zeros
     log = _without(log, zeros)
     again = read_again(log)
-    yield from seam_findings(log, name, steps, again)
+    seams = list(seam_findings(log, name, steps, again))
+    yield from seams
+    begins = np.any([found.begins for found in seams], axis=0) if seams else np.zeros(len(log.t_s), bool)
     held = list(held_findings(log, name))
-    yield from held or dead_findings(log, name, steps)
+    yield from held or dead_findings(log, name, steps, begins)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 

@@ -34,7 +34,7 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
     `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
     `where` says which logs they are.
     """
-    found = likelier_wiring(case, fitted) if _is_strained(nominal) else None
+    found = likelier_wiring(case, fitted) if is_strained(nominal) else None
     if found is not None:
         wiring, gain = found
         raise BadInput(
@@ -52,18 +52,19 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
-    usual = _fitted(short, fitted)
+    usual = fitted_or_none(short, fitted)
     slips = list(wirings(case))
-    fits = thread_map(lambda wiring: _fitted(_rewired(short, wiring), fitted), slips)
+    fits = thread_map(lambda wiring: fitted_or_none(_rewired(short, wiring), fitted), slips)
     found = [(wiring, fit) for wiring, fit in zip(slips, fits, strict=True) if fit is not None]
     if usual is None or not found:
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = fit.log_posterior - usual.log_posterior
-    return (best, gain) if gain > decisions.WIRING_GAIN and not _is_strained(fit) else None
+    return (best, gain) if gain > decisions.WIRING_GAIN and not is_strained(fit) else None
 
 
-def _is_strained(fit: Fit) -> bool:
+def is_strained(fit: Fit) -> bool:
+    """Whether the plant as stated is far off the logs: in a parameter, or in what the process noise must do."""
     hypothesis = fit.hypothesis
     return bool(
         np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
@@ -71,7 +72,8 @@ def _is_strained(fit: Fit) -> bool:
     )
 
 
-def _fitted(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
+def fitted_or_none(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
+    """The fit to a case; None where it cannot be run along its logs."""
     try:
         return fitted(case)
     except BadInput:

@@ -47,7 +47,7 @@ def test_a_plain_log_is_not_remarked_on_by_any_part() -> None:
     facts = plant_facts(PLANT)
     assert not again.any()
     for found in (
-        dead_findings(log, "a", STEPS),
+        dead_findings(log, "a", STEPS, again),
         held_findings(log, "a"),
         input_findings(log, "a", LIMITS),
         locked_findings(log, "a", PLANT),
@@ -63,7 +63,7 @@ def test_a_plain_log_is_not_remarked_on_by_any_part() -> None:
 def test_an_output_that_stands_while_its_axis_goes_on_is_told_with_its_times() -> None:
     log = log_of()
     log.y[320:380, 1] = log.y[320, 1]  # 0.6 s in the middle of a fast swing
-    (found,) = dead_findings(log, "a", STEPS)
+    (found,) = dead_findings(log, "a", STEPS, read_again(log))
     assert (found.finding.column, found.finding.severity) == ("phi_rad", EXCLUDE)
     assert (found.finding.start_s, found.finding.end_s) == (pytest.approx(3.2, abs=0.02), pytest.approx(3.8, abs=0.02))
     assert amount(3.0 * STEP_RAD, "phi_rad", STEP_RAD) == "3 steps"

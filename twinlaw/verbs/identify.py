@@ -30,6 +30,7 @@ from twinlaw.pages.identify.report import identify_page
 from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
 from twinlaw.pages.page import page_text
 from twinlaw.workflows.identify.by_time import Wishes, identify
+from twinlaw.workflows.identify.columns import demand_columns
 from twinlaw.workflows.identify.inputs import free_names, looked_at, read_inputs, read_limits
 from twinlaw.workflows.identify.proof import proven
 from twinlaw.workflows.reading import load_bound
@@ -105,6 +106,8 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
     inputs = looked_at(inputs, bound)
+    with console.stage("asking whether the columns are what they are called"):
+        demand_columns(bound, inputs.logs)
     result = identify(bound, inputs, wishes, chosen.out)
     sections, pictures = proven(result, truth)
     for name, picture in pictures.items():

@@ -9,8 +9,9 @@ import numpy as np
 from identification.runs.rows import without_readings
 from identification.stages.setup import check_setup
 from identification.stages.staged import in_order
+from logcheck.breaks import unbroken
 from logcheck.finding import EXCLUDE, Finding
-from logcheck.integrity import LogIntegrity, demand, examine
+from logcheck.integrity import LogIntegrity, as_read, demand, examine
 from records.errors import BadInput
 from records.experiment import SCHEMA as EXPERIMENT_SCHEMA
 from records.experiment import Experiment, load_experiment
@@ -60,7 +61,7 @@ def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlan
 
 
 def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
-    """The inputs without readings that cannot be used, and one sentence for each thing that is odd in a log.
+    """The inputs without readings that cannot be used, logs by their stretches, and one sentence for each thing that is odd in a log.
 
     Raises BadInput for what makes a log worthless (a unit slip, no motion, nothing measured).
     """
@@ -70,13 +71,24 @@ def looked_at(inputs: Inputs, bound: BoundPlant) -> Inputs:
     found = examine(list(inputs.logs.values()), bound, holdout=list(inputs.holdout.values()), names=list(everything))
     demand(found)
     usable = {entry.name: _usable(everything[entry.name], entry, found.findings) for entry in found.logs}
-    logs, holdout = ({name: usable[name] for name in some} for some in (inputs.logs, inputs.holdout))
-    return replace(inputs, logs=logs, holdout=holdout, notes=tuple(note.said for note in found.notes if note.said))
+    begins = {entry.name: entry.begins for entry in found.logs}
+    parts = [
+        unbroken(
+            [usable[name] for name in some],
+            [np.ones(len(usable[name].t_s), bool) for name in some],
+            [begins[name] for name in some],
+            list(some),
+        )
+        for some in (inputs.logs, inputs.holdout)
+    ]
+    logs, holdout = (dict(zip(entry.names, entry.logs, strict=True)) for entry in parts)
+    notes = tuple(note.said for note in (*found.notes, *parts[0].notes, *parts[1].notes) if note.said)
+    return replace(inputs, logs=logs, holdout=holdout, notes=notes)
 
 
 def _usable(log: RunLog, looked: LogIntegrity, findings: Sequence[Finding]) -> RunLog:
     """The log without the readings that are to be left out; raises BadInput where none would be left."""
-    kept = without_readings(log, looked.excluded)
+    kept = without_readings(as_read(log, looked), looked.excluded)
     if not np.any(np.isfinite(kept.y)):
         first = next(entry for entry in findings if entry.log == looked.name and entry.severity == EXCLUDE)
         raise BadInput("log", looked.name, first.sentence, "a row that can be used", "leave this log out")
