@@ -14,7 +14,7 @@ from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
-from diagnosis.decide.rows import demand_rows, early_note
+from diagnosis.decide.rows import EARLY, LATE, demand_rows, early_note
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -34,6 +34,7 @@ from diagnosis.search.draughts import Draught, draught
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
+from records.diagnosis import Firmware
 from records.reasons import Decision, Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
@@ -42,11 +43,13 @@ from sim.bind import BoundPlant
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
-    demand_rows(seen.case, plain_fit, "the logs to explain")
+    if not _in_their_rows(material.firmware):
+        demand_rows(seen.case, plain_fit, "the logs to explain", _ways(material.firmware))
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
-    material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
+    if not _in_their_rows(material.firmware):
+        material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
     seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
@@ -62,6 +65,17 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not matters:
         return _nothing(seen, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
     return gap(seen, material, judged)
+
+
+def _in_their_rows(firmware: Firmware | None) -> bool:
+    """Whether the controller's own code shows that each command stands in the row of its time."""
+    return firmware is not None and firmware.bit_exact
+
+
+def _ways(firmware: Firmware | None) -> tuple[int, ...]:
+    """Commands may be logged late; early too where the controller's own code says so, else the plant itself may be late."""
+    is_early = firmware is not None and (firmware.cause or "").startswith("early_output")
+    return (LATE, EARLY) if is_early else (LATE,)
 
 
 def _alarmed(p: float) -> bool:

@@ -90,7 +90,9 @@ def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, beg
     if not own.size:
         return
     least, usual_u = max(float(own.min()), step), np.ptp(u, axis=0)
-    moves = moves * period_s / np.maximum(np.diff(t_s), period_s)  # as far as in one sample, where rows lie further apart
+    moves = (
+        moves * period_s / np.maximum(np.diff(t_s), period_s)
+    )  # as far as in one sample, where rows lie further apart
     way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / period_s))
     runs = _runs(values)
     never_repeats = _repeats(values, runs) < thresholds.SELDOM and _is_noisy(moves)

@@ -66,7 +66,8 @@ def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float
     again = f", and so at {', '.join(later)}{more}" if later else ""
     sentence = (
         f"all outputs leap at once between {log.t_s[first - 1]:.6g} s and {log.t_s[first]:.6g} s, {' and '.join(leaps)}, "
-        f"where they usually move by no more than {' and '.join(usual)} from row to row{again}: several recordings in one file; cut apart there"
+        f"where they usually move by no more than {' and '.join(usual)} from row to row{again}: "
+        "several recordings in one file; cut apart there"
     )
     span = (float(log.t_s[first]), float(log.t_s[rows[-1]]))
     begins: Rows = np.zeros(len(log.t_s), bool)

@@ -40,10 +40,15 @@ WAY_S = Limit(0.2, "s", "the same, where rows are denser")
 TO_AND_FRO = Limit(0.2, "share of all moves", "that are against the one before: a noisy sensor never rests")
 SELDOM = Limit(0.02, "share of rows", "that repeat the one before: then five rows of one value do not come by chance")
 BROKEN_OFF = Limit(
-    3.0, "times the largest move near", "an axis leaves its rest by no more", "18 000 stands in honest logs: 3.0 at most"
+    3.0,
+    "times the largest move near",
+    "an axis leaves its rest by no more",
+    "18 000 stands in honest logs: 3.0 at most",
 )
 BROKEN_OFF_STEPS = Limit(4.0, "least moves", "the same stands: 3 at most", "18 000 stands in honest logs")
-DRIVEN_SHARE = Limit(0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis")
+DRIVEN_SHARE = Limit(
+    0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis"
+)
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
 # held

@@ -82,7 +82,9 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     again = read_again(log)
     seams = list(seam_findings(log, name, steps, again))
     yield from seams
-    begins = np.any([found.begins for found in seams], axis=0) if seams else np.zeros(len(log.t_s), bool)
+    begins: Rows = np.zeros(len(log.t_s), bool)
+    for found in seams:
+        begins |= begins if found.begins is None else found.begins
     held = list(held_findings(log, name))
     yield from held or dead_findings(log, name, steps, begins)
     for column in log.columns.outputs:

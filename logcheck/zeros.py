@@ -29,7 +29,9 @@ def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
     near = np.minimum(before, after)
     near[: others[0]] = 0.0
     near[others[-1] :] = 0.0
-    gap_s = log.t_s[others[np.clip(place, 0, others.size - 1)]] - log.t_s[others[np.clip(place - 1, 0, others.size - 1)]]
+    gap_s = (
+        log.t_s[others[np.clip(place, 0, others.size - 1)]] - log.t_s[others[np.clip(place - 1, 0, others.size - 1)]]
+    )
     near[gap_s > thresholds.DEAD_S] = 0.0  # a stand, which is told with its times
     clear: Rows = zero & (near > leap)
     if not clear.any():

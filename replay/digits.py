@@ -1,5 +1,6 @@
 """With how many digits a column was written down: numbers that a log rounded cannot be replayed to the last bit."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,13 +44,23 @@ def printing(values: ArrayLike) -> Printing:
     distinct = distinct[np.isfinite(distinct)]
     if distinct.size < thresholds.FEWEST_VALUES:
         return Printing()
+    found = [*_decimals(distinct), *_digits(distinct[:: max(1, distinct.size // 200)])]
+    # Numbers of few digits have many decimals where they are small: what rounds them most is how they were written.
+    return max(found, key=lambda entry: float(np.median(entry.half_step(distinct))), default=Printing())
+
+
+def _decimals(distinct: Array) -> Iterator[Printing]:
     for decimals in range(thresholds.MOST_DECIMALS + 1):
         if np.array_equal(np.round(distinct, decimals), distinct):
-            return Printing(decimals=decimals)
+            yield Printing(decimals=decimals)
+            return
+
+
+def _digits(distinct: Array) -> Iterator[Printing]:
     for digits in range(1, thresholds.MOST_DIGITS + 1):
-        if all(float(f"{value:.{digits}g}") == value for value in distinct[:: max(1, distinct.size // 200)].tolist()):
-            return Printing(digits=digits)
-    return Printing()
+        if all(float(f"{value:.{digits}g}") == value for value in distinct.tolist()):
+            yield Printing(digits=digits)
+            return
 
 
 def _exponents(values: Array) -> Array:

@@ -17,14 +17,19 @@ from records.errors import BadInput
 from records.log import RunLog
 from records.table import ControllerTable
 from replay.arithmetic import FIXED, Replayed, replayed, replayed_in_fixed
+from replay.events import UNLOGGED
 from replay.flight import ReplayedLog, flight_of, has_replayable_columns
-from replay.search import LOG_ROUNDING, channel_cause, explain
+from replay.printed import agrees_as_printed
+from replay.search import LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, Told, channel_cause, explain
 
 NOT_FOUND = "not_found"
 IN_FIXED_POINT = "the firmware computes in fixed point and agrees in every word"
 ROUNDING_V = 1e-3
 BEHIND_LIMIT = 2  # rows off the limits after which what they did to the law's state shows in its answer
-ANGLES_ROUNDED = "the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees"
+# What is the log's doing alone: but for what it lacks, or holds twice, the firmware did as its table says.
+CLEARED = (LOG_ROUNDING, MISSING_ROWS, REPEATED_ROW, UNLOGGED)
+NINE_DIGITS = "print nine digits, which hold all of a float32"
+ANGLES_ROUNDED = f"the log holds its angles with few digits; with the whole counts that they stand for, every bit agrees: {NINE_DIGITS}"
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
     `others` are further tables that may have flown. Raises BadInput when the log names a table that is not `table`, or `table`
     is one that no law can be made from.
     """
-    _demand_own(log, table)
+    demand_own(log, table)
     if not has_replayable_columns(log):
         sentence = "the log lacks a reference or an angle that the law takes"
         return FirmwareReplay(False, False, None, "not_replayable", sentence)
@@ -80,7 +85,9 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
         return _in_fixed_point(flight, table, run, residuals)
     if at_s is None and not flight.missing:
         return FirmwareReplay(True, True, None, None, None, residuals)
-    told = explain(flight, table, others)
+    within_V = agrees_as_printed(flight, table)
+    as_printed = None if within_V is None else Told(LOG_ROUNDING, _as_printed(flight, within_V))
+    told = explain(flight, table, others, as_printed)
     if told is None:
         behind_fixed = _behind_fixed(flight, table, residuals, at_s)
         if behind_fixed is not None:
@@ -95,7 +102,16 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
     return FirmwareReplay(True, False, at_s, told.cause, told.sentence, residuals, told.incidents, told.alternatives)
 
 
-def _demand_own(log: RunLog, table: ControllerTable) -> None:
+def _as_printed(flight: ReplayedLog, within_V: float) -> str:
+    few = " and ".join(dict.fromkeys(str(entry) for entry in flight.printings if not entry.is_exact))
+    return (
+        f"the log rounded its numbers ({few}); within what that does to its law's answers, {within_V:.2g} V at most, the replay "
+        f"agrees: {NINE_DIGITS}"
+    )
+
+
+def demand_own(log: RunLog, table: ControllerTable) -> None:
+    """Raise BadInput where the log names another table."""
     if log.table_digest is not None and log.table_digest != table.digest:
         raise BadInput(
             "controller table",
@@ -117,6 +133,13 @@ def _in_fixed_point(
     behind_it = _behind_words(flight, table, run, residuals, at_s)
     if behind_it is not None:
         return behind_it
+    lacks = np.isnan(np.hstack([flight.reference_rad, flight.angle_rad])).any(axis=1)
+    if lacks[: rows[0] + 1].any():
+        since_s = float(flight.t_s[np.argmax(lacks)])
+        sentence = (
+            f"{IN_FIXED_POINT}, up to {since_s:.6g} s; behind what the log lacks there the law's state is not known"
+        )
+        return FirmwareReplay(True, False, at_s, MISSING_ROWS, sentence, residuals)
     behind = " behind rows that the log lacks" if any(flight.t_s[first] < at_s for first, _ in flight.missing) else ""
     sentence = f"{IN_FIXED_POINT}, until {at_s:.2f} s{behind}; in fixed point no other law is tried"
     return FirmwareReplay(True, False, at_s, NOT_FOUND, sentence, residuals)

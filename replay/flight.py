@@ -41,6 +41,14 @@ class ReplayedLog:
     lacking: int
 
     @property
+    def reference_half_step_rad(self) -> Array:
+        """How far printing may have moved each reference (n, 2): a few numbers tell no digits, those of its angle do."""
+        columns = zip(self.reference_rad.T, self.printings[2:4], self.printings[4:], strict=True)
+        return np.column_stack(
+            [np.maximum(own.half_step(column), angle.half_step(column)) for column, own, angle in columns]
+        )
+
+    @property
     def inputs_are_rounded(self) -> bool:
         """True where the log wrote the voltages down with fewer digits than a float32 has."""
         return not all(entry.is_exact for entry in self.printings[:2])
@@ -77,16 +85,43 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
 
 
 def readings(flight: ReplayedLog) -> tuple[ReplayedLog, ...]:
-    """The flight as logged and, where its angles were written with few digits, as the whole encoder counts they stand for.
+    """The flight as logged and, where that is another number, as the whole encoder counts that its angles, and its references if all
+    are on the grid, stand for.
 
     Counts become angles in two ways: multiplied in double precision and then rounded, or in float32 as the firmware does.
     """
-    if all(entry.is_exact for entry in flight.printings[4:]) or not all(flight.steps_rad):
+    if not all(flight.steps_rad):
         return (flight,)
     steps = np.array(flight.steps_rad)
-    counts = np.round(flight.angle_rad / steps)
-    in_float32 = (counts.astype(np.float32) * steps.astype(np.float32)).astype(float)
-    return flight, replace(flight, angle_rad=counts * steps), replace(flight, angle_rad=in_float32)
+    found = [flight]
+    for product in (_in_float64, _in_float32):
+        angles = product(np.round(flight.angle_rad / steps), steps)
+        on_grid = [product(np.round(flight.reference_rad / steps), steps), flight.reference_rad]
+        references = next(values for values in on_grid if _as_written(values, flight))
+        given = np.hstack([references, angles]).astype(np.float32)
+        if not any(
+            np.array_equal(given, np.hstack([other.reference_rad, other.angle_rad]).astype(np.float32), equal_nan=True)
+            for other in found
+        ):
+            found.append(replace(flight, reference_rad=references, angle_rad=angles))
+    return tuple(found)
+
+
+def _in_float64(counts: Array, steps: Array) -> Array:
+    return counts * steps
+
+
+def _in_float32(counts: Array, steps: Array) -> Array:
+    return np.asarray((counts.astype(np.float32) * steps.astype(np.float32)).astype(float))
+
+
+def _as_written(references: Array, flight: ReplayedLog) -> bool:
+    """Whether these references (n, 2) are written down as those that the log holds."""
+    half = flight.reference_half_step_rad
+    off = np.abs(references - flight.reference_rad)
+    return bool(
+        np.all(np.isnan(off) | (off <= half * PRINT_MARGIN + np.spacing(np.abs(references).astype(np.float32))))
+    )
 
 
 def _samples(log: RunLog) -> tuple[NDArray[np.int64], int]:

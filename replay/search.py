@@ -86,10 +86,15 @@ class Explanation:
         return sum(kinds[kind] for kind in MIMICS) <= thresholds.MANY_INCIDENTS
 
 
-def explain(flight: ReplayedLog, table: ControllerTable, others: Sequence[ControllerTable] = ()) -> Told | None:
+def explain(
+    flight: ReplayedLog,
+    table: ControllerTable,
+    others: Sequence[ControllerTable] = (),
+    as_printed: Told | None = None,
+) -> Told | None:
     """The simplest firmware that leaves no difference: the table's law with incidents, one change, a fused build, two changes.
 
-    None where none was found.
+    None where none was found. `as_printed` is what is told of a log whose digits do not tell another law from the table's.
     """
     base = Setup(table)
     shops = [Workshop(reading) for reading in readings(flight)]
@@ -97,6 +102,8 @@ def explain(flight: ReplayedLog, table: ControllerTable, others: Sequence[Contro
         found = _exact(shop, base, [()])
         if found and found[0].is_plain:
             return _told(shop.flight, found)
+    if as_printed is not None:
+        return as_printed
     for shop in shops:
         single = [*variants(table, shop.flight, others), *fitted_prefilters(table, shop.flight, shop.inputs(base))]
         lone = _lone(shop, table)
@@ -199,6 +206,8 @@ def _told(flight: ReplayedLog, found: Sequence[Explanation]) -> Told:
         return _repeated(flight, best)
     equals = dict.fromkeys([REPEATED_ROW] if repeats is not None else [])
     equals |= dict.fromkeys(entry.name for entry in found if entry.cost == best.cost and entry.name != best.name)
+    if not best.changes and set(best.trace.kinds()) == {UNLOGGED} and not equals:
+        return _not_logged(flight, best)
     clauses = [change.sentence for change in best.changes]
     clauses += [_incident_clause(flight, kind, count, best) for kind, count in best.trace.kinds().items()]
     incidents = tuple((entry.kind, float(flight.t_s[entry.first])) for entry in best.trace.incidents)
@@ -251,6 +260,17 @@ def _repeated(flight: ReplayedLog, found: Explanation) -> Told:
     return Told(REPEATED_ROW, sentence, times, (SAMPLE_LOST,))
 
 
+def _not_logged(flight: ReplayedLog, found: Explanation) -> Told:
+    incidents = found.trace.incidents
+    count = sum(entry.samples for entry in incidents)
+    what = "a sample" if count == 1 else f"{count} samples"
+    sentence = (
+        f"the log lacks {what} that the firmware had, first at {flight.t_s[incidents[0].first]:.6g} s; with readings that fit there, "
+        "and everywhere else, the firmware is cleared"
+    )
+    return Told(UNLOGGED, sentence, tuple((UNLOGGED, float(flight.t_s[entry.first])) for entry in incidents))
+
+
 def _incident_clause(flight: ReplayedLog, kind: str, count: int, found: Explanation) -> str:
     first = next(entry for entry in found.trace.incidents if entry.kind == kind)
     at = f"at {flight.t_s[first.first]:.6g} s"
@@ -263,7 +283,9 @@ def _incident_clause(flight: ReplayedLog, kind: str, count: int, found: Explanat
 def _rounded_only(flight: ReplayedLog) -> Told:
     if not flight.inputs_are_rounded:
         return Told(None, None)
-    sentence = f"the log rounded its inputs ({_digits(flight)}); the replay agrees with all of these digits"
+    sentence = (
+        f"the log rounded its inputs ({_digits(flight)}); the replay agrees with all of these digits: print nine digits"
+    )
     return Told(LOG_ROUNDING, sentence)
 
 

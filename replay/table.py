@@ -3,21 +3,28 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from records.errors import BadInput
 from records.law_table import SCHEMA
 from records.log import RunLog
 from records.table import ControllerTable, load_table
 from records.text.reading import read_json
-from replay.firmware import FirmwareReplay, replay_firmware
+from replay.firmware import FirmwareReplay
+from replay.stretches import replay_stretches
 
 TABLE_NAME = "controller.json"
 TABLE_NOT_FOUND = "table_not_found"
 
 
-def replay_log(log: RunLog, path: Path, tables: Sequence[ControllerTable] = ()) -> FirmwareReplay | None:
+def replay_log(
+    log: RunLog, path: Path, tables: Sequence[ControllerTable] = (), begins: NDArray[np.bool_] | None = None
+) -> FirmwareReplay | None:
     """Run the firmware again that the log at `path` names; None where it names none.
 
     Its table is one of `tables`, or controller.json in the log's folder. The other tables are tried as what may have flown instead.
+    With the rows `begins` (n,) another recording begins.
     Raises BadInput when tables are given and the log names none of them.
     """
     if log.table_digest is None:
@@ -25,7 +32,7 @@ def replay_log(log: RunLog, path: Path, tables: Sequence[ControllerTable] = ()) 
     known = {table.digest: table for table in (*tables, *_beside(path))}
     table = known.pop(log.table_digest, None)
     if table is not None:
-        return replay_firmware(log, table, tuple(known.values()))
+        return replay_stretches(log, table, tuple(known.values()), begins)
     if tables:
         raise BadInput(
             "run log",

@@ -39,7 +39,7 @@ SETTLED_CONSTANTS = Limit(
 )
 HISTORY = Count(4, "samples", "differences of s reach back three samples, and one", "exact")
 BOUNDS_V = Limits((1e-6, 1e-5, 1e-4, 1e-3), "V", "agreement bounds tried from fine to coarse")
-LEAST_ROWS = Count(500, "rows", "that must remain to compare")
+LEAST_ROWS = Count(200, "rows", "that must remain to compare")
 CLEARLY_OFF = Limit(100.0, "times the bound", "a law from rest is off by this much in a log that begins in flight")
 
 # overflow
@@ -53,6 +53,14 @@ ANGLE_BITS = Counts(
 DECIMAL_DIGITS = Counts((2, 3, 4, 5, 6, 7), "decimal digits", "range ends of decimal integers tried")
 FRACTION_BITS = Counts((8, 10, 12, 14, 15, 16), "bits", "Q formats tried")
 UNSIGNED_V = Limits((65.536, 16.0, 32.0, 64.0, 20.0), "V", "usual unsigned ranges")
+
+# printed
+ROUNDED_RUNS = Count(8, "runs", "of the law on numbers that the log may have rounded to what it holds")
+ROUNDED_FARTHER = Limit(1.5, "times the farthest of these runs", "the log's own rounding is one more of them")
+SAME_ROUNDING_V = Limit(2e-6, "V", "float32 itself rounds by so much")
+
+# stretches
+MOST_UNREAD = Count(10, "rows", "more rows in a row that lack a reading leave the law's state unknown")
 
 # prefilter
 LOG10_RANGE_S = Limits((-2.5, 1.0), "log10 s", "time constants tried")

@@ -92,11 +92,12 @@ def test_angles_logged_late_are_named_with_their_age(samples: int, axes: tuple[i
     assert words in (found.sentence or "")
 
 
-def test_a_log_whose_references_were_rounded_is_told_so_and_gets_no_cause() -> None:
+def test_a_log_whose_references_were_rounded_is_compared_as_far_as_they_tell() -> None:
     log = default_flight()
     found = _told(replace(log, extra={name: np.round(values, 3) for name, values in log.extra.items()}))
-    assert found.cause == "not_found"
-    assert "holds its references with 3 decimals" in (found.sentence or "")
+    assert found.cause == "log_rounding"
+    assert "3 decimals" in (found.sentence or "")
+    assert "print nine digits" in (found.sentence or "")
 
 
 def test_references_that_are_exchanged_are_named() -> None:

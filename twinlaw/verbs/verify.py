@@ -42,12 +42,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
-    recorded = [recorded_replay(path, table, chosen.arithmetic) for path in chosen.log]
     bound = load_bound(chosen.plant)
+    recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
     image = build_image(law, chosen.out)
-    verification = verify_table(bound, table, poles, law, image, recorded, chosen.steps, chosen.arithmetic)
+    verification = verify_table(
+        bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
+    )
     if chosen.proofs:
         motion = Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim"))
         generated = {**law, **protocol_source(PROTOCOL)}
@@ -56,5 +58,8 @@ def run(chosen: argparse.Namespace) -> int:
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(verification_rows(verification)))
+    for _, lacks in recorded:
+        if lacks is not None and not chosen.json:
+            print(f"- {lacks}")
     demand(verification)
     return 0

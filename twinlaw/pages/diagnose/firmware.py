@@ -2,11 +2,11 @@
 
 from records.diagnosis import Firmware
 from replay.columns import OF_THE_COLUMNS
-from replay.firmware import NOT_FOUND
+from replay.firmware import CLEARED, NOT_FOUND
 from replay.lone import ANGLE_LOGGED_LATE, LOGGED_LATE
 
 # What a replay tells of the log, or of how the code was built, and not of what the firmware does.
-_OF_THE_LOG = ("log_rounding", "missing_rows", "repeated_row", "begins_in_flight", "fused_multiply_add")
+_OF_THE_LOG = (*CLEARED, "begins_in_flight", "fused_multiply_add")
 # What firmware and log cannot be told apart in: the plant may have been given other inputs than were logged.
 _OF_THE_COLUMNS = (*OF_THE_COLUMNS, LOGGED_LATE, ANGLE_LOGGED_LATE)
 _ROWS_LACK = "rows that the log lacks"
@@ -29,6 +29,8 @@ def firmware_in_words(firmware: Firmware | None) -> str:
         return f"The controller's code was not run again, so nothing is known of the firmware: {cause or 'its table is not at hand'}."
     if firmware.bit_exact:
         return f"{again} gives every logged input to the bit: the firmware is cleared."
+    if (firmware.cause or "").partition(":")[0] in CLEARED:
+        return _closed(f"{again} agrees with all that the log holds: {cause}")
     at = "" if firmware.first_difference_s is None else f" first differs at {firmware.first_difference_s:g} s"
     return _closed(f"{again}{at or ' was compared'}: {cause or 'cause not found'}")
 

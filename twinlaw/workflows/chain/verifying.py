@@ -1,17 +1,22 @@
 """Verification as the verbs run it: twin, host and target step by step in every arithmetic, bounds and cost."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from codegen.law import generate_law
+from logcheck.integrity import as_read, examine
 from records.errors import VerificationFailed
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
+from replay.firmware import CLEARED
+from replay.flight import has_replayable_columns
+from replay.stretches import replay_stretches
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
+from sim.columns import log_columns
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
@@ -115,6 +120,22 @@ def equal_steps(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimul
         return compare(one, other, stimuli).equality
 
 
-def recorded_replay(path: Path, table: ControllerTable, arithmetic: str = "float32") -> Replay:
-    """A run log of any known plant, to be replayed in an arithmetic; raises BadInput."""
-    return replay_of(load_known_log(path), table, path, arithmetic)
+def recorded_replay(
+    path: Path, table: ControllerTable, bound: BoundPlant, arithmetic: str = "float32"
+) -> tuple[Replay, str | None]:
+    """A run log of any known plant, to be replayed in an arithmetic, and what it lacks to be compared bit by bit; raises BadInput.
+
+    What the log lacks, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not compared.
+    """
+    log = load_known_log(path)
+    replay = replay_of(log, table, path, arithmetic)
+    if replay.sent is None or not has_replayable_columns(log):
+        return replay, None
+    begins = None
+    if log.columns == log_columns(bound.model):
+        looked = examine([log], bound, names=[path.stem]).logs[0]
+        log, begins = as_read(log, looked), looked.begins
+    found = replay_stretches(log, table, begins=begins)
+    if found.cause not in CLEARED:
+        return replay, None
+    return replace(replay, sent=None), f"{path.name}: {found.sentence}; its inputs are not compared bit by bit"

@@ -6,7 +6,7 @@ from pathlib import Path
 from diagnosis.diagnose import Material
 from logcheck.breaks import unbroken
 from logcheck.clock import from_their_start
-from logcheck.integrity import as_read, demand, examine
+from logcheck.integrity import LogIntegrity, as_read, demand, examine
 from logcheck.stretches import stretches
 from records.diagnosis import Firmware
 from records.errors import BadInput
@@ -41,16 +41,15 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
     integrity = examine(read[:split], bound, holdout=read[split:], names=names)
     demand(integrity)
     paths = (*logs, *holdout)
-    replays = [replay_log(log, path) for log, path in zip(read, paths, strict=True)]
+    replays = [_replayed(*entry) for entry in zip(read, paths, integrity.logs, strict=True)]
     firmware, told = _firmware(paths, replays)
     timed, counted = from_their_start([as_read(*entry) for entry in zip(read, integrity.logs, strict=True)], names)
     used, begins = [~entry.excluded for entry in integrity.logs], [entry.begins for entry in integrity.logs]
     whole = unbroken(timed[:split], used[:split], begins[:split], names[:split])
     checked = unbroken(timed[split:], used[split:], begins[split:], names[split:])
     parts = stretches(whole.logs, whole.used, whole.names)
-    flown = {
-        name: _flown(*entry) for name, *entry in zip(names[split:], read[split:], holdout, replays[split:], strict=True)
-    }
+    flown = [_flown(*entry) for entry in zip(read[split:], holdout, replays[split:], strict=True)]
+    tables = dict(zip(names[split:], flown, strict=True))
     return Material(
         logs=parts.logs,
         names=parts.names,
@@ -59,8 +58,16 @@ def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) 
         used=[*parts.used, *checked.used],
         firmware=firmware,
         notes=(*integrity.notes, *told, *counted, *whole.notes, *checked.notes, *parts.notes),
-        tables=[flown.get(name) for name in checked.names],  # behind a break nobody knows the law's state
+        tables=[tables.get(name) for name in checked.names],  # behind a break nobody knows the law's state
     )
+
+
+def _replayed(log: RunLog, path: Path, looked: LogIntegrity) -> FirmwareReplay | None:
+    """The firmware run again on what it was given: what was read or, where that is not it, all that was logged."""
+    found = replay_log(as_read(log, looked), path, begins=looked.begins)
+    if looked.unread.any() and differs(None if found is None else found.record()):
+        return replay_log(log, path, begins=looked.begins)
+    return found
 
 
 def _flown(log: RunLog, path: Path, replay: FirmwareReplay | None) -> ControllerTable | None:

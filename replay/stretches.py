@@ -1,0 +1,96 @@
+"""A log with breaks replayed stretch by stretch: the first from rest, those behind a break from the state that the log tells.
+
+Where rows, or more readings in a row than the law's own answers can tell, are missing, nobody knows the law's state behind.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from logcheck.breaks import gaps
+from logcheck.stretches import part
+from records.log import RunLog
+from records.table import ControllerTable
+from replay import thresholds
+from replay.arithmetic import replayed
+from replay.events import Workshop
+from replay.firmware import CLEARED, FirmwareReplay, demand_own, replay_firmware
+from replay.flight import flight_of, has_replayable_columns
+from replay.midair import begins_in_flight
+from replay.search import MISSING_ROWS
+
+Rows = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class _Behind:
+    """One stretch behind a break: from when to when, and within how many volt the law agrees from `since_s` on; None: not compared."""
+
+    start_s: float
+    end_s: float
+    since_s: float | None
+    within_V: float = 0.0
+
+
+def replay_stretches(
+    log: RunLog, table: ControllerTable, others: Sequence[ControllerTable] = (), begins: Rows | None = None
+) -> FirmwareReplay:
+    """`replay_firmware` of a log that is cut where rows or readings are missing, and in front of the rows `begins` (n,)."""
+    demand_own(log, table)
+    parts = list(_parts(log, begins))
+    if len(parts) < 2 or not has_replayable_columns(log):
+        return replay_firmware(log, table, others)
+    first = replay_firmware(part(log, parts[0]), table, others)
+    if not first.bit_exact and first.cause not in CLEARED:
+        return first
+    behind = [_behind(part(log, rows), table) for rows in parts[1:]]
+    end_s = float(log.t_s[parts[0].stop - 1])
+    sentence = f"rows or readings are missing behind {end_s:.6g} s; up to there the firmware is cleared"
+    sentence += "".join(f", {_in_words(entry)}" for entry in behind)
+    if first.sentence is not None:
+        sentence = f"{first.sentence}; {sentence}"
+    return replace(first, bit_exact=False, cause=MISSING_ROWS, sentence=sentence)
+
+
+def _in_words(entry: _Behind) -> str:
+    if entry.since_s is None:
+        return f"from {entry.start_s:.6g} s to {entry.end_s:.6g} s the law's state is not known"
+    within = "to the bit" if entry.within_V == 0.0 else f"within {entry.within_V:g} V"
+    return f"from {entry.since_s:.6g} s to {entry.end_s:.6g} s it agrees {within}"
+
+
+def _parts(log: RunLog, begins: Rows | None) -> Iterator[slice]:
+    """Stretches of rows without breaks and without long runs of rows that lack a reading."""
+    n = len(log.t_s)
+    edges = gaps(log.t_s) if begins is None else gaps(log.t_s) | begins
+    unread: Rows = np.asarray(np.isnan(log.y).any(axis=1))
+    for first, behind in pairwise([0, *np.flatnonzero(edges).tolist(), n]):
+        for run in _runs(~_long_runs(unread[first:behind])):
+            yield slice(first + run.start, first + run.stop)
+
+
+def _long_runs(marked: Rows) -> Rows:
+    """Runs of True that are longer than MOST_UNREAD."""
+    found: Rows = np.zeros(len(marked), bool)
+    for run in _runs(marked):
+        found[run] = run.stop - run.start > thresholds.MOST_UNREAD
+    return found
+
+
+def _runs(marked: Rows) -> list[slice]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(np.int8)))
+    return [slice(int(first), int(behind)) for first, behind in edges.reshape(-1, 2)]
+
+
+def _behind(log: RunLog, table: ControllerTable) -> _Behind:
+    start_s, end_s = float(log.t_s[0]), float(log.t_s[-1])
+    if len(log.t_s) < 2:
+        return _Behind(start_s, end_s, None)
+    flight = flight_of(log, table)
+    if not replayed(flight, table).differs.any():
+        return _Behind(start_s, end_s, start_s)
+    found = begins_in_flight(Workshop(flight), table)
+    return _Behind(start_s, end_s, None) if found is None else _Behind(start_s, end_s, *found)
