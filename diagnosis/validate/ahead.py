@@ -5,7 +5,7 @@ freely with the inputs that were commanded since. The running gap is the rms of 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,15 @@ class Lookahead:
         self._rows, self._found, self._asked_s = [], [], -np.inf
 
     def take(self, rows: Sequence[LiveRow]) -> tuple[Ahead, ...]:
-        """Take the next rows; returns the predictions that are due with them, none in the first three seconds."""
+        """Take the next rows; returns the predictions that are due with them, none in the first three seconds of a log."""
+        first = next((place for place, row in enumerate(rows) if row.begins), None)
+        if first is None:
+            return self._taken(rows)
+        before = self._taken(rows[:first])
+        self._rows, self._asked_s = [], -np.inf
+        return (*before, *self.take([replace(rows[first], begins=False), *rows[first + 1 :]]))
+
+    def _taken(self, rows: Sequence[LiveRow]) -> tuple[Ahead, ...]:
         if not rows:
             return ()
         self._rows.extend(rows)

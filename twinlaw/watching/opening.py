@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from controllers import loading
+from logcheck.integrity import as_read, examine
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
@@ -14,6 +15,7 @@ from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
 from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
+from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.manoeuvres import at_rest, flight
@@ -51,8 +53,11 @@ def open_watched(asked: Watched) -> tuple[BoundPlant, Source, tuple[str, ...]]:
     bound = load_bound(asked.plant)
     if is_log(asked.port):
         log = load_log(Path(asked.port), log_columns(bound.model))
-        told = {"title": Path(asked.port).name, "who": f"log {asked.port}, twin {asked.plant}", **signals(bound)}
-        return bound, LogSource(log, told), log.locked
+        looked = examine([log], without_effects(bound) if bound.effects else bound, names=[Path(asked.port).stem])
+        odd = "".join(f"; {note.said}" for note in looked.notes)
+        who = f"log {asked.port}, twin {asked.plant}{odd}"
+        told = {"title": Path(asked.port).name, "who": who, **signals(bound)}
+        return bound, LogSource(as_read(log, looked.logs[0]), told, looked.logs[0].begins), log.locked
     return bound, _open_board(asked, bound), ()
 
 

@@ -4,6 +4,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from diagnosis.validate.ahead import AHEAD_MEMORY_S
 from records.errors import BadInput
 from records.live import LiveRow
@@ -20,10 +23,11 @@ class LogSource:
 
     armed = False
 
-    def __init__(self, log: RunLog, facts: Mapping[str, Any]) -> None:
+    def __init__(self, log: RunLog, facts: Mapping[str, Any], begins: NDArray[np.bool_] | None = None) -> None:
+        """With the rows `begins` (n,) another log begins."""
         self.anew = False
         self._facts = facts
-        self._rows = live_rows(log)
+        self._rows = live_rows(log, begins)
         self._referenced = any(reference_name(output) in log.extra for output in log.columns.outputs)
         self._end_s = self._rows[-1].t_s
         self._now_s, self._next = 0.0, 0
@@ -85,14 +89,15 @@ class LogSource:
         self._playing = True
 
 
-def live_rows(log: RunLog) -> list[LiveRow]:
-    """The log's rows, its time counted from the first."""
+def live_rows(log: RunLog, begins: NDArray[np.bool_] | None = None) -> list[LiveRow]:
+    """The log's rows, its time counted from the first; with the rows `begins` (n,) another log begins."""
     names = [reference_name(output) for output in log.columns.outputs]
     missing = [math.nan] * len(log.t_s)
     columns = [log.extra[name].tolist() if name in log.extra else missing for name in names]
     times = (log.t_s - log.t_s[0]).tolist()
-    rows = zip(times, log.u.tolist(), log.y.tolist(), zip(*columns, strict=True), strict=True)
-    return [LiveRow(t_s, tuple(u), tuple(y), tuple(reference)) for t_s, u, y, reference in rows]
+    marked = [False] * len(times) if begins is None else begins.tolist()
+    rows = zip(times, log.u.tolist(), log.y.tolist(), zip(*columns, strict=True), marked, strict=True)
+    return [LiveRow(t_s, tuple(u), tuple(y), tuple(reference), begin) for t_s, u, y, reference, begin in rows]
 
 
 def _refused(got: str, expected: str) -> BadInput:

@@ -1,5 +1,7 @@
 """The prediction beside a rig: exact where the twin is, off where the rig has more than the twin, the same as over the whole log."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,14 @@ def test_it_begins_after_three_seconds_and_goes_on_twenty_times_a_second(
     times = np.array([entry.t_s for entry in fed(Lookahead(plant), low_noise)])
     assert times[0] == pytest.approx(3.0, abs=0.011)
     assert np.allclose(np.diff(times), EVERY_S)
+
+
+def test_a_row_that_begins_another_log_is_not_predicted_from_what_was_before(
+    plant: BoundPlant, low_noise: list[LiveRow]
+) -> None:
+    broken = [replace(row, t_s=row.t_s + 5.0 * (row.t_s >= 6.0), begins=row.t_s == 6.0) for row in low_noise]
+    times = np.array([entry.t_s for entry in fed(Lookahead(plant), broken)])
+    assert times[times > 6.0][0] == pytest.approx(14.0, abs=0.011)
 
 
 def test_what_the_rig_has_and_the_twin_lacks_shows_as_a_gap(plant: BoundPlant, fly: Fly) -> None:
