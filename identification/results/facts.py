@@ -17,6 +17,7 @@ def facts(result: Identification) -> dict[str, Any]:
         "plant": result.plant.name,
         "model": result.plant.model,
         "estimates": [asdict(entry) for entry in result.estimates],
+        "at_bound": list(result.at_bound),
         "aids": [asdict(entry) for entry in result.aids],
         "correlation": {"names": list(result.belief.names), "rows": result.belief.correlation.round(9).tolist()},
         "stages": [_stage_facts(title, stage) for title, stage in result.stages],

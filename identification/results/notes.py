@@ -40,6 +40,14 @@ def stage_notes(title: str, stage: Estimate) -> tuple[str, ...]:
     return (*blind, *bound, *pulled, *against, *coloured)
 
 
+def bound_warning(names: Sequence[str]) -> str:
+    """That these coefficients ended at a bound of their range, where there are any."""
+    if not names:
+        return ""
+    verb = "ended at its bound" if len(names) == 1 else "ended at their bounds"
+    return f"{', '.join(names)} {verb}: no estimates; doubt the columns, the model or --bounds"
+
+
 def leaning_notes(title: str, found: Sequence[Leaning]) -> tuple[str, ...]:
     """One sentence, of the parameter that what was held may move farthest beyond its stated sd."""
     if not found:

@@ -7,7 +7,7 @@ import numpy as np
 
 from identification.experiments.table import AID_UNITS
 from identification.fit.belief import Belief
-from identification.results.notes import relative, stage_notes
+from identification.results.notes import bound_warning, relative, stage_notes
 from identification.results.plant_file import numbers, with_belief, with_values
 from identification.stages.estimate import Estimate, interval_factor, interval_factors
 from identification.uncertainty.residuals import ResidualTest
@@ -46,6 +46,17 @@ class Identification:
     holdout: tuple[ResidualTest, ...] = ()
     unfinished: Mapping[str, float] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+
+    @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Coefficients whose last fit ended at a bound of their range."""
+        last = {name: name in stage.at_bound for _, stage in self.stages for name in stage.belief.names}
+        return tuple(name for name, ended in last.items() if ended)
+
+    @property
+    def warning(self) -> str:
+        """What is to be read before any number; empty where nothing is."""
+        return bound_warning(self.at_bound)
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -130,7 +130,9 @@ def _tell(chosen: argparse.Namespace, result: Identification) -> None:
     if chosen.json:
         print(json.dumps(facts(result)))
         return
-    print(console.table(estimate_rows(result.estimates), HEADING))
+    if result.warning:
+        print(f"{result.warning}\n")
+    print(console.table(estimate_rows(result.estimates, result.at_bound), HEADING))
     if result.aids:
         print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
     if result.holdout:

@@ -39,15 +39,18 @@ def identify_page(
         sections.append(_gravity(by_kind["gravity"], result))
     return Page(
         title=f"{result.plant.name}: identified",
-        verdict=f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks.",
-        passed=told == len(result.estimates),
+        verdict=(
+            f"{result.warning}. " * bool(result.warning)
+            + f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks."
+        ),
+        passed=told == len(result.estimates) and not result.warning,
         facts=(("Equations", result.plant.model),),
         sections=(*sections, *further),
     )
 
 
 def _estimates(result: Identification) -> Section:
-    tables = [Table(estimate_rows(result.estimates), HEADING)]
+    tables = [Table(estimate_rows(result.estimates, result.at_bound), HEADING)]
     if result.aids:
         tables.append(Table(aid_rows(result.aids), AID_HEADING))
     return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))

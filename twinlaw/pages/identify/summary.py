@@ -1,6 +1,6 @@
 """An identification as rows of text."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from identification.results.notes import chance, relative
 from identification.results.result import Estimated
@@ -12,8 +12,8 @@ AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
 FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
 
 
-def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
-    """One row for each coefficient."""
+def estimate_rows(estimates: Sequence[Estimated], at_bound: Container[str] = ()) -> list[tuple[str, ...]]:
+    """One row for each coefficient; those `at_bound` are marked."""
     return [
         (
             entry.name,
@@ -22,7 +22,7 @@ def estimate_rows(estimates: Sequence[Estimated]) -> list[tuple[str, ...]]:
             f"{entry.value:.5g}",
             f"{entry.lower:.5g} .. {entry.upper:.5g}",
             _relative(entry),
-            "" if entry.identified else "not identified",
+            "at its bound" if entry.name in at_bound else "" if entry.identified else "not identified",
         )
         for entry in estimates
     ]

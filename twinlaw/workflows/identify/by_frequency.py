@@ -17,6 +17,7 @@ from identification.frequency.models.lateral_record import lateral_model, latera
 from identification.frequency.models.linear_model import LinearModel, operating_point_model
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
+from identification.results.notes import bound_warning
 from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
@@ -167,7 +168,10 @@ def _tell(chosen: argparse.Namespace, found: FrequencyIdentification) -> None:
     if chosen.json:
         print(json.dumps(frequency_facts(found)))
         return
-    print(console.table(estimate_rows(found.result.estimates), HEADING))
+    warning = bound_warning(found.fit.at_bound)
+    if warning:
+        print(f"{warning}\n")
+    print(console.table(estimate_rows(found.result.estimates, found.fit.at_bound), HEADING))
     print("\n" + console.table(pair_rows(found.pairs), PAIR_HEADING))
     if found.checks:
         print("\n" + console.table(check_rows(found.checks, found.fit.model.outputs), CHECK_HEADING))
