@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from records.diagnosis import Firmware
 from records.errors import BadInput
@@ -133,7 +134,7 @@ def _in_fixed_point(
     behind_it = _behind_words(flight, table, run, residuals, at_s)
     if behind_it is not None:
         return behind_it
-    lacks = np.isnan(np.hstack([flight.reference_rad, flight.angle_rad])).any(axis=1)
+    lacks: NDArray[np.bool_] = np.asarray(np.isnan(np.hstack([flight.reference_rad, flight.angle_rad])).any(axis=1))
     if lacks[: rows[0] + 1].any():
         since_s = float(flight.t_s[np.argmax(lacks)])
         sentence = (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, misplaced
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
@@ -49,15 +49,15 @@ def test_commands_in_other_rows_are_refused_by_name(
 ) -> None:
     case = make_case(library, [logged(fly(31, seconds=SECONDS), slip)])
     with pytest.raises(BadInput, match=named):
-        demand_rows(case, nominal_fit, "the logs to explain", (LATE, EARLY))
+        demand_rows(case, plain_fit, "the logs to explain", (LATE, EARLY))
 
 
 def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
-    demand_rows(make_case(library, [fly(31, seconds=SECONDS)]), nominal_fit, "the logs to explain", (LATE, EARLY))
+    demand_rows(make_case(library, [fly(31, seconds=SECONDS)]), plain_fit, "the logs to explain", (LATE, EARLY))
 
 
 @pytest.mark.parametrize("effects", EFFECTS, ids=[next(iter(effects)) for effects in EFFECTS])
 def test_a_plant_that_lacks_something_is_not_taken_for_commands_logged_late(
     library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
 ) -> None:
-    assert misplaced(make_case(library, [fly(32, effects, SECONDS)]), nominal_fit, (LATE,)) is None
+    assert misplaced(make_case(library, [fly(32, effects, SECONDS)]), plain_fit, (LATE,)) is None

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.wiring import demand_wiring
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from records.log import RunLog
@@ -19,5 +19,5 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> None:
     library = effect_library(without_effects(bound) if bound.effects else bound)
     library.prepare()
     case, where = make_case(library, list(logs.values()), stated=bound), ", ".join(logs)
-    demand_wiring(case, nominal_fit(case), nominal_fit, where)
-    demand_rows(case, nominal_fit, where, (LATE, EARLY))
+    demand_wiring(case, plain_fit(case), plain_fit, where)
+    demand_rows(case, plain_fit, where, (LATE, EARLY))

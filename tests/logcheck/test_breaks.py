@@ -1,0 +1,72 @@
+"""A log as its stretches: where rows are missing it ends, and what follows is another one; rows at random times are no breaks."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from logcheck.breaks import break_findings, gaps, unbroken
+from logcheck.zeros import zero_findings
+from records.errors import BadInput
+from records.log import RunLog
+from tests.logcheck.test_parts import STEP_RAD, log_of
+from tests.replay.firmware_flights import rows_of
+
+
+def lost(log: RunLog, *spans: tuple[int, int]) -> RunLog:
+    """The log without the rows first..last of each span."""
+    rows = np.arange(len(log.t_s))
+    return rows_of(log, ~np.any([(rows >= first) & (rows <= last) for first, last in spans], axis=0))
+
+
+def cut(log: RunLog) -> list[tuple[str, int]]:
+    found = unbroken([log], [np.ones(len(log.t_s), bool)], [gaps(log.t_s)], ["a"])
+    return [(name, len(part.t_s)) for name, part in zip(found.names, found.logs, strict=True)]
+
+
+@pytest.mark.parametrize(("rows", "count"), [(3, 1), (4, 2), (100, 2), (1000, 2)])
+def test_more_than_three_missing_rows_end_a_log(rows: int, count: int) -> None:
+    log = lost(log_of(), (600, 599 + rows))
+    assert len(cut(log)) == count
+    assert len(list(break_findings(log, "a"))) == count - 1
+
+
+def test_stretches_keep_their_times_and_say_where_they_begin() -> None:
+    log = lost(log_of(), (600, 699), (1500, 1500), (1800, 1804))
+    assert cut(log) == [("a", 600), ("a from 7 s", 1099), ("a from 18.05 s", 195)]
+    (found,) = break_findings(log, "a")
+    assert found.finding.sentence.startswith("no rows from 5.99 s to 7 s, 17.99 s to 18.05 s: what follows")
+
+
+def test_stretches_too_short_for_a_log_are_left_out_and_none_but_such_are_refused() -> None:
+    log = lost(log_of(), (600, 699), (720, 800))
+    whole = unbroken([log], [np.ones(len(log.t_s), bool)], [gaps(log.t_s)], ["a"])
+    assert whole.of == ("a", "a")
+    assert [note.kind for note in whole.notes] == ["short_stretches"]
+    torn = lost(log_of(300), *((first, first + 9) for first in range(40, 300, 50)))
+    with pytest.raises(BadInput, match="none of which is a log by itself"):
+        cut(torn)
+
+
+def test_rows_at_random_times_are_no_breaks() -> None:
+    steps = np.random.default_rng(4).exponential(0.01, 2000)
+    assert gaps(np.cumsum(steps)).sum() <= 2
+    half = np.random.default_rng(5).random(4000) < 0.5
+    assert not gaps(0.01 * np.flatnonzero(half)).any()
+    slower = np.concatenate([0.01 * np.arange(500), 5.0 + 0.08 * np.arange(500)])
+    assert gaps(slower).sum() <= 1
+
+
+@pytest.mark.parametrize("share", [0.001, 0.01, 0.05])
+def test_readings_of_zero_now_and_then_are_left_out_and_those_of_an_axis_that_passes_zero_are_not(share: float) -> None:
+    log = log_of()
+    honest = log.y[:, 0] == 0.0
+    failed = np.random.default_rng(6).random(len(log.t_s)) < share
+    far = np.abs(log.y[:, 0]) > 40 * STEP_RAD
+    y = log.y.copy()
+    y[failed, 0] = 0.0
+    (found,) = zero_findings(replace(log, y=y), "a", "psi_rad", STEP_RAD)
+    assert found.excluded is not None
+    assert found.excluded[failed & far].all()
+    assert not found.excluded[~failed & ~honest].any()
+    assert list(zero_findings(log, "a", "psi_rad", STEP_RAD)) == []

@@ -1,0 +1,83 @@
+"""A log that lacks rows, readings or digits: the firmware is cleared in what is there, and one that is at fault is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from records.log import RunLog
+from replay.digits import printing
+from replay.flight import flight_of
+from replay.printed import agrees_as_printed
+from replay.stretches import replay_stretches
+from tests.law_tables import ce150_table
+from tests.replay.firmware_flights import default_flight, own, rows_of
+
+TABLE = ce150_table()
+
+
+def printed(log: RunLog, digits: int) -> RunLog:
+    """The log as text of so many significant digits has it."""
+
+    def read(values: np.ndarray) -> np.ndarray:
+        return np.array([float(f"{value:.{digits}g}") for value in values.ravel()]).reshape(values.shape)
+
+    return replace(log, u=read(log.u), y=read(log.y), extra={name: read(values) for name, values in log.extra.items()})
+
+
+@pytest.mark.parametrize("digits", [3, 5, 7, 8])
+def test_a_log_of_few_digits_clears_the_firmware_and_asks_for_nine(digits: int) -> None:
+    found = replay_stretches(printed(own(), digits), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "log_rounding")
+    assert "print nine digits" in (found.sentence or "")
+
+
+def test_a_firmware_at_fault_is_not_taken_for_rounding() -> None:
+    log = own()
+    stale = replace(log, y=np.concatenate([log.y[1:], log.y[-1:]]))  # the law used the angles of the sample before
+    assert agrees_as_printed(flight_of(printed(stale, 5), TABLE), TABLE) is None
+
+
+def test_what_rounding_may_do_to_the_answers_is_rounding() -> None:
+    log = printed(own(), 6)
+    assert agrees_as_printed(flight_of(own(), TABLE), TABLE) is None  # nothing was rounded
+    within_V = agrees_as_printed(flight_of(log, TABLE), TABLE)
+    assert within_V is not None
+    assert within_V < 0.01
+
+
+def test_digits_are_those_that_round_a_column_most() -> None:
+    values = np.random.default_rng(1).uniform(-0.5, 0.5, 500)
+    assert str(printing([float(f"{value:.4g}") for value in values])) == "4 significant digits"
+    assert str(printing(np.round(values, 4))) == "4 decimals"
+
+
+def test_behind_lost_rows_the_law_goes_on_from_what_the_log_tells() -> None:
+    log = default_flight()
+    t_s = log.t_s - log.t_s[0]
+    found = replay_stretches(rows_of(log, (t_s < 10.0) | (t_s > 11.0)), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "missing_rows")
+    assert "the firmware is cleared, from " in (found.sentence or "")
+    assert "it agrees within" in (found.sentence or "")
+
+
+def test_single_cells_that_are_empty_are_readings_that_the_log_lacks() -> None:
+    log = own()
+    y = log.y.copy()
+    y[np.random.default_rng(2).random(len(y)) < 0.1, 0] = np.nan
+    found = replay_stretches(replace(log, y=y), TABLE)
+    assert (found.bit_exact, found.cause) == (False, "sample_not_logged")
+    assert "the firmware is cleared" in (found.sentence or "")
+
+
+def test_a_second_recording_in_the_file_is_replayed_from_rest() -> None:
+    log = own()
+    twice = replace(
+        log,
+        t_s=np.concatenate([log.t_s, log.t_s + log.t_s[-1] + 0.01]),
+        u=np.tile(log.u, (2, 1)),
+        y=np.tile(log.y, (2, 1)),
+        extra={name: np.tile(values, 2) for name, values in log.extra.items()},
+    )
+    begins = np.arange(len(twice.t_s)) == len(log.t_s)
+    assert "it agrees to the bit" in (replay_stretches(twice, TABLE, begins=begins).sentence or "")
