@@ -20,7 +20,7 @@ NOTE_RATIO = Limit(1.35, "ratio", "two logs hold one angle with inputs this much
 BRIDGED_ROWS = Count(3, "rows", "so few missing rows are bridged; a longer stretch without rows ends the log")
 AROUND_GAP_ROWS = Count(20, "rows", "on either side of a gap show how far apart rows are there")
 OFTEN_PERCENT = Limit(90.0, "percentile", "of the steps around: rows at random times often lie far apart")
-LONGER_THAN_OFTEN = Limit(2.0, "times that step", "a gap is longer than what often comes between rows at random times")
+LONGER_THAN_OFTEN = Limit(4.0, "times that step", "a gap is longer than what often comes between rows at random times")
 
 # dead
 DEAD_S = Limit(0.2, "s", "an output that stands this long", "18 000 stands in honest logs")
