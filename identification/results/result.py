@@ -92,8 +92,16 @@ def identification(
     starts = numbers(plant)
     factors = interval_factors(stage for _, stage in stages)
     scales = {name: max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1]) for name in belief.names}
+    begun = _begun(stages)
     estimates = tuple(
-        _estimated(name, starts[name][2], starts[name][0], belief, factors.get(name, 1.96), FARTHEST * scales[name])
+        _estimated(
+            name,
+            starts[name][2],
+            begun.get(name, starts[name][0]),
+            belief,
+            factors.get(name, 1.96),
+            FARTHEST * scales[name],
+        )
         for name in belief.names
     )
     found = tuple(
@@ -103,6 +111,16 @@ def identification(
     )
     told = with_belief(plant, belief, [entry.name for entry in estimates if entry.identified])
     return Identification(told, estimates, belief, tuple(stages), found)
+
+
+def _begun(stages: Sequence[tuple[str, Estimate]]) -> dict[str, float]:
+    """Where fits started that a search looked ahead for, by name."""
+    return {
+        name: value
+        for _, stage in stages
+        for found in stage.searched[:1]
+        for name, value in zip(found.names, found.values.tolist(), strict=True)
+    }
 
 
 def _aid_unit(name: str) -> str:

@@ -16,11 +16,15 @@ HUGE = 1e100  # of a motion that leaves all bounds; SciPy squares it
 
 
 def evolution(
-    problem: Problem, places: list[int], seed: int, watch: Callable[[Array], None]
+    problem: Problem,
+    places: list[int],
+    seed: int,
+    watch: Callable[[Array], None],
+    progress: Callable[[int, int], None],
 ) -> tuple[Array, tuple[float, ...]]:
     """The best values at `places` and the least criterion of each generation; wide positive bounds are searched by logarithms.
 
-    `watch` is told the best values so far after each generation.
+    `watch` is told the best values so far after each generation, and `progress` which one that was, and of how many at most.
     """
     lower, upper = problem.lower[places], problem.upper[places]
     logarithmic = lower > 0.0
@@ -40,6 +44,7 @@ def evolution(
     def told(intermediate_result: OptimizeResult) -> None:
         best.append(float(intermediate_result.fun))
         watch(unscaled(intermediate_result.x)[places])
+        progress(len(best), GENERATIONS)
 
     found = differential_evolution(
         cost,

@@ -70,14 +70,18 @@ def evolve(
     seed: int,
     settings: Settings = Settings(),
     watch: Callable[[Array], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Evolved:
-    """Evolve a population; `cost` gives J (members,) of values (members, parameters), `watch` is told each better one at once."""
+    """Evolve a population; `cost` gives J (members,) of values (members, parameters), `watch` is told each better one at once.
+
+    `progress` hears after each generation which one that was, and of how many.
+    """
     rng = np.random.default_rng(seed)
     population = rng.integers(0, 2, (settings.population, code.length), dtype=np.uint8)
     champion, top = population[0], -1.0
     best: list[float] = []
     mean: list[float] = []
-    for _ in range(settings.generations):
+    for generation in range(settings.generations):
         values = code.values(population)
         fitness = np.maximum(TOP - cost(values), 0.0)
         leader = int(np.argmax(fitness))
@@ -90,6 +94,8 @@ def evolve(
         population = _next(population, fitness, settings, rng)
         if settings.keep_best:
             population[0] = champion
+        if progress is not None:
+            progress(generation + 1, settings.generations)
     return Evolved(code.values(champion[None])[0], tuple(best), tuple(mean))
 
 

@@ -20,14 +20,25 @@ UNBOUNDED = 5.0  # sizes
 BITS = 20  # of a parameter whose length nobody states: one step is a millionth of its range
 
 
+Progress = Callable[[int, int], None]
+
+
+def unheard(done: int, of: int) -> None:
+    """Progress that nobody wants to hear of."""
+
+
 @dataclass(frozen=True)
 class Search:
-    """What is asked for: a method of `METHODS`, its seed, the code lengths of parameters by name (for `genetic`), methods to run beside."""
+    """What is asked for: a method of `METHODS`, its seed, the code lengths of parameters by name (for `genetic`), methods to run beside.
+
+    `progress` hears after each generation which one that was, and of how many.
+    """
 
     method: str
     seed: int = 1
     bits: Mapping[str, int] = field(default_factory=dict)
     beside: tuple[str, ...] = ()
+    progress: Progress = unheard
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +108,7 @@ Trail = tuple[Array, tuple[float, ...], tuple[float, ...], tuple[int, ...]]
 
 
 def _evolution(problem: Problem, places: list[int], wanted: Search, tell: Tell) -> Trail:
-    values, best = evolution(problem, places, wanted.seed, tell)
+    values, best = evolution(problem, places, wanted.seed, tell, wanted.progress)
     return _with(problem, places, values), best, (), ()
 
 
@@ -109,7 +120,7 @@ def _genetic(problem: Problem, places: list[int], wanted: Search, tell: Tell) ->
     def cost(members: Array) -> Array:
         return absolute_error(problem, np.stack([_with(problem, places, values) for values in members]))
 
-    found = evolve(code, cost, wanted.seed, watch=tell)
+    found = evolve(code, cost, wanted.seed, watch=tell, progress=wanted.progress)
     return _with(problem, places, found.values), found.best, found.mean, code.bits
 
 

@@ -76,6 +76,24 @@ def tally(title: str, count: int) -> Iterator[Callable[[bool, bool], None]]:
             sys.stderr.write(f"{time.monotonic() - began:.1f} s\n")
 
 
+class Countdown:
+    """How far a long piece of work is and how long the rest may take, written over one line of a terminal; nothing in a pipe."""
+
+    def __init__(self, thing: str) -> None:
+        self._thing, self._began_s = thing, time.monotonic()
+
+    def __call__(self, done: int, of: int) -> None:
+        """So many are done of so many; behind the last of them the clock begins anew."""
+        if not sys.stderr.isatty():
+            return
+        left_s = (time.monotonic() - self._began_s) / done * (of - done)
+        sys.stderr.write(f"\r{f'  {self._thing} {done} of {of}, {_duration(left_s)} to go':<{WIDTH}}")
+        if done == of:
+            self._began_s = time.monotonic()
+            sys.stderr.write(f"\r{'':<{WIDTH}}\r")
+        sys.stderr.flush()
+
+
 def _duration(seconds: float) -> str:
     """Roughly: 40 s, 12 min, 3.5 h."""
     if seconds < 90.0:

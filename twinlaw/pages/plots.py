@@ -17,6 +17,18 @@ Array = NDArray[np.float64]
 # Okabe and Ito's palette.
 BLACK = "#000000"
 BLUE, ORANGE, GREEN, RED, GREY, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666", "#56B4E9"
+PURPLE, YELLOW = "#CC79A7", "#F0E442"
+COLOURS = (
+    BLUE,
+    ORANGE,
+    GREEN,
+    RED,
+    SKY,
+    PURPLE,
+    BLACK,
+    YELLOW,
+    GREY,
+)  # of curves side by side, as many as the palette has
 
 STYLE: Any = {
     "svg.hashsalt": "twinlaw",

@@ -14,6 +14,7 @@ the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --b
 
 import argparse
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +28,15 @@ from records.files import write_atomic
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.identify.report import identify_page
-from twinlaw.pages.identify.summary import AID_HEADING, FIT_HEADING, HEADING, aid_rows, estimate_rows, test_rows
+from twinlaw.pages.identify.summary import (
+    AID_HEADING,
+    FIT_HEADING,
+    aid_rows,
+    estimate_heading,
+    estimate_rows,
+    test_rows,
+)
+from twinlaw.pages.identify.truth import true_values
 from twinlaw.pages.page import page_text
 from twinlaw.workflows.identify.by_time import Wishes, identify
 from twinlaw.workflows.identify.columns import demand_columns
@@ -109,11 +118,14 @@ def run(chosen: argparse.Namespace) -> int:
     with console.stage("asking whether the columns are what they are called"):
         demand_columns(bound, inputs.logs)
     result = identify(bound, inputs, wishes, chosen.out)
+    known = None if truth is None else true_values(truth)
     sections, pictures = proven(result, truth)
     for name, picture in pictures.items():
         write_atomic(chosen.out / f"fig-{name}.svg", picture)
-    write_atomic(chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections)))
-    _tell(chosen, result)
+    write_atomic(
+        chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections, known))
+    )
+    _tell(chosen, result, known)
     return 0
 
 
@@ -121,18 +133,24 @@ def _wishes(chosen: argparse.Namespace, bound: BoundPlant) -> Wishes:
     names = free_names(bound, chosen.free)
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
     beside = tuple(method for method in ("gradient",) if method != chosen.search)
-    search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside)
+    search = (
+        None
+        if chosen.search is None
+        else Search(
+            chosen.search, chosen.seed, beside=beside, progress=console.Countdown(f"{chosen.search} search: generation")
+        )
+    )
     only = None if chosen.free is None else names
     return Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
 
 
-def _tell(chosen: argparse.Namespace, result: Identification) -> None:
+def _tell(chosen: argparse.Namespace, result: Identification, truth: Mapping[str, float] | None) -> None:
     if chosen.json:
         print(json.dumps(facts(result)))
         return
     if result.warning:
         print(f"{result.warning}\n")
-    print(console.table(estimate_rows(result.estimates, result.at_bound), HEADING))
+    print(console.table(estimate_rows(result.estimates, result.at_bound, truth), estimate_heading(truth)))
     if result.aids:
         print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
     if result.holdout:

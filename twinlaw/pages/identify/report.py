@@ -1,6 +1,6 @@
 """The report of `twinlaw identify`: estimates and what cannot be told, the fits, Figs. 7, 8, 10 and 13 of the paper redrawn."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -14,8 +14,8 @@ from sim.bind import BoundPlant
 from twinlaw.pages.identify.summary import (
     AID_HEADING,
     FIT_HEADING,
-    HEADING,
     aid_rows,
+    estimate_heading,
     estimate_rows,
     fit_rows,
     test_rows,
@@ -28,11 +28,15 @@ SHOWN_S = 15.0
 
 
 def identify_page(
-    bound: BoundPlant, result: Identification, experiments: tuple[Experiment, ...], further: Sequence[Section] = ()
+    bound: BoundPlant,
+    result: Identification,
+    experiments: tuple[Experiment, ...],
+    further: Sequence[Section] = (),
+    truth: Mapping[str, float] | None = None,
 ) -> Page:
-    """The whole page; `further` sections come last."""
+    """The whole page; `further` sections come last, and the `truth` beside the estimates where it is known."""
     told = sum(entry.identified for entry in result.estimates)
-    sections = [_estimates(result), _correlation(result), _fits(result)]
+    sections = [_estimates(result, truth), _correlation(result), _fits(result)]
     by_kind = {experiment.kind: experiment for experiment in experiments}
     sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
     if "gravity" in by_kind:
@@ -49,8 +53,8 @@ def identify_page(
     )
 
 
-def _estimates(result: Identification) -> Section:
-    tables = [Table(estimate_rows(result.estimates, result.at_bound), HEADING)]
+def _estimates(result: Identification, truth: Mapping[str, float] | None) -> Section:
+    tables = [Table(estimate_rows(result.estimates, result.at_bound, truth), estimate_heading(truth))]
     if result.aids:
         tables.append(Table(aid_rows(result.aids), AID_HEADING))
     return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))

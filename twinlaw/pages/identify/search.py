@@ -1,33 +1,36 @@
 """Searches over the whole range in the report of `twinlaw identify`: what each method found, side by side, and the evolution of fitness."""
 
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 
 import numpy as np
 
 from identification.search.methods import Searched
 from identification.stages.estimate import Estimate
 from sim.bind import BoundPlant
+from twinlaw.pages.identify.truth import off, told, true_values
 from twinlaw.pages.page import Section, Table
-from twinlaw.pages.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, row
+from twinlaw.pages.plots import COLOURS, Curve, Panel, row
 
-HEADING = ("data", "parameter", "range", "bits")
-COLOURS = (BLUE, ORANGE, GREEN, RED)
+HEADING = ("data", "parameter", "unit", "range", "bits")
 Stages = Sequence[tuple[str, Estimate]]
 
 
-def search_sections(stages: Stages, truth: BoundPlant | None, evolution: str) -> list[Section]:
+def search_sections(
+    stages: Stages, truth: BoundPlant | None, evolution: str, units: Mapping[str, str]
+) -> list[Section]:
     """The table of all stages that searched, and Fig. 6, their `evolution_plot`, where there is one; nothing where no stage did."""
     searched = [(title, stage) for title, stage in stages if stage.searched]
     if not searched:
         return []
-    return [_side_by_side(searched, _values(truth)), *_evolution(evolution)]
+    return [_side_by_side(searched, true_values(truth), units), *_evolution(evolution)]
 
 
-def _side_by_side(stages: Stages, truth: Mapping[str, float]) -> Section:
+def _side_by_side(stages: Stages, truth: Mapping[str, float], units: Mapping[str, str]) -> Section:
     methods = [found.method for found in stages[0][1].searched]
     compared = [cell for method in methods for cell in ((method, "error") if truth else (method,))]
     known = ("truth",) if truth else ()
-    rows = [line for title, stage in stages for line in _rows(title, stage, truth)]
+    rows = [line for title, stage in stages for line in _rows(title, stage, truth, units)]
     costs = [
         (_short(title), found.method, f"{found.error:.4g}", f"{found.cpu_s:.2f} s")
         for title, stage in stages
@@ -39,19 +42,26 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float]) -> Section:
         "The estimates above start from the first of them.",
         "Below: what is left, sum |e| with angles in degrees, and CPU time.",
     )
-    tables = (Table(rows, (*HEADING, *known, *compared)), Table(costs, ("data", "method", "sum |e|", "CPU")))
+    tables = (Table(rows, (*HEADING, *known, *compared)), Table(costs, ("data", "method", "sum |e| [deg]", "CPU")))
     return Section("Search over the whole range", sentences, tables)
 
 
-def _rows(title: str, stage: Estimate, truth: Mapping[str, float]) -> list[tuple[str, ...]]:
+def _rows(title: str, stage: Estimate, truth: Mapping[str, float], units: Mapping[str, str]) -> list[tuple[str, ...]]:
     first, rows = stage.searched[0], []
     for place, name in enumerate(first.names):
         bits = f"{first.bits[place]}" if first.bits else ""
-        cells = [_short(title), name, f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}", bits]
-        cells += [f"{truth[name]:.5g}"] if truth else []
+        cells = [
+            _short(title),
+            name,
+            units.get(name, ""),
+            f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}",
+            bits,
+        ]
+        known = truth.get(name)
+        cells += [told(known)] if truth else []
         for found in stage.searched:
             cells.append(f"{found.values[place]:.5g}")
-            cells += [f"{100.0 * (found.values[place] / truth[name] - 1.0):+.2f} %"] if truth else []
+            cells += [off(float(found.values[place]), known)] if truth else []
         rows.append(tuple(cells))
     return rows
 
@@ -59,12 +69,6 @@ def _rows(title: str, stage: Estimate, truth: Mapping[str, float]) -> list[tuple
 def _short(title: str) -> str:
     """Of "experiment 1, u1: main motor lifts the arm" what is between comma and colon."""
     return title.partition(", ")[2].partition(":")[0] or title
-
-
-def _values(truth: BoundPlant | None) -> Mapping[str, float]:
-    if truth is None:
-        return {}
-    return dict(zip(map(str, truth.model.parameter_symbols), truth.p.tolist(), strict=True))
 
 
 def _evolution(plot: str) -> list[Section]:
@@ -85,5 +89,5 @@ def evolution_plot(stages: Stages) -> str:
 def _curves(found: Sequence[tuple[str, Searched]]) -> tuple[Curve, ...]:
     return tuple(
         Curve(np.arange(1.0, len(entry.best) + 1.0), np.array(entry.best) / 1e4, _short(title), colour)
-        for (title, entry), colour in zip(found, COLOURS, strict=False)
+        for (title, entry), colour in zip(found, cycle(COLOURS))
     )

@@ -1,19 +1,28 @@
 """An identification as rows of text."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Mapping, Sequence
 
 from identification.results.notes import chance, relative
 from identification.results.result import Estimated
 from identification.stages.estimate import Estimate
 from identification.uncertainty.residuals import ResidualTest
+from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
+from twinlaw.pages.identify.truth import off, told, z
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
 FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
 
 
-def estimate_rows(estimates: Sequence[Estimated], at_bound: Container[str] = ()) -> list[tuple[str, ...]]:
-    """One row for each coefficient; those `at_bound` are marked."""
+def estimate_heading(truth: Mapping[str, float] | None) -> tuple[str, ...]:
+    """The heading of `estimate_rows`."""
+    return HEADING if truth is None else (*HEADING[:-1], *TRUTH_HEADING, HEADING[-1])
+
+
+def estimate_rows(
+    estimates: Sequence[Estimated], at_bound: Container[str] = (), truth: Mapping[str, float] | None = None
+) -> list[tuple[str, ...]]:
+    """One row for each coefficient; those `at_bound` are marked, and the `truth` stands beside them where it is known."""
     return [
         (
             entry.name,
@@ -22,10 +31,15 @@ def estimate_rows(estimates: Sequence[Estimated], at_bound: Container[str] = ())
             f"{entry.value:.5g}",
             f"{entry.lower:.5g} .. {entry.upper:.5g}",
             _relative(entry),
+            *(() if truth is None else _against(entry, truth.get(entry.name))),
             "at its bound" if entry.name in at_bound else "" if entry.identified else "not identified",
         )
         for entry in estimates
     ]
+
+
+def _against(entry: Estimated, known: float | None) -> tuple[str, str, str]:
+    return told(known), off(entry.value, known), z(entry.value, entry.sd, known)
 
 
 def _relative(entry: Estimated) -> str:

@@ -1,0 +1,31 @@
+"""What is known to be true beside what was found: truth, error, and the error in standard deviations, z."""
+
+from collections.abc import Mapping
+
+from sim.bind import BoundPlant
+
+HEADING = ("truth", "error", "z")
+
+
+def true_values(truth: BoundPlant | None) -> Mapping[str, float]:
+    """The true coefficients by name; none where no truth is known."""
+    if truth is None:
+        return {}
+    return dict(zip(map(str, truth.model.parameter_symbols), truth.p.tolist(), strict=True))
+
+
+def told(known: float | None) -> str:
+    """A true value as text; empty where it is not known."""
+    return "" if known is None else f"{known:.5g}"
+
+
+def off(value: float, known: float | None) -> str:
+    """How far a value is from the truth, in per cent of that; by its own size where the truth is zero."""
+    if known is None:
+        return ""
+    return f"{100.0 * (value / known - 1.0):+.2f} %" if known else f"{value:+.3g}"
+
+
+def z(value: float, sd: float, known: float | None) -> str:
+    """The same in standard deviations."""
+    return "" if known is None or sd <= 0.0 else f"{(value - known) / sd:+.1f}"
