@@ -400,7 +400,7 @@ ROWS_GAIN = Limit(
     20.0,
     "nats",
     "commands moved by whole rows must be likelier by so much",
-    "flights of the CE150 with late commands gained 60 to 210, fourteen published recordings 4 at most",
+    "flights of the CE150 with late commands gained 60 to 210, ten published recordings 4 at most",
 )
 
 # What is told beside it (explain)

@@ -43,9 +43,9 @@ BROKEN_OFF = Limit(
     3.0,
     "times the largest move near",
     "an axis leaves its rest by no more",
-    "18 000 stands in honest logs: 3.0 at most",
+    "stands of five rows and more in the published recordings: 3.0 at most",
 )
-BROKEN_OFF_STEPS = Limit(4.0, "least moves", "the same stands: 3 at most", "18 000 stands in honest logs")
+BROKEN_OFF_STEPS = Limit(4.0, "least moves", "the same stands: 3 at most", "published recordings")
 DRIVEN_SHARE = Limit(
     0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis"
 )
