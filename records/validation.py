@@ -27,7 +27,10 @@ class LineTiming:
 
 @dataclass(frozen=True)
 class Validation:
-    """A board that answered with the right table: its identity, its self-test, replayed steps, cost, timing and line counters."""
+    """A board that answered with the right table: its identity, its self-test, replayed steps, cost, timing and line counters.
+
+    `notes` tell what is slow and no failure.
+    """
 
     port: str
     identity: Mapping[str, object]
@@ -37,6 +40,7 @@ class Validation:
     law_cycles_max: int
     timing: LineTiming
     counters: Mapping[str, int]
+    notes: tuple[str, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:

@@ -2,9 +2,40 @@
 
 import os
 import struct
+import tempfile
 from pathlib import Path
 
-CACHE_DIR = Path(os.environ.get("TWINLAW_CACHE", Path(__file__).resolve().parent.parent / ".cache"))
+
+def cache_dir(home: Path, asked: str | None) -> Path:
+    """The first of these folders that can be written: the one that is `asked` for by TWINLAW_CACHE, `.cache` in `home` where that is
+    a checkout, the user's own (XDG_CACHE_HOME, or what the system has for it), a temporary one."""
+    wanted = [Path(asked).expanduser().absolute()] if asked else []
+    wanted += [home / ".cache"] if (home / "pyproject.toml").is_file() else []
+    return next((place for place in wanted if _writable(place)), None) or _users_own()
+
+
+def _users_own() -> Path:
+    from platformdirs import user_cache_path  # which a checkout does without
+
+    place = user_cache_path("twinlaw", appauthor=False)
+    return place if _writable(place) else _temporary()
+
+
+def _writable(place: Path) -> bool:
+    """Whether files can be made there, by the next folder above that is there: nothing is made yet."""
+    there = next((folder for folder in (place, *place.parents) if folder.exists()), place)
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+
+
+def _temporary() -> Path:
+    """The same for all processes of a user; a folder of that name that somebody else has made is not trusted with libraries."""
+    user = os.getuid() if hasattr(os, "getuid") else None
+    place = Path(tempfile.gettempdir()) / f"twinlaw-{user}"
+    place.mkdir(mode=0o700, exist_ok=True)
+    return place if user in (None, place.stat().st_uid) else Path(tempfile.mkdtemp(prefix="twinlaw-"))
+
+
+CACHE_DIR = cache_dir(Path(__file__).resolve().parent.parent, os.environ.get("TWINLAW_CACHE"))
 
 
 def is_whole(product: Path) -> bool:

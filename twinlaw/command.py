@@ -9,8 +9,10 @@ import logging
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from io import TextIOWrapper
 
 from jobs.threads import told_late
 from records.errors import BadInput, VerificationFailed
@@ -23,6 +25,7 @@ from twinlaw.verbs import build_parser
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
     _stand_in_for_closed_streams()
+    _print_anything()
     words = list(sys.argv[1:] if arguments is None else arguments)
     # Matplotlib would keep its list of fonts in the home folder, and complain where there is none.
     os.environ.setdefault("MPLCONFIGDIR", str(CACHE_DIR / "matplotlib"))
@@ -46,14 +49,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"{place}: got {error.strerror or error}, expected room and leave to write; free the disk, or go elsewhere"
         )
         return 2
+    except Exception as error:  # a fault of ours: a trace is for whoever mends it, and exit status 1 would be Python's
+        return _own_fault(error, words)
     except KeyboardInterrupt as stop:
         console.fail(f"interrupted; {str(stop) or 'files already written are whole, the others were not begun'}")
         return 128 + signal.SIGINT
 
 
+def _own_fault(error: Exception, words: Sequence[str]) -> int:
+    """What no check of the input has foreseen, in one line, its trace in a file."""
+    trace = CACHE_DIR / "last-fault.txt"
+    line = f"{type(error).__name__}: {error}: got a fault of twinlaw itself, expected none"
+    try:
+        trace.parent.mkdir(parents=True, exist_ok=True)
+        trace.write_text("".join(traceback.format_exception(error)), encoding="utf-8", errors="backslashreplace")
+        line += f"; report it with the command and {trace}"
+    except OSError:
+        line += "; report it with the command"
+    console.fail(line)
+    _tell_program(words, {"error": line})
+    return 2
+
+
+def _demand_utf8(words: Sequence[str]) -> None:
+    """Raise BadInput for a name in bytes that are no UTF-8, which no page, table or JSON could hold."""
+    for word in words:
+        try:
+            word.encode()
+        except UnicodeEncodeError:
+            told = os.fsencode(word).decode("utf-8", "backslashreplace")
+            got, remedy = "bytes that are no UTF-8", "rename it"
+            raise BadInput("name on the command line", told, got, "a name in UTF-8", remedy) from None
+
+
 def _obey(words: Sequence[str]) -> int:
     """Run the verb; what cannot be used is told in one line, and to a program as an object too."""
     try:
+        _demand_utf8(words)
         options = build_parser(words[:1]).parse_args(words)
         return int(options.run(options))
     except WrongCommandLine as error:
@@ -75,6 +107,12 @@ def _stand_in_for_closed_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
+
+
+def _print_anything() -> None:
+    """What the terminal's encoding lacks is told in its stead, as Python does on stderr."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _silence_stdout() -> None:

@@ -1,5 +1,7 @@
 """A board as the controller of a simulated closed loop."""
 
+from collections.abc import Callable
+
 from rig.flight.loop_session import LoopSession
 from rig.link.client import BoardClient
 
@@ -8,11 +10,12 @@ class BoardController:
     """The controller interface of sim/loop.py over a board in host-in-the-loop mode: one sample a frame, one answer a frame.
 
     `law_cycles` are those of the last step, 0 before the first. The board is armed with the first step and not before: it counts
-    its host as lost after 0.1 s.
+    its host as lost after 0.1 s. `stepped` is called after each step.
     """
 
-    def __init__(self, client: BoardClient) -> None:
+    def __init__(self, client: BoardClient, stepped: Callable[[], None] = lambda: None) -> None:
         self._client = client
+        self._stepped = stepped
         self._session = LoopSession(client, 0.0, 0.0)
         self.law_cycles = 0
 
@@ -24,4 +27,5 @@ class BoardController:
         """One sample through the serial line; returns (u_M_V, u_T_V). Raises BadInput when the board refuses or is lost."""
         answer = self._session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
         self.law_cycles = answer.law_cycles
+        self._stepped()
         return answer.u_M_V, answer.u_T_V

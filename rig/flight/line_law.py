@@ -1,5 +1,7 @@
 """The law of a board, stepped through its serial line in host-in-the-loop mode: an execution to compare with the host's."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,14 +12,18 @@ Bits = NDArray[np.uint32]
 
 
 class LineLaw:
-    """As verification.stateless.Stateless: angles [lanes, 2] stand for the state. `cycles_max` are by the board's own counter."""
+    """As verification.stateless.Stateless: angles [lanes, 2] stand for the state. `cycles_max` are by the board's own counter.
+
+    `stepped` is called after each step: they take their time on a slow line.
+    """
 
     name = "board"
 
-    def __init__(self, client: BoardClient) -> None:
+    def __init__(self, client: BoardClient, stepped: Callable[[], None] = lambda: None) -> None:
         self.arithmetic = client.numbers.name
         self.cycles_max = 0
         self._client = client
+        self._stepped = stepped
 
     def start(self, angles: Bits) -> Bits:
         """The angles themselves; the board is started when a lane runs."""
@@ -37,6 +43,7 @@ class LineLaw:
         psi_ref_rad, phi_ref_rad, psi_rad, phi_rad = self._values(row)
         answer = session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
         self.cycles_max = max(self.cycles_max, answer.law_cycles)
+        self._stepped()
         to_word = self._client.numbers.to_word
         return np.array([to_word(answer.u_M_V, "V"), to_word(answer.u_T_V, "V")], np.uint32)
 

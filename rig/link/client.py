@@ -11,7 +11,7 @@ from rig.link import replies
 from rig.link.frames import Frame, FrameReceiver, Value
 from rig.link.line import Line
 from rig.link.numbers import Float32Numbers, Numbers
-from rig.link.port import open_port
+from rig.link.port import LEFT_ALONE, ModemLines, open_port
 from rig.link.replies import Answer, Health, Identity, Telemetry
 
 DIGEST_HEAD_BYTES = 8
@@ -38,15 +38,15 @@ class BoardClient:
         table_digest: str | None = None,
         numbers: Numbers | None = None,
         timeout_s: float = DEFAULT_TIMEOUT_S,
+        lines: ModemLines = LEFT_ALONE,
     ) -> Self:
         """Open the port `url` and ask for the identity before anything else.
 
         Raises BadInput when the port is not there, is silent or noisy, speaks another protocol, or when the board's table is not
         `table_digest` (64 hexadecimal digits; None accepts any table).
         """
-        return cls.over(
-            open_port(url, timeout_s=timeout_s), url, table_digest=table_digest, numbers=numbers or Float32Numbers()
-        )
+        port = open_port(url, timeout_s=timeout_s, lines=lines)
+        return cls.over(port, url, table_digest=table_digest, numbers=numbers or Float32Numbers())
 
     @classmethod
     def over(cls, port: Any, where: str, *, table_digest: str | None, numbers: Numbers) -> Self:

@@ -1,5 +1,6 @@
 """Programming a board: OpenOCD through the ST-LINK, or stm32flash through the chip's serial boot loader (AN3155)."""
 
+import os
 import re
 import shutil
 import struct
@@ -10,11 +11,15 @@ from pathlib import Path
 
 from records.board import STM32G071, Board
 from records.errors import BadInput, VerificationFailed
+from rig.link.port import claimed
 
 _PSEUDO_TERMINALS = "/dev/pts/"
 _STARTED = "Starting execution at address 0x{:08x}... done"
 _COMPLAINT = re.compile(r"error|fail|nack|can't|cannot|unknown|unsupported|timeout", re.IGNORECASE)
 _MOST_LINES = 3
+_ERASE_REFUSED = re.compile(r"NACK.*0x44.*Failed to erase memory", re.DOTALL)
+_READ_REFUSED = re.compile(r"NACK.*Failed to read memory", re.DOTALL)
+_PROTECTED = re.compile(r"protect|locked|RDP", re.IGNORECASE)
 _FLASH_AGAIN = "the chip may hold a part of the image: leave the motors without supply and flash again"
 
 
@@ -23,14 +28,23 @@ def openocd_command(elf: Path, board: Board = STM32G071) -> list[str]:
     return ["openocd", "-f", board.openocd_config, "-c", f"program {{{elf}}} verify reset exit"]
 
 
-def identify_command(port: str) -> list[str]:
+def identify_command(port: str, sequence: str | None = None) -> list[str]:
     """Ask the boot loader which chip it is in."""
-    return ["stm32flash", "-m", line_mode(port), port]
+    return [*_stm32flash(port, sequence), port]
 
 
-def boot_loader_command(binary: Path, port: str, board: Board = STM32G071) -> list[str]:
+def read_command(port: str, sequence: str | None = None, board: Board = STM32G071) -> list[str]:
+    """Read the first word of the flash, which a protected chip refuses."""
+    return [*_stm32flash(port, sequence), "-r", os.devnull, "-S", f"0x{board.flash.start:08x}:4", port]
+
+
+def boot_loader_command(binary: Path, port: str, sequence: str | None = None, board: Board = STM32G071) -> list[str]:
     """Write, verify and start `binary` through the serial boot loader."""
-    return ["stm32flash", "-m", line_mode(port), "-w", str(binary), "-v", "-g", f"0x{board.flash.start:08x}", port]
+    return [*_stm32flash(port, sequence), "-w", str(binary), "-v", "-g", f"0x{board.flash.start:08x}", port]
+
+
+def _stm32flash(port: str, sequence: str | None) -> list[str]:
+    return ["stm32flash", "-m", line_mode(port), *([] if sequence is None else ["-i", sequence])]
 
 
 def line_mode(port: str) -> str:
@@ -50,23 +64,41 @@ def flash_through_st_link(elf: Path, board: Board = STM32G071) -> None:
         return
     if "** Programming Started **" in done.stdout + done.stderr:
         raise _not_programmed(command[0], done)
-    raise _refused(
-        command[0],
-        done,
-        "an ST-LINK with a board behind it",
-        "check the cable and the board's supply; docs/hardware.md",
-    )
+    remedy = "check the cable and the board's supply; docs/hardware.md"
+    if _PROTECTED.search(done.stdout + done.stderr):
+        unlock = f'openocd -f {board.openocd_config} -c "init; reset halt; stm32l4x unlock 0; reset halt; shutdown"'
+        remedy = f"a protected chip is freed by `{unlock}`, which ERASES THE WHOLE FLASH; then cut its supply once"
+    raise _refused(command[0], done, "an ST-LINK with a board behind it", remedy)
 
 
-def flash_through_boot_loader(binary: Path, port: str, board: Board = STM32G071) -> None:
-    """Ask which chip answers, then write, verify and start.
+def flash_through_boot_loader(binary: Path, port: str, sequence: str | None = None, board: Board = STM32G071) -> None:
+    """Ask which chip answers, then write, verify and start; `sequence` of DTR and RTS is stm32flash's own (its option -i).
 
-    Raises BadInput when the tool or the boot loader is not there or the chip is another one, before anything is erased;
-    VerificationFailed when writing had begun and failed.
+    Raises BadInput when the tool or the boot loader is not there, the port is in use, or the chip is another one or protected, before
+    anything is erased; VerificationFailed when writing had begun and failed.
     """
     _demand_image(binary, board)
-    with _interrupted("nothing was written"):
-        asked = _run(identify_command(port))
+    with claimed(port):
+        with _interrupted("nothing was written"):
+            asked = _run(identify_command(port, sequence))
+        _demand_chip(asked, port, board)
+        with _interrupted(_FLASH_AGAIN):
+            written = _run(boot_loader_command(binary, port, sequence, board))
+        if _ERASE_REFUSED.search(written.stderr):
+            _demand_readable(_run(read_command(port, sequence, board)), port)
+    if written.returncode != 0:
+        raise _not_programmed(
+            port, written, f"; write-protected pages are freed by `stm32flash -u {port}`, which erases nothing"
+        )
+    if _STARTED.format(board.flash.start) not in written.stdout:  # of a refused start the tool tells, but does not fail
+        got, expected = _complaint(written), "the image started"
+        raise VerificationFailed(
+            f"{port}: start: got {got}, expected {expected}; it is written and verified: reset the board by hand"
+        )
+
+
+def _demand_chip(asked: subprocess.CompletedProcess[str], port: str, board: Board) -> None:
+    """Raise BadInput unless the boot loader of this chip has answered."""
     if asked.returncode != 0:
         raise _refused(
             port,
@@ -83,14 +115,17 @@ def flash_through_boot_loader(binary: Path, port: str, board: Board = STM32G071)
             expected=f"0x{board.boot_loader_id:04x} ({board.chip})",
             remedy="nothing was written; give the port of the right board as --port",
         )
-    with _interrupted(_FLASH_AGAIN):
-        written = _run(boot_loader_command(binary, port, board))
-    if written.returncode != 0:
-        raise _not_programmed(port, written)
-    if _STARTED.format(board.flash.start) not in written.stdout:  # of a refused start the tool tells, but does not fail
-        got, expected = _complaint(written), "the image started"
-        raise VerificationFailed(
-            f"{port}: start: got {got}, expected {expected}; it is written and verified: reset the board by hand"
+
+
+def _demand_readable(read: subprocess.CompletedProcess[str], port: str) -> None:
+    """Raise BadInput where a chip that refused to be erased refuses to be read as well: it is protected (AN3155, sections 3.4 and 3.8)."""
+    if _READ_REFUSED.search(read.stderr):
+        raise BadInput(
+            what="chip",
+            where=port,
+            got=f"a read-out protected chip ({_complaint(read)})",
+            expected="one without read or write protection",
+            remedy=f"nothing was written; `stm32flash -k {port}` lifts the protection AND ERASES THE WHOLE FLASH (level 2 stays for ever)",
         )
 
 
@@ -137,10 +172,10 @@ def _refused(where: str, done: subprocess.CompletedProcess[str], expected: str, 
     return BadInput("programming", where, _complaint(done), expected, f"nothing was written; {remedy}")
 
 
-def _not_programmed(where: str, done: subprocess.CompletedProcess[str]) -> VerificationFailed:
+def _not_programmed(where: str, done: subprocess.CompletedProcess[str], further: str = "") -> VerificationFailed:
     got = _complaint(done)
     return VerificationFailed(
-        f"{where}: programming: got {got}, expected the image written, verified and started; {_FLASH_AGAIN}"
+        f"{where}: programming: got {got}, expected the image written, verified and started; {_FLASH_AGAIN}{further}"
     )
 
 

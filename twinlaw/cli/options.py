@@ -3,8 +3,12 @@
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from records.errors import BadInput
+
+if TYPE_CHECKING:
+    from rig.link.port import ModemLines
 
 
 def plant(parser: argparse.ArgumentParser) -> None:
@@ -120,10 +124,26 @@ def port_name(text: str) -> str:
 
 
 def port(parser: argparse.ArgumentParser) -> None:
-    """--port PORT."""
+    """--port PORT, --dtr, --rts."""
     parser.add_argument(
         "--port",
         type=port_name,
         default="emulated",
         help="serial port of the board, or `emulated`; default: %(default)s",
     )
+    signals(parser)
+
+
+def signals(parser: argparse.ArgumentParser) -> None:
+    """--dtr and --rts, of a port that is opened."""
+    for line in ("dtr", "rts"):
+        text = f"set {line.upper()} when the port is opened, or clear it; default: leave it alone"
+        parser.add_argument(f"--{line}", choices=("on", "off"), help=text)
+
+
+def modem_lines(chosen: argparse.Namespace) -> "ModemLines":
+    """What --dtr and --rts ask for."""
+    from rig.link.port import ModemLines  # with pyserial, which most verbs do without
+
+    asked = {None: None, "on": True, "off": False}
+    return ModemLines(asked[chosen.dtr], asked[chosen.rts])

@@ -20,11 +20,16 @@ from twinlaw.workflows.chain.boards import board_url, demand_image
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --arithmetic, --out, --json."""
+    """--port, --sequence, --arithmetic, --out, --json."""
     parser.add_argument(
         "--port",
         type=options.port_name,
         help="serial port of the boot loader, or `emulated`; without it the ST-LINK is used",
+    )
+    parser.add_argument(
+        "--sequence",
+        metavar="DTR_RTS",
+        help="how DTR and RTS start the boot loader, and behind a colon the firmware, as stm32flash's -i takes it: --sequence=-dtr,rts:dtr",
     )
     options.demanded_arithmetic(parser)
     options.out(parser)
@@ -33,6 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Choose the way, program, and say what was written."""
+    if chosen.sequence is not None and chosen.port in (None, "emulated"):
+        got, remedy = f"--port {chosen.port}" if chosen.port else "no --port", "give the port, or leave it out"
+        raise BadInput("--sequence", "flash", got, "the serial port whose lines it moves", remedy)
     image = chosen.out / ("firmware.bin" if chosen.port else "firmware.elf")
     demand_image(image)
     if chosen.arithmetic is not None:
@@ -46,7 +54,7 @@ def run(chosen: argparse.Namespace) -> int:
     else:
         with console.stage(f"writing {image}"):
             if chosen.port:
-                flash_through_boot_loader(image, chosen.port)
+                flash_through_boot_loader(image, chosen.port, chosen.sequence)
             else:
                 flash_through_st_link(image)
         told = f"{image} written, verified and started; check the board with `twinlaw validate --port PORT`"

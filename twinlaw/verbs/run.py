@@ -16,7 +16,7 @@ from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design import design_heading, design_rows
 from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
-from twinlaw.workflows.chain.boards import board_url, fly_board
+from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import design_controller, poles_of
 from twinlaw.workflows.chain.verifying import demand, verify_table
@@ -44,7 +44,8 @@ def run(chosen: argparse.Namespace) -> int:
     )
     write_atomic(out / "verification.json", verification_text(verification))
     demand(verification)
-    flight = fly_board(designed.bound, designed.table, board_url("emulated", out / "firmware.elf"), chosen.arithmetic)
+    with connected(designed.table, board_url("emulated", out / "firmware.elf"), chosen.arithmetic) as client:
+        flight = fly_board(designed.bound, designed.table, client)
     save_log(out / "run.csv", flight.log)
     page = run_page(
         chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, flight.counters

@@ -15,12 +15,12 @@ from records.validation import validation_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
-from twinlaw.workflows.chain.boards import board_url, fly_board, validate_board
+from twinlaw.workflows.chain.boards import board_url, connected, fly_board, validate_board
 from twinlaw.workflows.reading import load_bound
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --plant, --table, --arithmetic, --steps, --out, --json."""
+    """--port, --dtr, --rts, --plant, --table, --arithmetic, --steps, --out, --json."""
     options.port(parser)
     options.plant(parser)
     options.table(parser)
@@ -34,12 +34,13 @@ def run(chosen: argparse.Namespace) -> int:
     """Ask, replay, fly, write, and fail where a check does not hold."""
     bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
     url = board_url(chosen.port, chosen.out / "firmware.elf")
-    validation = validate_board(table, url, chosen.steps, chosen.arithmetic)
-    text = validation_text(validation)
-    if not validation.passed:
-        write_atomic(chosen.out / "validation.json", text)
-        raise VerificationFailed("; ".join(validation.failures))
-    flight = fly_board(bound, table, url, chosen.arithmetic)
+    with connected(table, url, chosen.arithmetic, options.modem_lines(chosen)) as client:
+        validation = validate_board(client, table, chosen.port, chosen.steps)
+        text = validation_text(validation)
+        if not validation.passed:
+            write_atomic(chosen.out / "validation.json", text)
+            raise VerificationFailed("; ".join(validation.failures))
+        flight = fly_board(bound, table, client)
     # Only now: a board that is lost in its flight has not been validated.
     write_atomic(chosen.out / "validation.json", text)
     save_log(chosen.out / "validation.csv", flight.log)
@@ -49,4 +50,6 @@ def run(chosen: argparse.Namespace) -> int:
     print(console.table(validation_rows(validation)))
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
+    for note in validation.notes:
+        print(f"\nnote: {note}")
     return 0

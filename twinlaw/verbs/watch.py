@@ -30,7 +30,7 @@ from twinlaw.watching.source import Source
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--port, --plant, --table, --arithmetic, --rig, --fly, --record, --http-port, --out, --json."""
+    """--port, --dtr, --rts, --plant, --table, --arithmetic, --rig, --fly, --record, --http-port, --out, --json."""
     parser.add_argument(
         "--port",
         type=options.port_name,
@@ -38,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PORT|emulated|LOG.csv",
         help="what to watch; default: %(default)s",
     )
+    options.signals(parser)
     options.plant(parser)
     options.table(parser)
     options.arithmetic(parser)
@@ -54,7 +55,8 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.record is not None:
         demand_log_place(chosen.record)
     fields = ("port", "plant", "table", "out", "rig", "arithmetic", "fly")
-    bound, source, locked = open_watched(Watched(**{name: getattr(chosen, name) for name in fields}))
+    lines = options.modem_lines(chosen)
+    bound, source, locked = open_watched(Watched(**{name: getattr(chosen, name) for name in fields}, lines=lines))
     try:
         if chosen.record is not None and not isinstance(source, BoardSource):
             raise BadInput("--record", str(chosen.record), "a replay", "a board", "the log is recorded already")

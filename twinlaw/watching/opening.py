@@ -14,7 +14,7 @@ from rig.flight.live import LiveFlight, LoopFlight, time_of
 from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
 from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient
 from rig.link.numbers import numbers_of
-from rig.link.port import open_port
+from rig.link.port import LEFT_ALONE, ModemLines, open_port
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
@@ -38,6 +38,7 @@ class Watched:
     rig: Path | None
     arithmetic: str
     fly: bool
+    lines: ModemLines = LEFT_ALONE
 
 
 def is_log(port: str) -> bool:
@@ -69,7 +70,7 @@ def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
     rig = bound if asked.rig is None else _rig(asked.rig, bound)
     manoeuvre = flight(bound, table.sample_period_s)
     url = board_url(asked.port, asked.out / "firmware.elf")
-    port = open_port(url, timeout_s=DEFAULT_TIMEOUT_S)
+    port = open_port(url, timeout_s=DEFAULT_TIMEOUT_S, lines=asked.lines)
     numbers = numbers_of(table, asked.arithmetic)
     client = BoardClient.over(port, asked.port, table_digest=table.digest, numbers=numbers)
     try:

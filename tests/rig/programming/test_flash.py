@@ -1,5 +1,6 @@
 """Commands that program a board; what is said when they cannot; stm32flash itself against an emulated boot loader."""
 
+import os
 import shutil
 import signal
 import struct
@@ -14,6 +15,7 @@ from rig.emulator.ports.boot_loader import Command, LoaderFaults
 from rig.emulator.ports.pty_port import PtyBootLoader
 from rig.link.client import BoardClient, asked_identity
 from rig.link.numbers import numbers_of
+from rig.link.port import open_port
 from rig.programming.flash import (
     boot_loader_command,
     flash_through_boot_loader,
@@ -234,3 +236,56 @@ def test_a_binary_of_another_build_than_its_elf_is_refused_where_an_arithmetic_i
     (tmp_path / "firmware.bin").write_bytes((folder / "firmware.bin").read_bytes() + b"more")
     assert main(["flash", "--port", "/dev/nope", "--out", str(tmp_path), "--arithmetic", arithmetic]) == 2
     assert "another one than firmware.elf" in capsys.readouterr().err
+
+
+PROTECTED = LoaderFaults(refused=frozenset({Command.READ, Command.WRITE, Command.ERASE, Command.GO}))
+
+
+@needs_stm32flash
+def test_a_protected_chip_is_told_as_that_with_what_lifts_it_and_what_it_costs(image, capsys):
+    with PtyBootLoader(PROTECTED) as chip:
+        assert main(["flash", "--port", chip.path, "--out", str(image.parent)]) == 2
+    told = capsys.readouterr().err
+    words = ["read-out protected", "nothing was written", f"`stm32flash -k {chip.path}`", "ERASES THE WHOLE FLASH"]
+    assert [word for word in words if word not in told] == []
+
+
+# Answers of stm32flash to a protected chip, whole, for computers without it.
+READ = '*" -r "*'
+REFUSES = f"""case $* in
+{READ}) echo 'Got NACK from device on command 0x11' >&2; echo 'Failed to read memory at address 0x08000000' >&2; exit 1;;
+*" -w "*) echo 'Got NACK from device on command 0x44' >&2; echo 'Failed to erase memory' >&2; exit 1;;
+*) echo 'Device ID : 0x0460';; esac"""
+
+
+@pytest.mark.parametrize(("also_read", "status", "word"), [(True, 2, "stm32flash -k"), (False, 1, "stm32flash -u")])
+def test_what_cannot_be_erased_is_protected_where_it_cannot_be_read_either(
+    also_read, status, word, image, fake_tool, capsys
+):
+    fake_tool("stm32flash", REFUSES if also_read else REFUSES.replace(READ, "$0"))
+    assert main(["flash", "--port", "/dev/ttyUSB0", "--out", str(image.parent)]) == status
+    assert word in capsys.readouterr().err
+
+
+def test_stm32flash_gets_its_own_sequence_of_dtr_and_rts(image, fake_tool, tmp_path, capsys):
+    asked = tmp_path / "asked"
+    fake_tool(
+        "stm32flash", f"echo $* >> {asked}; {IDENTIFIED}; echo 'Starting execution at address 0x08000000... done'"
+    )
+    given = ["--port", "/dev/ttyUSB0", "--out", str(image.parent), "--sequence=-dtr,rts:dtr"]
+    assert main(["flash", *given]) == 0
+    assert [line.split(" -i ")[1].split()[0] for line in asked.read_text().splitlines()] == ["-dtr,rts:dtr"] * 2
+    assert main(["flash", *given[2:]]) == 2
+    assert "--sequence" in capsys.readouterr().err
+
+
+def test_a_port_that_somebody_has_is_not_flashed(image, fake_tool, tmp_path, capsys):
+    fake_tool("stm32flash", f"touch {tmp_path / 'asked'}")
+    ours, theirs = os.openpty()
+    other = open_port(os.ttyname(theirs), timeout_s=0.1)
+    assert main(["flash", "--port", os.ttyname(theirs), "--out", str(image.parent)]) == 2
+    assert "in use" in capsys.readouterr().err
+    assert not (tmp_path / "asked").exists()
+    other.close()
+    os.close(ours)
+    os.close(theirs)

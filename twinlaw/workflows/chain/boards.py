@@ -10,15 +10,17 @@ from records.validation import Validation
 from rig.flight.controller import BoardController
 from rig.flight.line_law import LineLaw
 from rig.flight.timing import line_timing
+from rig.link.adapter import latency_note
 from rig.link.client import BoardClient
 from rig.link.numbers import numbers_of
+from rig.link.port import LEFT_ALONE, ModemLines
 from sim.bind import BoundPlant
 from sim.loop import fly
 from sim.manoeuvres import flight
-from twinlaw.cli.console import stage
+from twinlaw.cli.console import stage, tally
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.flying import ChainFlight, tracked
-from twinlaw.workflows.chain.verifying import equal_steps
+from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stateless import Stateless
 
@@ -38,36 +40,42 @@ def demand_image(image: Path) -> None:
         raise BadInput("firmware image", str(image), "no such file", "an image", remedy)
 
 
-def validate_board(table: FlownTable, url: str, steps: int, arithmetic: str = "float32") -> Validation:
-    """Identity, self-test and `steps` replayed steps of the board at `url` against the host's C; raises BadInput for another table."""
+def connected(table: FlownTable, url: str, arithmetic: str = "float32", lines: ModemLines = LEFT_ALONE) -> BoardClient:
+    """The board at `url`, which nobody else can take until it is closed; raises BadInput for another table or arithmetic."""
+    return BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic), lines=lines)
+
+
+def validate_board(client: BoardClient, table: FlownTable, port: str, steps: int) -> Validation:
+    """Identity, self-test and `steps` replayed steps of a board against the host's C."""
+    arithmetic = client.numbers.name
     host = HostLaw(loading.generate(table, arithmetic), arithmetic)
-    numbers = numbers_of(table, arithmetic)
-    with BoardClient.connect(url, table_digest=table.digest, numbers=numbers) as client:
-        law = LineLaw(client)
-        mismatches = client.self_test()
-        equality = equal_steps(Stateless(host), law, ARITHMETICS[arithmetic].sequences(table, steps))
-        counters = client.counters()  # before the host falls silent on purpose
-        with stage("measuring round trips and ticks"):
-            timing = line_timing(client, table.sample_period_s)
-        return Validation(
-            port=url.split(":")[0] if url.startswith("emulated") else url,
-            identity=asdict(client.identity),
-            table_digest=table.digest,
-            self_test_mismatches=mismatches,
-            equality=equality,
-            law_cycles_max=law.cycles_max,
-            timing=timing,
-            counters=counters,
-        )
+    mismatches = client.self_test()
+    stimuli = ARITHMETICS[arithmetic].sequences(table, steps)
+    with tally("replaying steps on the board", sum(stimulus.steps for stimulus in stimuli)) as tell:
+        law = LineLaw(client, lambda: tell(False, False))
+        equality = compare(Stateless(host), law, stimuli).equality
+    counters = client.counters()  # before the host falls silent on purpose
+    with stage("measuring round trips and ticks"):
+        timing = line_timing(client, table.sample_period_s)
+    slow = latency_note(port, timing.round_trip_median_s)
+    return Validation(
+        port=port,
+        identity=asdict(client.identity),
+        table_digest=table.digest,
+        self_test_mismatches=mismatches,
+        equality=equality,
+        law_cycles_max=law.cycles_max,
+        timing=timing,
+        counters=counters,
+        notes=() if slow is None else (slow,),
+    )
 
 
-def fly_board(bound: BoundPlant, table: FlownTable, url: str, arithmetic: str = "float32") -> ChainFlight:
-    """Fly the plant with the board at `url` in the loop, angles to the board and voltages back, one frame each per sample."""
-    with (
-        BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client,
-        stage("flying the firmware through its serial line"),
-    ):
-        log = fly(bound, BoardController(client), flight(bound, table.sample_period_s), table_digest=table.digest)
-        client.disarm()
-        counters = client.counters()
-    return ChainFlight(log, tracked(log), counters)
+def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> ChainFlight:
+    """Fly the plant with the board in the loop, angles to the board and voltages back, one frame each per sample."""
+    whole = flight(bound, table.sample_period_s)
+    with tally("flying the firmware through its serial line", whole.t_s.size) as tell:
+        controller = BoardController(client, lambda: tell(False, False))
+        log = fly(bound, controller, whole, table_digest=table.digest)
+    client.disarm()
+    return ChainFlight(log, tracked(log), client.counters())
