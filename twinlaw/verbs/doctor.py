@@ -11,7 +11,7 @@ import shutil
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, metadata, requires, version
 from pathlib import Path
 from typing import Any
 
@@ -77,11 +77,29 @@ def run(chosen: argparse.Namespace) -> int:
 def examine() -> Iterator[Finding]:
     """Every finding, what all verbs need first."""
     yield Finding("Python", NEEDED, platform.python_version(), "")
-    yield from packages(tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"])
+    yield Finding("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
+    yield Finding("cache", NEEDED, str(CACHE_DIR), "")
+    yield from packages(_project())
     yield Finding("C compiler", NEEDED, _compiler(), "make run: installs the ziglang package")
     for program, (purpose, remedy) in PROGRAMS.items():
         yield Finding(program, purpose, shutil.which(program), remedy)
     yield Finding("a serial port", "validate, watch: a board of your own", _ports(), "plug the board in")
+
+
+def _project() -> Mapping[str, Any]:
+    """What pyproject.toml asks for: its section `project`, or, of an installed package, what the installer noted of it."""
+    if PROJECT.is_file():
+        section: Mapping[str, Any] = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
+        return section
+    noted: dict[str, list[str]] = {
+        "": [],
+        **{extra: [] for extra in metadata("twinlaw").get_all("Provides-Extra") or ()},
+    }
+    for requirement in requires("twinlaw") or ():
+        name, _, marker = requirement.partition(";")
+        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)", marker)
+        noted[extra[1] if extra else ""].append(name.strip())
+    return {"dependencies": noted.pop(""), "optional-dependencies": noted}
 
 
 def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
@@ -129,4 +147,4 @@ def _compiler() -> str | None:
         )
     except (BadInput, ImportError, OSError):
         return None
-    return f"works, keeps its output in {CACHE_DIR}" if lib.doctor_sum(2, 3) == 5 else None
+    return "works" if lib.doctor_sum(2, 3) == 5 else None

@@ -3,10 +3,16 @@
 import contextlib
 import os
 import select
-import termios
-import tty
 
-SPEEDS = {getattr(termios, name): int(name[1:]) for name in dir(termios) if name[0] == "B" and name[1:].isdigit()}
+from records.errors import BadInput
+
+try:
+    import termios
+    import tty
+except ImportError:  # no POSIX: all but these terminals works
+    SPEEDS: dict[int, int] = {}
+else:
+    SPEEDS = {getattr(termios, name): int(name[1:]) for name in dir(termios) if name[0] == "B" and name[1:].isdigit()}
 SPEED_CODES = {baud: code for code, baud in SPEEDS.items()}
 OUTPUT_SPEED = 5  # index into what tcgetattr gives
 
@@ -14,10 +20,16 @@ OUTPUT_SPEED = 5  # index into what tcgetattr gives
 class Terminal:
     """The chip's end; `path` is the device that the host opens, and `speed_baud` what the host has set there.
 
-    It carries bytes: no parity, no framing, no time.
+    It carries bytes: no parity, no framing, no time. Raises BadInput on a system without pseudo-terminals.
     """
 
     def __init__(self, speed_baud: int) -> None:
+        if not SPEEDS:
+            got, remedy = (
+                "a system without pseudo-terminals",
+                "use Linux or macOS (Windows: WSL), or a board of your own",
+            )
+            raise BadInput("emulated chip", "pseudo-terminal", got, "a POSIX system", remedy)
         self._chip, self._device = os.openpty()
         os.set_blocking(self._chip, False)
         tty.setraw(self._device)

@@ -1,0 +1,49 @@
+"""The command's own promises: exit status 1 is a failed verification alone, and no traceback comes out of it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from toolchain.cache import CACHE_DIR
+from twinlaw import command
+from twinlaw.command import main
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_a_fault_of_our_own_is_one_line_and_no_failed_verification(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def broken(words: list[str]) -> int:
+        raise KeyError("Psi_m")
+
+    monkeypatch.setattr(command, "_obey", broken)
+    monkeypatch.setattr(command, "CACHE_DIR", tmp_path / "cache")
+    assert main(["design", "--json"]) == 2
+    told = capsys.readouterr()
+    assert len(told.err.splitlines()) == 1
+    assert "KeyError: 'Psi_m'" in told.err
+    assert "fault of twinlaw itself" in json.loads(told.out)["error"]
+    assert "Traceback" in (tmp_path / "cache" / "last-fault.txt").read_text()
+    monkeypatch.setattr(command, "CACHE_DIR", tmp_path / "cache" / "last-fault.txt")
+    assert main(["design"]) == 2
+
+
+@pytest.mark.parametrize("name", [b"pl\xe4n.toml", b"\xff", "plän".encode("latin1") + b"/a.toml"])
+def test_a_name_that_is_no_utf8_is_refused_before_anything_is_made(name: bytes, tmp_path: Path) -> None:
+    arguments = [b"run", b"--plant", name, b"--out", b"o"]
+    given = {**os.environ, "TWINLAW_CACHE": str(CACHE_DIR), "PYTHONPATH": str(ROOT)}
+    words = [os.fsencode(sys.executable), b"-m", b"twinlaw.command", *arguments]
+    done = subprocess.run(words, cwd=tmp_path, env=given, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, list(tmp_path.iterdir())) == (2, "", [])
+    assert "no UTF-8" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_name_in_utf8_is_told_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "--plant", str(tmp_path / "plän λ.toml")]) == 2
+    assert "plän λ.toml" in capsys.readouterr().err
