@@ -22,9 +22,12 @@ def _users_own() -> Path:
 
 
 def _writable(place: Path) -> bool:
-    """Whether files can be made there, by the next folder above that is there: nothing is made yet."""
-    there = next((folder for folder in (place, *place.parents) if folder.exists()), place)
-    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+    """Whether files can be made there; makes the folder."""
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(place, os.W_OK | os.X_OK)
 
 
 def _temporary() -> Path:
