@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from toolchain.templates import text_templates
+from twinlaw.cli.options import plant_file
 from twinlaw.templates import TEMPLATES
 
 SHELLS = ("bash", "zsh", "fish")
@@ -117,7 +118,7 @@ def _option(action: argparse.Action) -> Option:
         takes=action.nargs != 0,
         many=action.nargs in ("+", "*"),
         words=tuple(words),
-        file=action.type is Path or action.dest == "port",
+        file=action.type in (Path, plant_file) or action.dest == "port",
         name=metavar or action.dest.upper(),
     )
 

@@ -14,8 +14,17 @@ if TYPE_CHECKING:
 def plant(parser: argparse.ArgumentParser) -> None:
     """--plant PLANT.toml."""
     parser.add_argument(
-        "--plant", type=Path, default=Path("plants/ce150.toml"), metavar="PLANT.toml", help="default: %(default)s"
+        "--plant", type=plant_file, default="plants/ce150.toml", metavar="PLANT.toml", help="default: %(default)s"
     )
+
+
+def plant_file(text: str) -> Path:
+    """A plant file, as the type of an option; `plants/NAME.toml` is the project's own where the current folder has none."""
+    from records.plant import PLANTS  # with NumPy, which most verbs do without
+
+    path = Path(text)
+    own = PLANTS / path.name
+    return own if path.parent == Path("plants") and own.is_file() and not path.exists() else path
 
 
 def table(parser: argparse.ArgumentParser) -> None:

@@ -80,7 +80,7 @@ def examine() -> Iterator[Finding]:
     yield Finding("system", "see the README: where it runs", f"{platform.system()} {platform.machine()}", "")
     yield Finding("cache", NEEDED, str(CACHE_DIR), "")
     yield from packages(_project())
-    yield Finding("C compiler", NEEDED, _compiler(), "make run: installs the ziglang package")
+    yield Finding("C compiler", NEEDED, _compiler(), "make run, or pip install ziglang")
     for program, (purpose, remedy) in PROGRAMS.items():
         yield Finding(program, purpose, shutil.which(program), remedy)
     yield Finding("a serial port", "validate, watch: a board of your own", _ports(), "plug the board in")
@@ -114,6 +114,8 @@ def _packages(requirements: Sequence[str], purpose: str, remedy: str) -> Iterato
         name = re.split(r"[^A-Za-z0-9._-]", requirement, maxsplit=1)[0]
         if name == "twinlaw":  # an extra that is made of others
             continue
+        if not PROJECT.is_file():  # installed: there is no checkout to be asked for its extras
+            remedy = f"pip install '{requirement}'"
         try:
             yield Finding(name, purpose, version(name), remedy)
         except PackageNotFoundError:
