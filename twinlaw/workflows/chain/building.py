@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from codegen.library import library
+from codegen.prefix import prefixed
 from codegen.protocol_source import protocol_source
 from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
@@ -26,6 +28,19 @@ def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mappin
         for name, text in {**law, **protocol_source(PROTOCOL)}.items():
             write_atomic(folder / name, text)
     return law
+
+
+def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix: str, kind: str | None) -> list[Path]:
+    """Law and protocol for firmware of another hand, in `folder`: their names behind a prefix, laid out as a library where a kind is given.
+
+    Returns the files. Raises BadInput for a prefix that cannot begin a name in C.
+    """
+    with stage("generating C"):
+        texts = {**loading.generate(table, arithmetic), **protocol_source(PROTOCOL)}
+        files = prefixed(texts, prefix) if kind is None else library(kind, texts, prefix)
+        for name, text in files.items():
+            write_atomic(folder / name, text)
+    return [folder / name for name in sorted(files)]
 
 
 def build_image(law: Mapping[str, str], folder: Path) -> FirmwareImage:

@@ -1,0 +1,9 @@
+/* Of the HAL what the example calls. */
+#include <stdint.h>
+typedef struct { uint32_t counter, compare; } TIM_HandleTypeDef;
+#define TIM_CHANNEL_1 0u
+#define __HAL_TIM_GET_COUNTER(timer) ((timer)->counter)
+#define __HAL_TIM_SET_COMPARE(timer, channel, value) ((timer)->compare = (value) + (channel))
+void Error_Handler(void);
+void flight_begin(void);
+void HAL_TIM_PeriodElapsedCallback(TIM_HandleTypeDef *timer);
