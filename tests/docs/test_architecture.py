@@ -60,6 +60,7 @@ EXAMPLES = {
     "threshold of the replay": Example("OLDEST_ANGLES = ", searched=("replay",)),
     "importer of a data set": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, ("recordings",)),
     "file format that `import` reads": Example("ulog", {"NAME": "ulog"}, ("recordings",)),
+    "kind of library of the law's C": Example("", {"NAME": "stm32cube"}),
     "page": Example("faults.md", {"NAME": "faults"}, ("mkdocs.yml", "README.md")),
     "identification experiment": Example("reaction_balance", {"PLANT": "ce150", "NAME": "azimuth"}),
     "search for a start": Example("differential_evolution", {"NAME": "evolution"}, ("identification/search",)),
