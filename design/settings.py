@@ -40,6 +40,10 @@ DEFAULTS: Mapping[str, float] = {
     "feedforward_degree": 2,
 }
 
+# Shortest and longest sample period [s]: below, float32 has too few digits for what v moves by in a sample and the step on the
+# STM32G071 fills the period; above, the watchdog's 125 ms leave no room for a missed one, and a rig's poles lie near the Nyquist frequency.
+SAMPLE_PERIODS_S = (0.5e-3, 50e-3)
+
 # Distinct poles, which the fit hardly moves, and integral action on both axes. On the CE150 with dry friction and encoder
 # steps they track within 2 % overshoot and 0.05 deg; plants/ce150.toml states the same.
 AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
@@ -131,6 +135,7 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
         azimuth=_axis(section, "azimuth", where, *_azimuth_range(bound)),
         margins=_margins(section, f"{where}.margins"),
     )
+    _check_period(settings, where)
     _check_degrees(settings, where)
     for axis in AXES:
         _check_nyquist(settings, axis, where)
@@ -263,6 +268,16 @@ def _check_degrees(settings: DesignSettings, where: str) -> None:
             f"at least {max(needed, 2)} for fits of degree {needed - 1}",
             "add points or lower the degree",
         )
+
+
+def _check_period(settings: DesignSettings, where: str) -> None:
+    low_s, high_s = SAMPLE_PERIODS_S
+    period_s = settings.sample_period_s
+    whole = abs(period_s * 1e6 - round(period_s * 1e6)) < 1e-6
+    if not (low_s <= period_s <= high_s and whole):
+        expected = f"whole microseconds from {low_s:g} to {high_s:g} s"
+        remedy = "choose one that the board's timer can count"
+        raise BadInput("sample period", f"{where}.sample_period_s", f"{period_s:g} s", expected, remedy)
 
 
 def _check_nyquist(settings: DesignSettings, axis: str, where: str) -> None:

@@ -224,10 +224,18 @@ _FROM_BOARD = (
 PROTOCOL = Protocol(
     version=1,
     constants=(
-        Constant("HOST_LOSS_SAMPLES", 10, "samples without a setpoint from the host after which it counts as lost"),
-        Constant("RAMP_SAMPLES", 8, "samples from the loss of the host to the safe value"),
-        Constant("ENCODER_JUMP_COUNTS", 256, "counts in one sample beyond which an encoder is not believed"),
-        Constant("ENCODER_STILL_SAMPLES", 100, "samples at full drive without a count after which it is not believed"),
+        Constant("WATCH_PERIOD_US", 10_000, "in which host and encoders are watched, whatever the sample period is"),
+        Constant(
+            "HOST_LOSS_PERIODS", 10, "watch periods without a setpoint from the host after which it counts as lost"
+        ),
+        Constant("RAMP_PERIODS", 8, "watch periods from the loss of the host to the safe value"),
+        Constant("ENCODER_JUMP_COUNTS", 256, "counts in one watch period beyond which an encoder is not believed"),
+        Constant(
+            "ENCODER_STILL_PERIODS", 100, "watch periods at full drive without a count after which it is not believed"
+        ),
+        Constant(
+            "TELEMETRY_LEAST_US", 2_000, "between two telemetry frames at the least: the line has room for replies too"
+        ),
         Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),
     ),
     enumerations=_ENUMERATIONS,

@@ -34,7 +34,7 @@ void pwm_write(const duty_pair *duty, bool power); /* signed ticks; power = fals
 void pwm_safe(void);                               /* power stage off, whatever has happened */
 
 /* tick.c */
-void tick_start(void);
+void tick_start(uint32_t period_us); /* up to 65536 */
 uint32_t tick_take(void); /* control ticks since the last call */
 bool tick_waiting(void);
 uint32_t time_us(void);   /* modulo 2^32 */

@@ -72,7 +72,7 @@ int main(void)
     const board_identity identity = board_identify();
     path_start(&path, &identity);
     usart_start();
-    tick_start();
+    tick_start(LAW_SAMPLE_PERIOD_US);
     watchdog_watch_steps();
     for (;;) {
         board_sleep();

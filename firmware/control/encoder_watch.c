@@ -28,6 +28,6 @@ bool encoder_watch_believes(
     self->last = *now;
     self->still_psi = still_ticks(self->still_psi, moved_psi, applied->main_ticks, full_drive, passed);
     self->still_phi = still_ticks(self->still_phi, moved_phi, applied->tail_ticks, full_drive, passed);
-    return moved_psi < farthest && moved_phi < farthest && self->still_psi < PROTOCOL_ENCODER_STILL_SAMPLES
-           && self->still_phi < PROTOCOL_ENCODER_STILL_SAMPLES;
+    return moved_psi < farthest && moved_phi < farthest && self->still_psi < PROTOCOL_ENCODER_STILL_PERIODS
+           && self->still_phi < PROTOCOL_ENCODER_STILL_PERIODS;
 }

@@ -9,8 +9,6 @@
 #include "encoder_watch.h"
 #include "supervisor.h"
 
-#define PATH_SAMPLE_PERIOD_US 10000u
-
 /* What the board knows of itself at the start. */
 typedef struct {
     uint8_t unique_id[12];

@@ -5,7 +5,7 @@
 #include "integrity.h"
 
 /* A clock that claims more is wrong, and one second is enough to have lost the host. */
-#define PASSED_MAX 100u
+#define PASSED_MAX (1000000u / LAW_SAMPLE_PERIOD_US)
 
 void path_start(path_state *self, const board_identity *identity)
 {
@@ -56,15 +56,41 @@ static void measure(path_state *self, const encoder_counts *measured)
     };
 }
 
-static void supervise(path_state *self, uint32_t passed)
+/* Watch periods that end with these ticks; one by one, as a Cortex-M0+ has no divide instruction. */
+static uint32_t watch_periods(path_state *self, uint32_t passed)
+{
+    uint32_t periods = 0;
+    for (uint32_t i = 0; i < passed; i++) {
+        periods += LAW_SAMPLE_PERIOD_US / PROTOCOL_WATCH_PERIOD_US;
+        self->watched_us += LAW_SAMPLE_PERIOD_US % PROTOCOL_WATCH_PERIOD_US;
+        if (self->watched_us >= PROTOCOL_WATCH_PERIOD_US) {
+            self->watched_us -= PROTOCOL_WATCH_PERIOD_US;
+            periods++;
+        }
+    }
+    return periods;
+}
+
+/* Whether the line is free of the last telemetry again. */
+static bool telemetry_fits(path_state *self, uint32_t passed)
+{
+    self->telemetry_us += passed * LAW_SAMPLE_PERIOD_US;
+    if (self->telemetry_us < PROTOCOL_TELEMETRY_LEAST_US) {
+        return false;
+    }
+    self->telemetry_us = 0;
+    return true;
+}
+
+static void supervise(path_state *self, uint32_t periods)
 {
     const uint8_t before = self->supervisor.state;
     self->telemetry_due = before == PROTOCOL_STATE_FLYING || before == PROTOCOL_STATE_RAMPING;
-    if (before == PROTOCOL_STATE_FLYING
-        && !encoder_watch_believes(&self->watch, &self->measured, &self->applied, (int32_t)LAW_PWM_TICKS, passed)) {
+    if (before == PROTOCOL_STATE_FLYING && periods > 0u
+        && !encoder_watch_believes(&self->watch, &self->measured, &self->applied, (int32_t)LAW_PWM_TICKS, periods)) {
         supervisor_encoder_fault(&self->supervisor, &self->applied);
     }
-    supervisor_tick(&self->supervisor, &self->applied, passed);
+    supervisor_tick(&self->supervisor, &self->applied, periods);
     self->telemetry_due = self->telemetry_due || self->supervisor.state == PROTOCOL_STATE_RAMPING;
     if (!supervisor_is_armed(&self->supervisor)) {
         self->output = (law_output){0};
@@ -80,7 +106,8 @@ path_demand path_tick(path_state *self, const encoder_counts *measured, uint32_t
     self->tick += passed;
     self->faults.tick_overruns += passed - 1u;
     measure(self, measured);
-    supervise(self, counted);
+    supervise(self, watch_periods(self, counted));
+    self->telemetry_due = telemetry_fits(self, counted) && self->telemetry_due;
     if (self->supervisor.state != PROTOCOL_STATE_FLYING) {
         return PATH_NOTHING;
     }

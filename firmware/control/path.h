@@ -18,7 +18,7 @@
 #include "protocol.h"
 
 #define PATH_FIRMWARE_VERSION 0x0002u /* major * 256 + minor */
-_Static_assert(LAW_SAMPLE_PERIOD_US == PATH_SAMPLE_PERIOD_US, "the table was designed for another sample period");
+_Static_assert(LAW_SAMPLE_PERIOD_US >= 500 && LAW_SAMPLE_PERIOD_US <= 50000, "a step below fills the period, the watchdog bites above");
 _Static_assert(LAW_U_M_SAFE_V == 0 && LAW_U_T_SAFE_V == 0, "the safe state of this board is an open power stage, 0 V");
 _Static_assert(sizeof(law_number) == 4, "numbers cross the line as 32-bit words");
 _Static_assert(LAW_PWM_TICKS <= INT16_MAX, "duties cross the line as int16_t");
@@ -45,6 +45,8 @@ typedef struct {
     duty_pair applied;
     uint32_t law_cycles; /* of the last step, measured by the board */
     uint32_t tick;
+    uint32_t watched_us;   /* since the last watch period ended */
+    uint32_t telemetry_us; /* since the last telemetry, PROTOCOL_TELEMETRY_LEAST_US at most */
     encoder_counts measured; /* encoders as last read */
     encoder_counts offset;   /* of PRESET */
     uint32_t self_test_mismatches;

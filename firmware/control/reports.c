@@ -21,7 +21,7 @@ static size_t identity(path_state *self, uint32_t now_us, uint8_t *payload)
     static const uint8_t SCHEMA_HASH[8] = PROTOCOL_SCHEMA_HASH;
     protocol_identity message = {
         .arithmetic = LAW_ARITHMETIC_CODE,
-        .sample_period_us = PATH_SAMPLE_PERIOD_US,
+        .sample_period_us = LAW_SAMPLE_PERIOD_US,
         .pwm_full_scale_ticks = LAW_PWM_TICKS,
         .firmware_version = PATH_FIRMWARE_VERSION,
         .reset_cause = self->identity.reset_cause,

@@ -2,9 +2,9 @@
 
 #include "protocol.h"
 
-/* RAMP_SAMPLES is a power of two: a Cortex-M0+ has no divide instruction. */
+/* RAMP_PERIODS is a power of two: a Cortex-M0+ has no divide instruction. */
 #define RAMP_SHIFT 3
-_Static_assert(PROTOCOL_RAMP_SAMPLES == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
+_Static_assert(PROTOCOL_RAMP_PERIODS == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
 
 void supervisor_start(supervisor_state *self)
 {
@@ -58,7 +58,7 @@ void supervisor_host_alive(supervisor_state *self)
 static void start_ramp(supervisor_state *self, const duty_pair *applied)
 {
     self->state = PROTOCOL_STATE_RAMPING;
-    self->ramp_left = PROTOCOL_RAMP_SAMPLES;
+    self->ramp_left = PROTOCOL_RAMP_PERIODS;
     self->ramp_start = *applied;
 }
 
@@ -81,12 +81,12 @@ static uint32_t ticks_of_ramp(supervisor_state *self, const duty_pair *applied, 
         return passed;
     }
     self->missed_samples += passed;
-    if (self->missed_samples < PROTOCOL_HOST_LOSS_SAMPLES) {
+    if (self->missed_samples < PROTOCOL_HOST_LOSS_PERIODS) {
         return 0;
     }
     self->host_losses++;
     start_ramp(self, applied);
-    return self->missed_samples - PROTOCOL_HOST_LOSS_SAMPLES + 1u;
+    return self->missed_samples - PROTOCOL_HOST_LOSS_PERIODS + 1u;
 }
 
 void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t passed)
@@ -95,14 +95,14 @@ void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t 
     if (self->state != PROTOCOL_STATE_RAMPING) {
         return;
     }
-    if (self->ramp_left > PROTOCOL_RAMP_SAMPLES || due >= self->ramp_left) {
+    if (self->ramp_left > PROTOCOL_RAMP_PERIODS || due >= self->ramp_left) {
         self->state = PROTOCOL_STATE_LOST;
     } else {
         self->ramp_left -= due;
     }
 }
 
-/* start * left / RAMP_SAMPLES, rounded toward zero; right shifts only of what is not negative. */
+/* start * left / RAMP_PERIODS, rounded toward zero; right shifts only of what is not negative. */
 static int32_t ramped(int32_t start, uint32_t left)
 {
     const uint32_t magnitude = start < 0 ? 0u - (uint32_t)start : (uint32_t)start;

@@ -47,7 +47,7 @@ def _round_trips(client: BoardClient, count: int) -> list[float]:
 def _tick_latencies(client: BoardClient, sample_period_s: float) -> list[float]:
     """Of the ticks of one ramp; telemetry that is lost on the way is missing here."""
     latencies_s = []
-    for _ in range(PROTOCOL.constant("RAMP_SAMPLES")):
+    for _ in range(PROTOCOL.constant("RAMP_PERIODS")):
         telemetry = client.telemetry()
         if telemetry is None:
             break

@@ -18,8 +18,8 @@ from toolchain.target import TARGET_FLAGS, build_image
 BIT_S = 1.0 / 921_600
 TICK_S = 0.01
 WATCHDOG_S = 0.125
-LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+LOSS = PROTOCOL.constant("HOST_LOSS_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 CAUSES = {choice.code: choice.name for choice in PROTOCOL.enumeration("reset_cause").choices}
 
 

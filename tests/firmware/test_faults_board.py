@@ -10,8 +10,8 @@ from tests.firmware.desk import Desk
 
 TICK_S = 0.01
 WATCHDOG_S = 0.125
-LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+LOSS = PROTOCOL.constant("HOST_LOSS_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 JUMP = PROTOCOL.constant("ENCODER_JUMP_COUNTS")
 FULL_DRIVE = 3200
 # Thumb: push {r0}; movs r1, #60; 1: subs r1, #1; bne 1b; b to the push: 4 bytes of stack each 190 cycles or so.
@@ -143,5 +143,5 @@ def test_a_frozen_encoder_at_full_drive_ends_the_flight_after_a_second(desk):
     while drives(desk):
         fly(desk, 9.0)
         samples += 1
-    assert samples == PROTOCOL.constant("ENCODER_STILL_SAMPLES") + RAMP
+    assert samples == PROTOCOL.constant("ENCODER_STILL_PERIODS") + RAMP
     assert desk.counters["encoder_faults"] == 1

@@ -6,8 +6,8 @@ from records.protocol import PROTOCOL
 from tests.firmware.box import DIGEST, Box, word
 from tests.firmware.desk import MODES
 
-LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+LOSS = PROTOCOL.constant("HOST_LOSS_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 ZERO = {"psi_ref_rad": word(0.0), "phi_ref_rad": word(0.0)}
 
 

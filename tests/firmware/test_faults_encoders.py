@@ -6,8 +6,8 @@ from records.protocol import PROTOCOL
 from tests.firmware.box import Box
 
 JUMP = PROTOCOL.constant("ENCODER_JUMP_COUNTS")
-STILL = PROTOCOL.constant("ENCODER_STILL_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+STILL = PROTOCOL.constant("ENCODER_STILL_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 AXES = ["psi_counts", "phi_counts"]
 
 

@@ -14,7 +14,7 @@ from tests.soak import SOAK
 
 TICK_S = 0.01
 WATCHDOG_S = 0.125
-SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_SAMPLES") + 10  # the host is lost, and ten more at most
+SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_PERIODS") + 10  # the host is lost, and ten more at most
 REASONS = {choice.code: choice.name for choice in PROTOCOL.enumeration("reason").choices}
 # link_incoming of link.h: the bytes of the longest line, rounded up to words, then length and overflow flag.
 INCOMING_BYTES = (max(line_length(message) for message in PROTOCOL.messages) + 3) // 4 * 4 + 8

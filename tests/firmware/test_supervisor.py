@@ -5,8 +5,8 @@ import pytest
 from records.protocol import PROTOCOL
 from tests.firmware.box import COUNTS_TO_RAD, Box, word
 
-LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+LOSS = PROTOCOL.constant("HOST_LOSS_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 
 
 def flying(psi_ref_rad: float = 0.5) -> Box:

@@ -4,18 +4,19 @@
 #include "wiring.h"
 
 #define COUNTS_PER_US (BOARD_CLOCK_HZ / 1000000u)
-_Static_assert(PATH_SAMPLE_PERIOD_US <= 65536u, "the period is counted by 16 bits in microseconds");
 
+static uint32_t tick_period_us;  /* of 16 bits: fixed when the timer has started */
 static volatile uint32_t ticks;  /* since the start */
 static uint32_t ticks_taken;     /* by the main loop */
 
 void TIM6_Handler(void);
 
-void tick_start(void)
+void tick_start(uint32_t period_us)
 {
+    tick_period_us = period_us;
     RCC->APBENR1 |= RCC_APBENR1_TIM6;
     TIM6->PSC = COUNTS_PER_US - 1u;
-    TIM6->ARR = PATH_SAMPLE_PERIOD_US - 1u;
+    TIM6->ARR = period_us - 1u;
     TIM6->EGR = TIM_EGR_UG;
     TIM6->SR = 0;
     TIM6->DIER = TIM_DIER_UIE;
@@ -51,5 +52,5 @@ uint32_t time_us(void)
         before = ticks;
         count = TIM6->CNT;
     } while (before != ticks);
-    return before * PATH_SAMPLE_PERIOD_US + count;
+    return before * tick_period_us + count;
 }

@@ -29,7 +29,7 @@ from tests.soak import SOAK
 TABLE = ce150_table()
 PERIOD_S = TABLE.sample_period_s
 STEPS = (TABLE.elevation.resolution_rad, TABLE.azimuth.resolution_rad)
-SILENCE_S = (PROTOCOL.constant("HOST_LOSS_SAMPLES") + PROTOCOL.constant("RAMP_SAMPLES") + 2) * PERIOD_S
+SILENCE_S = (PROTOCOL.constant("HOST_LOSS_PERIODS") + PROTOCOL.constant("RAMP_PERIODS") + 2) * PERIOD_S
 
 
 @dataclass

@@ -18,8 +18,8 @@ from tests.firmware.box import DIGEST
 from tests.rig.link.box_port import BoxPort
 
 TABLE = DIGEST.hex()
-LOSS = PROTOCOL.constant("HOST_LOSS_SAMPLES")
-RAMP = PROTOCOL.constant("RAMP_SAMPLES")
+LOSS = PROTOCOL.constant("HOST_LOSS_PERIODS")
+RAMP = PROTOCOL.constant("RAMP_PERIODS")
 
 
 def client_over(port, table_digest=TABLE, numbers=None):

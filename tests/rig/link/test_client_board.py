@@ -106,7 +106,7 @@ def test_a_host_that_goes_away_leaves_the_rotors_off(url):
     client.reference(0.5, 0.0)
     port.wait(0.05)
     assert port.board.pwm().enabled
-    port.wait((PROTOCOL.constant("HOST_LOSS_SAMPLES") + PROTOCOL.constant("RAMP_SAMPLES")) * TICK_S)
+    port.wait((PROTOCOL.constant("HOST_LOSS_PERIODS") + PROTOCOL.constant("RAMP_PERIODS")) * TICK_S)
     pwm = port.board.pwm()
     assert (pwm.enabled, pwm.main_ticks, pwm.tail_ticks) == (False, 0, 0)
 

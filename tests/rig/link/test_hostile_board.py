@@ -32,7 +32,7 @@ from tests.rig.link.hostile_sessions import complete_or_one_line, connect, count
 from tests.soak import SOAK, sampled
 
 TICK_S = 0.01
-SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_SAMPLES") + 10  # the host is lost, and ten more at most
+SAFE_SAMPLES = PROTOCOL.constant("HOST_LOSS_PERIODS") + 10  # the host is lost, and ten more at most
 FRAMES_BACK = 10
 SEEDS = range(100 if SOAK else 4)
 SEEDS_OF_A_KIND = range(100 if SOAK else 1)

@@ -196,7 +196,7 @@ static void stand_still(bench *self, uint32_t psi_word, uint32_t phi_word, bool 
 {
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
-    for (uint32_t i = 0; i < 2u * PROTOCOL_ENCODER_STILL_SAMPLES + 200u; i++) {
+    for (uint32_t i = 0; i < 2u * PROTOCOL_ENCODER_STILL_PERIODS + 200u; i++) {
         refer(self, psi_word, phi_word);
         tick(self, psi_moves ? (int32_t)(i & 1u) : 0, phi_moves ? (int32_t)(i & 1u) : 0, 1u);
     }
@@ -209,19 +209,19 @@ static void watch_alone(int32_t main_ticks, int32_t tail_ticks)
     const duty_pair applied = {.main_ticks = main_ticks, .tail_ticks = tail_ticks};
     encoder_watch watch;
     encoder_watch_start(&watch, &still);
-    (void)encoder_watch_believes(&watch, &still, &applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_SAMPLES);
+    (void)encoder_watch_believes(&watch, &still, &applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_PERIODS);
 }
 
 static void lose_host(bench *self, uint32_t late)
 {
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
-    for (uint32_t i = 0; i < PROTOCOL_HOST_LOSS_SAMPLES + 2u; i++) {
+    for (uint32_t i = 0; i < PROTOCOL_HOST_LOSS_PERIODS + 2u; i++) {
         tick(self, 0, 0, 1u);
     }
     again(self); /* the armed frame of before: it must not arm */
     tick(self, 0, 0, late);
-    for (uint32_t i = 0; i < 2u * PROTOCOL_RAMP_SAMPLES; i++) {
+    for (uint32_t i = 0; i < 2u * PROTOCOL_RAMP_PERIODS; i++) {
         tick(self, 0, 0, 1u);
     }
     send(self, PROTOCOL_TYPE_SAMPLE, NULL);
