@@ -79,7 +79,10 @@ class PoleMigration:
 
 @dataclass(frozen=True)
 class TargetCost:
-    """What one control step costs on the target: least and most cycles measured, their bound, worst stack, and the image's memory."""
+    """What one control step costs on the target: least and most cycles measured, their bound, worst stack, and the image's memory.
+
+    `cycles_budget` is what a sample period leaves for the step.
+    """
 
     arithmetic: str
     cycles_min: int
@@ -88,6 +91,12 @@ class TargetCost:
     stack_bytes: int
     flash_bytes: int
     ram_bytes: int
+    cycles_budget: int
+
+    @property
+    def fits(self) -> bool:
+        """Whether no step can be measured above its bound, nor last longer than a sample period allows."""
+        return self.cycles_max <= self.cycles_bound <= self.cycles_budget
 
 
 @dataclass(frozen=True)
@@ -143,8 +152,13 @@ class Verification:
             for row in self.target
             if row.cycles_max > row.cycles_bound
         )
+        late = (
+            f"a step may take {row.cycles_bound} cycles of the {row.cycles_budget} that the sample period leaves ({row.arithmetic})"
+            for row in self.target
+            if row.cycles_bound > row.cycles_budget
+        )
         unproved = (f"{row.name}: {row.figure}" for row in self.proofs if row.outcome == "failed")
-        return (*unequal, *self_tests, *unstable, *slow, *unproved)
+        return (*unequal, *self_tests, *unstable, *slow, *late, *unproved)
 
     @property
     def passed(self) -> bool:

@@ -21,6 +21,7 @@ class LiveFlight(Protocol):
     """What can be watched and flown: every method raises BadInput when the board refuses or is lost, and is then no longer `armed`."""
 
     mode: str
+    ticks: int
     armed: bool
     round_trip_s: float | None
     law_cycles: int | None
@@ -39,7 +40,7 @@ class LiveFlight(Protocol):
         ...
 
     def sample(self, reference: Angles) -> LiveRow | None:
-        """One sample period; None where the board tells nothing while it is disarmed."""
+        """`ticks` sample periods; None where the board tells nothing while it is disarmed."""
         ...
 
     def health(self) -> Health:
@@ -69,6 +70,7 @@ class LoopFlight:
     """
 
     mode = "LOOP"
+    ticks = 1
     own_pace = False
 
     def __init__(self, client: BoardClient, plant: SteppedPlant, board: BoardTime, period_s: float) -> None:

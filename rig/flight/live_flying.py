@@ -6,6 +6,7 @@ from typing import Protocol
 from codegen.twin import FULL_SCALE_V
 from records.errors import BadInput
 from records.live import LiveRow
+from records.protocol import PROTOCOL
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.flight.live import Angles, BoardTime
@@ -74,12 +75,18 @@ class EmulatedRig:
         return signs[0] * pwm.main_ticks * scale, signs[1] * pwm.tail_ticks * scale
 
 
+def ticks_of_telemetry(period_s: float) -> int:
+    """Sample periods from one telemetry to the next: one, or more where the line could not carry so many frames."""
+    return max(1, -(-PROTOCOL.constant("TELEMETRY_LEAST_US") // round(1e6 * period_s)))
+
+
 class FlyingFlight:
     """Flying on the board's own encoders. Time is the board's tick since the first telemetry; a disarmed board tells nothing."""
 
     mode = "FLYING"
 
     def __init__(self, client: BoardClient, rig: Rig, board: BoardTime, period_s: float) -> None:
+        self.ticks = ticks_of_telemetry(period_s)
         self.armed = False
         self.round_trip_s: float | None = None
         self.law_cycles: int | None = None
@@ -112,6 +119,9 @@ class FlyingFlight:
 
     def sample(self, reference: Angles) -> LiveRow | None:
         """Send the references and take the next telemetry."""
+        for _ in range(self.ticks - 1):
+            self._rig.move(self._period_s)
+            self._board.passed(self._period_s)
         self._rig.move(self._period_s)
         if not self.armed:
             self._board.passed(self._period_s)

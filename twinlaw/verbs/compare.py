@@ -67,7 +67,7 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.json:
         print(json.dumps(content))
     else:
-        print(console.table(tables.cost_rows(rows), tables.COST_HEADING))
+        print(console.table(tables.cost_rows(rows), tables.cost_heading(rows)))
         for axis in ("elevation", "azimuth"):
             print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
             print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))

@@ -101,7 +101,7 @@ class BoardSource:
             self.rows.append(row)
         if was_armed and not self.armed:
             self._lost("the board left its flight by itself: host or encoder lost; its inputs go to 0")
-        wait_s = 0.0 if self._flight.own_pace else self._table.sample_period_s
+        wait_s = 0.0 if self._flight.own_pace else self._flight.ticks * self._table.sample_period_s
         return Step(() if row is None else (row,), wait_s)
 
     def disarm(self) -> None:

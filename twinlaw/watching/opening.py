@@ -81,7 +81,7 @@ def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
         raise
     title = "emulated board" if asked.port == "emulated" else f"board at {asked.port}"
     told = {"title": title, "who": _who(asked, client), **signals(bound)}
-    return BoardSource(flying, table, manoeuvre.reference_rad, told, client.close)
+    return BoardSource(flying, table, manoeuvre.reference_rad[:: flying.ticks], told, client.close)
 
 
 def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: FlownTable) -> LiveFlight:

@@ -31,7 +31,7 @@ def page_text(
                 for row in rows
             ],
             notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
-            cost=_markdown(tables.COST_HEADING, tables.cost_rows(rows)),
+            cost=_markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
             figures=_figures(rows),
             eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
             angles=ANGLES,
