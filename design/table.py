@@ -84,7 +84,7 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
 
 def _axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
     designs = [design.delta for design in points.axis(axis)]
-    schedule = fit_schedule(points.psi_rad, designs, settings.coefficient_degree)
+    schedule = fit_schedule(points.psi_rad, designs, settings.coefficient_degree, settings.sample_period_s)
     return AxisLaw(
         q_V_rad=schedule.q,
         p=schedule.p,
@@ -134,7 +134,7 @@ def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -
 def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> dict[str, Any]:
     wishes, designs = settings.axis(axis), points.axis(axis)
     deltas = [design.delta for design in designs]
-    schedule = fit_schedule(points.psi_rad, deltas, settings.coefficient_degree)
+    schedule = fit_schedule(points.psi_rad, deltas, settings.coefficient_degree, settings.sample_period_s)
     return {
         "poles_rad_s": [[pole.real, pole.imag] for pole in wishes.poles_rad_s],
         "free_degree": wishes.free_degree,
