@@ -30,6 +30,7 @@ from controllers.linearisation import (
 from controllers.placing import Placed, placed
 from design.operating_points import design_point
 from design.pole_placement import poles_z
+from design.schedule import CONSTANT_Q3_BELOW_S
 from design.table import observer
 from records.errors import BadInput
 from records.law_table import LawTable
@@ -121,6 +122,12 @@ def design(points: Points) -> LawTable[InstantaneousGains]:
                 "free_degree", f"plant {points.bound.plant.name!r}: design.{axis}", repr(points.settings.axis(axis).free_degree),
                 "'integral', which (C.21) has", "choose that, or the scheduled controller",
             )  # fmt: skip
+    if points.settings.sample_period_s < CONSTANT_Q3_BELOW_S:
+        raise BadInput(
+            "sample period", f"plant {points.bound.plant.name!r}: design.sample_period_s", f"{points.settings.sample_period_s:g} s",
+            f"{CONSTANT_Q3_BELOW_S:g} s or more: below, a q_3 solved anew each sample rectifies encoder steps",
+            "choose a longer one, or the scheduled controller, whose q_3 is a constant there",
+        )  # fmt: skip
     constants = Constants(0.0, 1.0, 2.0, 3.0, COSINE, SINE, inverse_factorials(), NEWTON_STEPS)
     axes = {axis: axis_table(points, axis, InstantaneousGains(_model(points, axis), constants)) for axis in AXES}
     poles = {axis: [[pole.real, pole.imag] for pole in points.settings.axis(axis).poles_rad_s] for axis in AXES}

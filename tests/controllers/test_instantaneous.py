@@ -50,6 +50,11 @@ def test_another_free_degree_is_refused_with_its_name() -> None:
         CONTROLLER.design(ce150(), other)
 
 
+def test_a_sample_period_at_which_it_would_rectify_encoder_steps_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"sample_period_s: sample period: got 0\.001 s.*scheduled"):
+        CONTROLLER.design(ce150(), replace(read_settings(ce150()), sample_period_s=0.001))
+
+
 def test_equations_that_are_not_those_of_the_paper_s_model_are_refused() -> None:
     # Truth: the literal equations divide (9) by J_A alone, so their azimuth's damping does not grow with 1/cos.
     literal = bound("ce150_seed_literal")
