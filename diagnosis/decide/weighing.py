@@ -84,14 +84,15 @@ def weigh(
         + decisions.OFF_FORM * formed**decisions.OFF_POWER
         + decisions.OFF_SHARE * min(formed, decisions.FARTHEST_GAIN)
     )
-    scores = np.array(
+    tempered = np.array(
         [(entry.evidence - best) / scale - decisions.FURTHER * (len(entry.effects) - 1) for entry in named]
     )
-    scores += [prior_odds(entry, effects, frictionless, steps) for entry in named]
     prior_chi_squared = np.array([_beyond_spread(entry) for entry in named])
-    scores -= prior_chi_squared - prior_chi_squared.min()
+    tempered -= prior_chi_squared - prior_chi_squared.min()
+    scores = tempered + [prior_odds(entry, effects, frictionless, steps) for entry in named]
     expected = decisions.LEFT_NATS + decisions.LEFT_SHARE * whole
-    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - decisions.UNKNOWN
+    # Something unknown stands beside the best name, so it pays for all that this pays for but how rare it is.
+    unknown = decisions.LEFT_POWER * float(np.log(max(left, 1.0) / expected)) - decisions.UNKNOWN + tempered.max()
     other = -np.inf if retune is None else (retune - decisions.RETUNE_COST - best) / scale
     weights = np.exp(np.array([*scores, other, unknown]) - max(np.max(scores), unknown, other))
     weights /= weights.sum()
