@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.diagnose import Material, diagnose
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from identification.results.result import identification
@@ -60,7 +60,7 @@ def without_correlation(identified):
 
 def log_posterior(plant, log):
     """Of the plant's own parameters alone, at their best."""
-    return nominal_fit(make_case(effect_library(plant), [log])).log_posterior
+    return plain_fit(make_case(effect_library(plant), [log])).log_posterior
 
 
 def test_a_rig_within_every_sd_is_judged_by_the_correlation(identified, thrust, table):

@@ -68,8 +68,8 @@ def test_a_search_over_motions_that_leave_all_bounds_goes_on_in_silence():
     start = arm(b=80.0, d=28.0, k=15.66)
     run = log_run(start, flown(start), "log", 10.0)
     problem = problem_of((run,), ("d",), ranges_of(start, ("d",), {"d": (10.0, 1e4)}), NOTHING)
-    values, best = evolution(problem, [0], 1, lambda _: None)
+    values, best = evolution(problem, [0], 1, lambda _: None, lambda _done, _of: None)
     assert values[0] == pytest.approx(28.0, rel=0.02)
     assert np.isfinite(best).all()
-    again, _ = evolution(problem, [0], 1, lambda _: None)
+    again, _ = evolution(problem, [0], 1, lambda _: None, lambda _done, _of: None)
     assert values == again
