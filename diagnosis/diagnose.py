@@ -23,7 +23,9 @@ from diagnosis.detect.detection import detect, form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, straight
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.coloured_noise import coloured_noise_of
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
+from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import plain_fit, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
@@ -39,6 +41,8 @@ from records.reasons import Decision, Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 
+WHITE_ROUNDS = 6
+
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
@@ -50,6 +54,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     if not _in_their_rows(material.firmware):
         material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
+    seen = _as_white(seen)
     seen, found = _explained(seen)
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
@@ -145,6 +150,22 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
 
 
+def _as_white(seen: Seen) -> Seen:
+    """The same from the plant that white noise alone drives: a torque that comes and goes follows any motion, so that beside it a name
+    would explain only what is fast. Whether there is a gap at all has been asked with it."""
+    case, effects = seen.case, seen.case.library.effects
+    hypothesis = seen.retuned.fit.hypothesis
+    kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
+    if len(kept) == len(hypothesis.effects):
+        return seen
+    found = fit(case, coloured_noise_of(case, hypothesis.with_effects(kept)), rounds=WHITE_ROUNDS)
+    if found is None:
+        return seen
+    linearisation = linearised(case, found)
+    score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
+    return replace(seen, retuned=as_fitted(case, found), linearisation=linearisation, score_tests=score_tests)
+
+
 def _false_alarm(of: str, p: float) -> Decision:
     return decided("false_alarm", of, p, decisions.ALARM, "a cause is looked for" if _alarmed(p) else "no gap")
 
@@ -181,6 +202,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     if case is seen.case:
         return seen, None
     again = _detected(case, seen.checked)
+    again = _as_white(again) if _alarmed(again.detection.p) else again
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 

@@ -125,7 +125,7 @@ GLITCH_STEPS = Limit(20.0, "encoder steps", "on a coarse grid a leap is at least
 BESIDE_ZERO_STEPS = Limit(1.5, "least moves", "an axis that passes zero reads it once")
 
 # stretches
-MOST_READINGS = Count(24_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")
+MOST_READINGS = Count(25_000, "readings", "time: two logs of a minute of two angles at 100 Hz are taken whole", "timed")
 STRETCHES = Count(8, "stretches", "parts of a long log")
 LEAST_STRETCH_S = Limit(10.0, "s", "a stretch is at least so long")
 DENSE_S = Limit(1e-3, "s", "rows closer than this are thinned")
