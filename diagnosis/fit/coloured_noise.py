@@ -1,7 +1,7 @@
 """Noise with a memory, by maximum likelihood: a torque that comes and goes on an axis, errors of readings that are alike from row to row.
 
 Both are Ornstein-Uhlenbeck processes of a standard deviation and a correlation time, states of every filter (sim/effects/gust.py eq (2),
-library/reading_noise.py eq (1)). Every hypothesis has those that the plant alone, fitted, shows.
+library/reading_noise.py eq (1)). Those that the plant alone shows count where a gap is asked for; beside names only errors of readings do.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -99,7 +99,7 @@ def _likeliest(case: Case, hypothesis: Hypothesis, value: float | None, colour: 
     if _numbers(colour, hypothesis)[0] > colour.least:
         return hypothesis, value
     without = colour.without(hypothesis)
-    return without, likelihoods(case, [without])[0]
+    return without, likelihood_of(case, without)
 
 
 def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:

@@ -1,3 +1,3 @@
 """From score tests to fitted hypotheses: singles, pairs and triples, with what must be known of friction, lost frames
-and gusts on the way.
+on the way, and whether a gust is the whole gap.
 """

@@ -1,4 +1,4 @@
-"""Whether a torque that comes and goes is the whole gap: noise that every hypothesis has, told where it is more than a rig's usual."""
+"""Whether a torque that comes and goes is the whole gap: noise of the plant alone, told where it is more than a rig's usual."""
 
 from dataclasses import dataclass
 
