@@ -43,14 +43,16 @@ Disturbances = Callable[[slice], Array]
 class Noise:
     """What the filter takes as random: q (states,) intensities of the rates, rub (axes,) see filter.h, p0 (states,) start variances.
 
-    `drive` (states,) is the variance that a command which nobody knows gives each state in a second, by the second squared; `rest_s` the
-    usual step from row to row, for which friction keeps a resting axis in doubt.
+    `forget` (states,) is the rate, in 1/s, at which a state that is noise alone decays, 0 for all others; `drive` (states,) the variance
+    that a command which nobody knows gives each state in a second, by the second squared; `rest_s` the usual step from row to row, for
+    which friction keeps a resting axis in doubt.
     """
 
     q: Array
     rub: Array
     p0: Array
     drive: Array
+    forget: Array
     rest_s: float
 
 
@@ -204,6 +206,7 @@ def _given(filter_input: FilterInput, p: Array, x0: Array, noise: Noise) -> dict
         "p0": _double(noise.p0),
         "q": _double(noise.q),
         "stir": _double(np.outer(filter_input.untold_s**2, noise.drive)) if filter_input.untold_s.any() else None,
+        "forget": _double(noise.forget),
         "rub": _double(noise.rub),
     }
 

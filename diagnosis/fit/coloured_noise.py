@@ -13,7 +13,7 @@ from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.process_noise import FIRST_STEP, with_process_noise
-from diagnosis.fit.profile_likelihood import Point, along, likelihoods
+from diagnosis.fit.profile_likelihood import Point, along, likeliest, likelihoods
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
@@ -44,12 +44,12 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     for colour in _colours(case):
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
-        without, *values = likelihoods(part, [hypothesis, *starts])
-        if max(values) <= without - COLOUR_COST:
+        start, there = _likeliest(part, *likeliest(part, starts), colour)
+        if colour.of(start) is None or there <= likelihood_of(part, hypothesis):
             continue
-        start, there = _likeliest(case, starts[int(np.argmax(values))], None, colour)
-        if colour.of(start) is not None and there > value + COLOUR_COST:
-            hypothesis, value = start, there
+        ended, there = _likeliest(case, start, None, colour)
+        if colour.of(ended) is not None and there > value + COLOUR_COST:
+            hypothesis, value = ended, there
     return hypothesis
 
 

@@ -159,16 +159,19 @@ def noise_of(case: Case, compiled: CompiledFilter, flight: FilteredLog, hypothes
     x0, p0 = start_under(compiled, flight)
     q = LEAST_PROCESS * np.maximum(np.abs(x0), 1.0) ** 2
     q[list(case.library.velocities)] = 10.0 ** (2.0 * hypothesis.process_noise)
+    forget = np.zeros_like(q)
     for name, values in hypothesis.effects.items():
         state = case.library.effects[name].filter_state
         if state is not None and state.noise is not None:
             place = compiled.states.index(state.name)
             q[place], p0[place] = state.noise(values)
+            forget[place] = 0.5 * q[place] / p0[place]
     for output, noise in hypothesis.reading_noise.items():
         place = compiled.states.index(state_of(output))
-        q[place], p0[place] = noise.intensity, noise.sd**2
+        q[place], p0[place], forget[place] = noise.intensity, noise.sd**2, 1.0 / noise.time_s
     drive = np.append(flight.drive, np.zeros(len(q) - len(flight.drive)))
-    return Noise(q, np.full(max(1, len(compiled.filter.axes)), 10.0**hypothesis.rest_doubt), p0, drive, flight.step_s)
+    rub = np.full(max(1, len(compiled.filter.axes)), 10.0**hypothesis.rest_doubt)
+    return Noise(q, rub, p0, drive, forget, flight.step_s)
 
 
 def start_under(compiled: CompiledFilter, flight: FilteredLog) -> tuple[Array, Array]:

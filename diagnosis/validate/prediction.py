@@ -52,9 +52,8 @@ def predictions(case: Case, flight: FilteredLog, hypothesis: Hypothesis, spans: 
     if run is None:
         return found
     lateness = _lateness(case, compiled, hypothesis.effects)
-    ahead = Noise(
-        np.zeros_like(noise.q), np.zeros_like(noise.rub), np.zeros_like(noise.p0), np.zeros_like(noise.q), 0.0
-    )
+    none = np.zeros_like(noise.q)
+    ahead = Noise(none, np.zeros_like(noise.rub), none, none, noise.forget, 0.0)
     slots = [place if place < outputs else -1 for place in range(len(library.outputs))]
     t_s = flight.log.t_s
     for span in [Span(first, first, last) for first, last in windows(t_s)] if spans is None else spans:

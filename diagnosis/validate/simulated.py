@@ -135,6 +135,7 @@ class Flown:
             "x0": np.zeros(n),
             "p0": np.zeros(n),
             "q": np.zeros(n),
+            "forget": np.zeros(n),
             "rub": np.zeros(max(1, len(chosen.axes))),
             "locked": np.array([axis in locked for axis in chosen.axes] or [False], dtype=np.uint8),
             "slot": np.array([place if place < width else -1 for place in range(outputs)], dtype=np.int32),

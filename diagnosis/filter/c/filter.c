@@ -270,8 +270,8 @@ static void spread(filter_state *at, const double *noise)
     }
 }
 
-/* The slopes one step on: S + h (1 + h A / 2) (A S + D). */
-static void move_slopes(filter_state *at, double h_s)
+/* The slopes one step on: S + h (1 + h A / 2) (A S + D), those of noise with a memory by what is kept of it. */
+static void move_slopes(filter_state *at, double h_s, const double *kept)
 {
     const filter_request *const r = at->request;
     const double *const A = at->j.A;
@@ -295,21 +295,22 @@ static void move_slopes(filter_state *at, double h_s)
             UNROLLED for (int m = 0; m < N; m++)
                 if (A_HAS[i][m])
                     second += A[i * N + m] * rates[m];
-            S[i] += h_s * (rates[i] + 0.5 * h_s * second);
+            S[i] = kept[i] < 1.0 ? kept[i] * S[i] : S[i] + h_s * (rates[i] + 0.5 * h_s * second);
         }
     }
 }
 
-/* Half of a step's unrest comes before its motion, so that it reaches the position within the step: else a very sure reading of a
- * position leaves the speed no freedom at all. What an axis at rest loses by its emptied row all comes after. */
-static void stir(filter_state *at, const bool *rests, double *noise)
+/* Half of a step's noise comes before its motion, so that it reaches the position within the step: else a very sure reading of a
+ * position leaves the speed no freedom at all. What an axis at rest loses by its emptied row all comes after, so that instants more or
+ * less change nothing; so does what noise with a memory loses, of which `kept` is left: (1 - kept^2) q / 2 rate in all. */
+static void stir(filter_state *at, const bool *rests, const double *kept, double *noise)
 {
     bool emptied[N] = {false};
     for (int a = 0; a < N_AXES; a++)
         emptied[AXIS_VELOCITY[a]] = rests[a];
     for (int i = 0; i < N; i++)
         if (!emptied[i]) {
-            noise[i] *= 0.5;
+            noise[i] /= 1.0 + kept[i] * kept[i];
             at->P[i][i] += noise[i];
         }
 }
@@ -341,6 +342,19 @@ static void resting(const filter_state *at, const double *level, const double *n
     }
 }
 
+/* What is left over a step of each state that is noise with a memory, exactly: rows may be further apart than it lasts. Others keep all. */
+static void forgetting(const filter_state *at, double h_s, double *kept, double *noise)
+{
+    const filter_request *const r = at->request;
+    for (int i = 0; i < N; i++) {
+        kept[i] = 1.0;
+        if (r->forget[i] > 0.0 && AWAKE(i)) {
+            kept[i] = exp(-r->forget[i] * h_s);
+            noise[i] = 0.5 * r->q[i] / r->forget[i] * (1.0 - kept[i] * kept[i]);
+        }
+    }
+}
+
 /* The rows of the axes' speeds, of `width` numbers each, set to 0 where chosen. */
 static void empty_rows(const bool *chosen, double *rows, int width)
 {
@@ -353,12 +367,13 @@ static void advance(filter_state *at, int64_t step)
 {
     filter_request *const r = at->request;
     const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
-    double x[N], middle[N], noise[N], level[AXES] = {0.0}, sign[AXES];
+    double x[N], middle[N], noise[N], kept[N], level[AXES] = {0.0}, sign[AXES];
     bool rests[AXES], held[AXES];
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
         noise[i] = AWAKE(i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0) : 0.0;
+    forgetting(at, h_s, kept, noise);
     for (int a = 0; a < AXES; a++)
         sign[a] = 1.0;
     model_friction(t_s, at->body.x, at->u, at->c, sign, level);
@@ -371,6 +386,9 @@ static void advance(filter_state *at, int64_t step)
         for (int i = 0; i < N; i++)
             at->body.x[i] = x[i];
     for (int i = 0; i < N; i++)
+        if (kept[i] < 1.0)
+            at->body.x[i] = kept[i] * before.x[i];
+    for (int i = 0; i < N; i++)
         middle[i] = 0.5 * (before.x[i] + at->body.x[i]);
     resting(at, level, noise, rests);
     for (int a = 0; a < N_AXES; a++)
@@ -382,17 +400,20 @@ static void advance(filter_state *at, int64_t step)
     empty_rows(rests, j->A, N);
     transition(at, h_s);
     empty_rows(rests, at->F[0], WIDTH);
+    for (int i = 0; i < N; i++)
+        if (kept[i] < 1.0)
+            at->F[i][i] = kept[i];
     /* The mean stays where friction holds it, however unsure its speed is: parameters move nothing there. */
     empty_rows(held, j->A, N);
     empty_rows(held, j->D, N_PARAMETERS);
-    move_slopes(at, h_s);
+    move_slopes(at, h_s, kept);
     for (int a = 0; a < N_AXES; a++) {
         for (int b = 0; held[a] && b < blocks(r); b++)
             at->S[b][AXIS_VELOCITY[a]] = (block){0.0};
         if (r->locked[a])
             noise[AXIS_VELOCITY[a]] = 0.0;
     }
-    stir(at, rests, noise);
+    stir(at, rests, kept, noise);
     spread(at, noise);
     if (r->F)
         for (int i = 0; i < N; i++)

@@ -7,12 +7,14 @@ import pytest
 
 from diagnosis import decisions
 from diagnosis.detect.linearisation import linearised
+from diagnosis.filter.filter_input import spread
 from diagnosis.filter.kalman import C_DIR, FLAGS, PART, Pass
-from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis, coefficients, nominal_hypothesis, passes
 from diagnosis.library.effect_library import EffectLibrary, effect_library
+from diagnosis.library.reading_noise import ReadingNoise
 from diagnosis.search.lost_frames import drives
 from diagnosis.validate.prediction import predictions
 from records.log import RunLog
@@ -68,6 +70,20 @@ def test_innovations_of_the_fitted_plant_are_white(case: Case, settled: Hypothes
         assert np.mean(w[moving] ** 2) == pytest.approx(1.0, abs=0.2)
         assert np.mean(w[~moving] ** 2) < 1.25
         assert abs(np.mean(w[1:] * w[:-1])) < 0.2
+
+
+def test_noise_that_lasts_less_than_a_row_needs_no_further_instants(case: Case, settled: Hypothesis) -> None:
+    # Errors of readings that are forgotten in half a row, a torque in a second: exact over a step of any length, so that an instant in the
+    # middle of each row moves the likelihood by less than half a nat.
+    errors = {name: ReadingNoise(3e-3, 0.005) for name in case.library.bound.model.outputs}
+    gust = {"azimuth.gust": {"sigma": 2e-3, "T": 1.0}}
+    noisy = replace(settled, reading_noise=errors).with_effects({**settled.effects, **gust})
+    (flight,) = case.flights
+    t_s, u = flight.filter_input.t_s, flight.filter_input.u
+    between = np.sort(np.concatenate([t_s, t_s[:-1] + 0.5 * np.diff(t_s)]))
+    halved = spread(flight.filter_input, between, np.repeat(u, 2, axis=0)[:-1])
+    values = [likelihood_of(c, noisy) for c in (case, case.with_flights([replace(flight, filter_input=halved)]))]
+    assert values[1] == pytest.approx(values[0], abs=0.5)
 
 
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
