@@ -14,6 +14,7 @@ from blind.simulation.ce150 import DRY_FRICTION, Rig, read_rig
 from blind.simulation.record import Loss, Model, Record
 
 Array = NDArray[np.float64]
+FILTERED = "angles filtered"  # what is odd about logs whose readings come late by somebody's filter
 
 
 @dataclass(frozen=True)

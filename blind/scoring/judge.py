@@ -1,10 +1,13 @@
 """One case judged: the truth against the answer."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from blind.cases.sealed import TrueEffect, Truth
+from blind.rigs.bench import FILTERED
 from blind.scoring.results import Answer, Names, RankedAnswer, Unreadable
+
+NOBODY = RankedAnswer(frozenset(), 0.0, {}, ())
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
     """The judgement of a case; an unreadable answer is wrong everywhere, a gap where there is none included."""
     if isinstance(answer, Unreadable):
         return Judgement(case, truth, shrinkage, detected=truth.kind == "nominal", failure=answer.reason)
+    answer = _without_filter(answer, truth)
     true = frozenset(effect.name for effect in truth.effects)
     ranks = [place for place, entry in enumerate(answer.ranked, 1) if means(entry.names, truth)]
     top = answer.ranked[0] if answer.ranked else None
@@ -60,6 +64,39 @@ def judge(case: str, truth: Truth, answer: Answer | Unreadable, shrinkage: float
         stated=_stated_probability(truth, answer, top) if answer.verdict == "gap" else None,
         time_s=answer.time_s,
     )
+
+
+def _without_filter(answer: Answer, truth: Truth) -> Answer:
+    """The answer without what says that angles come late, where a filter that is none of the effects makes them so: that is true as well.
+    Where nothing else is named, there is nothing else to be told."""
+    if not any(defect.startswith(FILTERED) for defect in truth.defects):
+        return answer
+    beside = frozenset(
+        name for name in _said(answer) if _is_late(name) and not any(_fits(name, e) for e in truth.effects)
+    )
+    ranked: dict[Names, RankedAnswer] = {}
+    for entry in answer.ranked:
+        names = entry.names - beside
+        known = ranked.get(names)
+        more = 0.0 if known is None else known.probability
+        ranked[names] = replace(known or entry, names=names, probability=more + entry.probability)
+    told = sum(entry.probability for names, entry in ranked.items() if names)
+    nothing = bool(ranked) and max(told, answer.unknown_probability) < ranked.get(frozenset(), NOBODY).probability
+    return replace(
+        answer,
+        verdict="no gap" if nothing else answer.verdict,
+        ranked=tuple(sorted((e for e in ranked.values() if e.names), key=lambda entry: -entry.probability)),
+        found=answer.found - beside,
+    )
+
+
+def _said(answer: Answer) -> Names:
+    return frozenset().union(answer.found, *(entry.names for entry in answer.ranked))
+
+
+def _is_late(name: str) -> bool:
+    place, _, what = name.partition(".")
+    return place.endswith("_sensor") and what in ("delay", "lag")
 
 
 def _fits(name: str, effect: TrueEffect) -> bool:

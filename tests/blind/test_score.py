@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,9 @@ import pytest
 from blind import markdown, score, to_json
 from blind.cases.sealed import Hold, TrueEffect, Truth, seal
 from blind.effects.equivalent import Equivalent
+from blind.rigs.bench import FILTERED
+from blind.scoring.judge import Judgement, judge
+from blind.scoring.results import Unreadable, read_answer
 from blind.scoring.statistics import calibration_error, clopper_pearson, reliability
 
 BARS = {"psi_rad": 1e-3, "phi_rad": 1e-3}
@@ -233,3 +237,38 @@ def test_a_score_is_markdown_with_targets_and_json_that_reads_back(tmp_path: Pat
     content = json.loads(to_json(result))
     assert content["schema"] == "blind-score/1"
     assert len(content["judgements"]) == 16
+
+
+def filtered(entry: Truth) -> Truth:
+    """The same rig behind somebody's filter, which makes its angles late."""
+    return replace(entry, defects=(f"{FILTERED} 1.20 ms",))
+
+
+def judged(entry: Truth, said: dict[str, Any], tmp_path: Path) -> Judgement:
+    (tmp_path / "diagnosis.json").write_text(json.dumps(said))
+    read = read_answer(tmp_path)
+    assert not isinstance(read, Unreadable)
+    return judge("case-0001", entry, read, None)
+
+
+def test_a_filter_that_is_told_beside_the_cause_is_not_held_against_it(tmp_path: Path) -> None:
+    cause, late = "azimuth.coulomb", "phi_sensor.lag"
+    said = answer("gap", "azimuth", [(f"{cause} + {late}", 0.6), (cause, 0.2), (late, 0.1)], [cause, late])
+    found = judged(filtered(truth("single", effect(cause))), said, tmp_path)
+    assert (found.rank, found.found_right, found.wrong_names) == (1, True, frozenset())
+    assert found.stated == (pytest.approx(0.8), True)
+    assert not judged(truth("single", effect(cause)), said, tmp_path).found_right
+
+
+def test_a_filter_alone_is_no_false_alarm_but_another_name_is(tmp_path: Path) -> None:
+    late = answer("gap", "phi_sensor", [("phi_sensor.delay", 0.9)], ["phi_sensor.delay"])
+    other = answer("gap", "azimuth", [("azimuth.coulomb", 0.9)], ["azimuth.coulomb"])
+    assert not judged(filtered(truth("nominal")), late, tmp_path).detected
+    assert judged(filtered(truth("nominal")), other, tmp_path).detected
+    assert judged(truth("nominal"), late, tmp_path).detected
+
+
+def test_a_delay_that_is_the_cause_counts_behind_a_filter_too(tmp_path: Path) -> None:
+    said = answer("gap", "phi_sensor", [("phi_sensor.delay", 0.9)], ["phi_sensor.delay"])
+    found = judged(filtered(truth("single", effect("phi_sensor.delay"))), said, tmp_path)
+    assert (found.detected, found.rank, found.found_right) == (True, 1, True)

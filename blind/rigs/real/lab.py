@@ -8,7 +8,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from blind.rigs.bench import Bench, Columns, Logging, Plan
+from blind.rigs.bench import FILTERED, Bench, Columns, Logging, Plan
 from blind.rigs.real import operators
 from blind.rigs.real.manoeuvre import CLOSED, OPEN, drawn
 from blind.rigs.real.plants import CE150, RealPlant, draw_stated, draw_true
@@ -159,7 +159,7 @@ def _faults(lab: RealLab) -> tuple[str, ...]:
     found = {
         "gaps": any(log.gaps for log in logs),
         f"clock drift {drift:.1e}": drift > 0.0,
-        f"angles filtered {1e3 * lab.body.filter_s[0]:.2f} ms": lab.body.filter_s[0] > 0.0,
+        f"{FILTERED} {1e3 * lab.body.filter_s[0]:.2f} ms": lab.body.filter_s[0] > 0.0,
         "16-bit commands": any(log.coarse for log in logs),
         "open loop": not all(log.closed for log in logs),
         "held axis": any(any(log.locked) for log in logs),
