@@ -14,6 +14,10 @@ from records.plant import Plant
 from sim.paths.path import Held, InputStage, passed
 
 Array = NDArray[np.float64]
+DIFFERENCES = (
+    (2, 6.0),
+    (4, 70.0),
+)  # order, and by how much it makes white noise's variance larger: the sum of squared binomials
 AT_ONCE_S = 1e-7  # instants closer to one another are one
 # What stands for none: of a reading, and of what is known at an instant.
 READINGS = {"y": np.nan, "r": 1.0, "read": np.nan, "standing": 1.0, "usual": 0.0, "place": -1}
@@ -112,17 +116,27 @@ def variance_stated(plant: Plant, output: str) -> float:
 
 
 def _variance(y: Array, step: float, stated: float) -> float:
-    """Variance of a measurement: that of its encoder's step and noise, or what its second differences show where that is clearly more.
+    """Variance of a measurement: that of its encoder's step and noise, or what its differences show where that is clearly more.
 
-    Rounding alone leaves second differences of 6 step^2 / 12 and motion next to nothing; what is far beyond the usual is left out. Where
-    no step is stated the readings' own counts: a speed that is logged in whole counts mostly stands still, but is not exact for that.
+    White noise of variance r leaves second differences of 6 r and fourth ones of 70 r; the smaller says more, as motion adds to both.
+    Rounding alone leaves 6 step^2 / 12; what is far beyond the usual is left out. Where no step is stated the readings' own counts: a
+    speed that is logged in whole counts mostly stands still, but is not exact for that.
     """
-    second = np.abs(np.diff(y[np.isfinite(y)], 2))
-    usual = max(1.4826 * float(np.median(second)), step) if second.size else 0.0
-    seen = float(np.mean(np.minimum(second, decisions.CLIPPED_CHANGE * usual) ** 2)) / 6.0 if second.size else 0.0
+    seen = min(_scatter(y, order, times, step) for order, times in DIFFERENCES)
     if not step:
-        return max(stated + _finest(y) ** 2 / 12.0, usual**2 / 6.0, 1e-18)
+        return max(stated + _finest(y) ** 2 / 12.0, seen, 1e-18)
     return min(seen, 100.0 * stated) if seen > decisions.CLEAR_SCATTER * stated else stated
+
+
+def _scatter(y: Array, order: int, times: float, step: float) -> float:
+    """The variance of white noise that leaves such differences of an order, in which it is `times` as large; 0 of too few readings."""
+    change = np.abs(np.diff(y[np.isfinite(y)], order))
+    if not change.size:
+        return 0.0
+    usual = max(1.4826 * float(np.median(change)), step)
+    return (
+        float(np.mean(np.minimum(change, decisions.CLIPPED_CHANGE * usual) ** 2)) / times if step else usual**2 / times
+    )
 
 
 def _finest(y: Array) -> float:

@@ -12,8 +12,8 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
-from diagnosis.fit.process_noise import FIRST_STEP, with_process_noise
-from diagnosis.fit.profile_likelihood import Point, along, likeliest, likelihoods
+from diagnosis.fit.process_noise import FIRST_STEP, white_noise
+from diagnosis.fit.profile_likelihood import Number, along_each, likeliest, likelihoods
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
@@ -44,10 +44,10 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     for colour in _colours(case):
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
-        start, there = _likeliest(part, *likeliest(part, starts), colour)
+        start, there = _likeliest(part, *likeliest(part, starts), [colour])
         if colour.of(start) is None or there <= likelihood_of(part, hypothesis):
             continue
-        ended, there = _likeliest(case, start, None, colour)
+        ended, there = _likeliest(case, start, likelihood_of(case, start), [colour])
         if colour.of(ended) is not None and there > value + COLOUR_COST:
             hypothesis, value = ended, there
     return hypothesis
@@ -55,12 +55,10 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
 
 def coloured_noise_of(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
     """The hypothesis with the likeliest numbers of all noise that it has, white and with a memory."""
-    hypothesis = with_process_noise(case, hypothesis, first)
     chosen = [colour for colour in _colours(case) if colour.of(hypothesis) is not None]
-    value = likelihood_of(case, hypothesis) if chosen else 0.0
-    for colour in chosen:
-        hypothesis, value = _likeliest(case, hypothesis, value, colour)
-    return hypothesis
+    return _likeliest(case, hypothesis, likelihood_of(case, hypothesis), chosen, white_noise(case, hypothesis, first))[
+        0
+    ]
 
 
 def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
@@ -83,23 +81,31 @@ def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, flo
     return {name: float(share * values[name]) for name, share in zip(names, relative, strict=True)}
 
 
-def _likeliest(case: Case, hypothesis: Hypothesis, value: float | None, colour: Colour) -> tuple[Hypothesis, float]:
-    """The likeliest size, then time; none where that is too small to tell. `value` is the log likelihood as it is, if that is known."""
-    now = _numbers(colour, hypothesis)
-    value = likelihood_of(case, hypothesis) if value is None else value
+def _likeliest(
+    case: Case, hypothesis: Hypothesis, value: float, colours: Sequence[Colour], white: Sequence[Number] = ()
+) -> tuple[Hypothesis, float]:
+    """The likeliest numbers of `colours` and of the white noise, without those colours that are too small to tell; and the log likelihood,
+    `value` as it is."""
+    own = [number for colour in colours for number in (_size(colour), _time(colour))]
+    found, value = along_each(case, hypothesis, value, [*white, *own])
+    kept = found
+    for colour in colours:
+        kept = kept if _numbers(colour, kept)[0] > colour.least else colour.without(kept)
+    return (found, value) if kept is found else (kept, likelihood_of(case, kept))
 
-    def sized(hypothesis: Hypothesis, x: float) -> Hypothesis:
+
+def _size(colour: Colour) -> Number:
+    def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
         return colour.put(hypothesis, (float(10.0**x), _numbers(colour, hypothesis)[1]))
 
-    def timed(hypothesis: Hypothesis, x: float) -> Hypothesis:
+    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[0])), put, COLOUR_STEP)
+
+
+def _time(colour: Colour) -> Number:
+    def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
         return colour.put(hypothesis, (_numbers(colour, hypothesis)[0], float(np.clip(10.0**x, *colour.times_s))))
 
-    hypothesis, value = along(case, Point(float(np.log10(now[0])), hypothesis, value), sized, COLOUR_STEP)
-    hypothesis, value = along(case, Point(float(np.log10(now[1])), hypothesis, value), timed, COLOUR_STEP)
-    if _numbers(colour, hypothesis)[0] > colour.least:
-        return hypothesis, value
-    without = colour.without(hypothesis)
-    return without, likelihood_of(case, without)
+    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[1])), put, COLOUR_STEP)
 
 
 def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:

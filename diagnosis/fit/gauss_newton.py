@@ -234,7 +234,18 @@ def _linear(case: Case, hypothesis: Hypothesis, free: tuple[Free, ...], least: f
     if not (np.isfinite(information).all() and np.isfinite(pull).all()):
         return None  # slopes that overflow: as good as a filter that fails
     _add_prior(case, hypothesis, free, information, pull)
+    if not _is_definite(information):
+        return None
     return Fit(hypothesis, found, log_posterior, free, information, pull)
+
+
+def _is_definite(information: Array) -> bool:
+    """Whether it can be solved with: a size in a wild unit may drown all others."""
+    try:
+        np.linalg.cholesky(information)
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def unfitted(case: Case, noisy: Hypothesis) -> Fit | None:

@@ -12,6 +12,10 @@ from records.errors import BadInput
 
 NOMINAL_ROUNDS = 4
 SETTLED_NOISE = 0.05
+MEMORY_ROUNDS, SETTLED_GAIN = (
+    6,
+    1.0,
+)  # nats: white noise and noise with a memory give way to each other by little a round
 
 
 def nominal_fit(case: Case) -> Fit:
@@ -48,8 +52,11 @@ def with_memory(case: Case, found: Fit) -> Fit:
     coloured = with_colours(case, found)
     if coloured is found.hypothesis:
         return found
-    again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
-    if again is None:
-        return found
-    ended = fit(case, coloured_noise_of(case, again.hypothesis), rounds=NOMINAL_ROUNDS)
-    return again if ended is None else ended
+    for _ in range(MEMORY_ROUNDS):
+        again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
+        if again is None:
+            break
+        gained, found, coloured = again.log_posterior - found.log_posterior, again, again.hypothesis
+        if gained < SETTLED_GAIN:
+            break
+    return found

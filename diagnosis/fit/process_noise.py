@@ -1,11 +1,12 @@
-"""The noise of a hypothesis, by maximum likelihood: what drives each axis at random, and how long dry friction is in doubt at rest."""
+"""White noise of a hypothesis, by maximum likelihood: what drives each axis, and how long dry friction is in doubt at rest."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
-from diagnosis.fit.profile_likelihood import Changed, Point, along
+from diagnosis.fit.profile_likelihood import Number, along_each
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, scaled
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
@@ -18,23 +19,22 @@ DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells le
 
 
 def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
-    """The same with the noise that the innovations show."""
-    return _likeliest(case, hypothesis, likelihood_of(case, hypothesis), first)
+    """The same with the white noise that the innovations show."""
+    return along_each(case, hypothesis, likelihood_of(case, hypothesis), white_noise(case, hypothesis, first))[0]
 
 
 def process_noise_of(case: Case, found: Fit, first: float = FIRST_STEP) -> Hypothesis:
-    """What was fitted with the noise that the innovations then show."""
-    return _likeliest(case, found.hypothesis, found.log_likelihood, first)
+    """What was fitted with the white noise that the innovations then show."""
+    return along_each(case, found.hypothesis, found.log_likelihood, white_noise(case, found.hypothesis, first))[0]
 
 
-def _likeliest(case: Case, hypothesis: Hypothesis, value: float, first: float) -> Hypothesis:
-    """The likeliest noise, axis after axis; `value` is the log likelihood as it is."""
-    for axis in range(len(hypothesis.process_noise)):
-        start = Point(float(hypothesis.process_noise[axis]), hypothesis, value)
-        hypothesis, value = along(case, start, _of_axis(case, axis), first)
-    if _rubs(case, hypothesis):
-        hypothesis, _ = along(case, Point(hypothesis.rest_doubt, hypothesis, value), _of_rest, DOUBT_STEPS * first)
-    return hypothesis
+def white_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> list[Number]:
+    """The numbers of white noise: one for each axis, and that of rest where any axis has dry friction."""
+    found = [
+        Number(partial(_noise, axis), partial(_with_noise, case, axis), first)
+        for axis in range(len(hypothesis.process_noise))
+    ]
+    return [*found, Number(_doubt, _with_doubt, DOUBT_STEPS * first)] if _rubs(case, hypothesis) else found
 
 
 def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
@@ -44,14 +44,18 @@ def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
     return supposed or len(library.frictionless) < len(library.bound.model.axes)
 
 
-def _of_axis(case: Case, axis: int) -> Changed:
+def _noise(axis: int, hypothesis: Hypothesis) -> float:
+    return float(hypothesis.process_noise[axis])
+
+
+def _with_noise(case: Case, axis: int, hypothesis: Hypothesis, x: float) -> Hypothesis:
     """All noise of an axis: what comes and goes grows with what is white."""
-
-    def changed(hypothesis: Hypothesis, x: float) -> Hypothesis:
-        return scaled(case, hypothesis, axis, float(np.clip(x, LEAST_NOISE, MOST_NOISE)))
-
-    return changed
+    return scaled(case, hypothesis, axis, float(np.clip(x, LEAST_NOISE, MOST_NOISE)))
 
 
-def _of_rest(hypothesis: Hypothesis, x: float) -> Hypothesis:
+def _doubt(hypothesis: Hypothesis) -> float:
+    return hypothesis.rest_doubt
+
+
+def _with_doubt(hypothesis: Hypothesis, x: float) -> Hypothesis:
     return replace(hypothesis, rest_doubt=float(np.clip(x, LEAST_DOUBT, FIRST_REST_DOUBT)))

@@ -16,9 +16,18 @@ from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from jobs.thread_map import thread_map
 
-Changed = Callable[[Hypothesis, float], Hypothesis]
 MOST_STEPS = 12
 LITTLE_PROMISED = 0.1  # nats
+FURTHER = 0.7  # of the way that all numbers went together, at first
+
+
+@dataclass(frozen=True, eq=False)
+class Number:
+    """A number that a hypothesis has: where it is, a hypothesis with another, and the step in which it is looked for."""
+
+    of: Callable[[Hypothesis], float]
+    put: Callable[[Hypothesis, float], Hypothesis]
+    step: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +73,33 @@ def by_parabola(at: Callable[[float], Point], middle: Point, step: float, most_s
     return top if top.value > middle.value else middle
 
 
-def along(case: Case, start: Point, changed: Changed, step: float) -> tuple[Hypothesis, float]:
-    """The likeliest of one number, all others held, and its log likelihood."""
+def along(case: Case, hypothesis: Hypothesis, value: float, number: Number) -> tuple[Hypothesis, float]:
+    """The likeliest of one number, all others held, and its log likelihood; `value` is that of the hypothesis."""
 
     def at(x: float) -> Point:
-        there = changed(start.hypothesis, x)
+        there = number.put(hypothesis, x)
         return Point(x, there, likelihood_of(case, there))
 
-    found = by_parabola(at, start, step, MOST_STEPS, LITTLE_PROMISED)
+    found = by_parabola(at, Point(number.of(hypothesis), hypothesis, value), number.step, MOST_STEPS, LITTLE_PROMISED)
     return found.hypothesis, found.value
+
+
+def along_each(case: Case, hypothesis: Hypothesis, value: float, numbers: Sequence[Number]) -> tuple[Hypothesis, float]:
+    """The likeliest of each number in turn, and then along the way that all went together (Hooke and Jeeves 1961): two numbers that do the
+    same part of the noise give way to each other by little a turn."""
+    begun = [number.of(hypothesis) for number in numbers]
+    for number in numbers:
+        hypothesis, value = along(case, hypothesis, value, number)
+    ended = [number.of(hypothesis) for number in numbers]
+    if sum(x != y for x, y in zip(begun, ended, strict=True)) < 2:
+        return hypothesis, value
+
+    def put(hypothesis: Hypothesis, share: float) -> Hypothesis:
+        for number, x, y in zip(numbers, begun, ended, strict=True):
+            hypothesis = number.put(hypothesis, y + share * (y - x))
+        return hypothesis
+
+    return along(case, hypothesis, value, Number(lambda _: 0.0, put, FURTHER))
 
 
 def by_folds(at: Callable[[float], Point], start: Point, fold: float, low: float, high: float) -> Point:

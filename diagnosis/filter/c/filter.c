@@ -1,10 +1,12 @@
 /* Extended Kalman filter over a plant's equations, with the slopes of its whitened innovations by the parameters.
  *
  * The mean goes the kernel's way, with located friction and stops; the covariance and the slopes go by the Jacobians at the middle of
- * each step, second order in its length. The slopes leave out how the gain itself moves.
+ * each step, second order in its length, of which fast states get pieces. The slopes leave out how the gain itself moves.
  */
 #define LANES 1
 #include "lane.h"
+
+#include <string.h>
 
 #include "quick_exp.h"
 #define lane_exp quick_exp /* in the plant's equations below; where friction and stops act, events.c goes its own way */
@@ -17,6 +19,9 @@
 #define UNSURE 10.0 /* times what friction stops in a step, beyond which a speed's spread is no rest */
 #define PIECES_ALLOWED 200 /* of the motion between events, */
 #define PIECES_A_STEP 8    /* and for each step: a plant that rubs and rattles has some, one that makes no sense has no end of them */
+
+#define FASTEST 0.5     /* of a state's own time constant that a piece of a step may last, */
+#define MOST_PIECES 8.0 /* but for so many: beyond, nothing is left of it anyway */
 
 #define BLOCK 8    /* columns worked on at a time, so that they stay in registers */
 #define BLOCKS (MAX_COLUMNS / BLOCK)
@@ -301,17 +306,24 @@ static void move_slopes(filter_state *at, double h_s, const double *kept)
 }
 
 /* Half of a step's noise comes before its motion, so that it reaches the position within the step: else a very sure reading of a
- * position leaves the speed no freedom at all. What an axis at rest loses by its emptied row all comes after, so that instants more or
+ * position leaves the speed no freedom at all. So white noise of variance n on a speed would spread its position by n h^2 / 2 where it
+ * does by n h^2 / 3: the difference is taken off, h as the axis is carried on. What an axis at rest loses by its emptied row all comes after, so that instants more or
  * less change nothing; so does what noise with a memory loses, of which `kept` is left: (1 - kept^2) q / 2 rate in all. */
 static void stir(filter_state *at, const bool *rests, const double *kept, double *noise)
 {
     bool emptied[N] = {false};
-    for (int a = 0; a < N_AXES; a++)
+    double less[N] = {0.0};
+    for (int a = 0; a < N_AXES; a++) {
         emptied[AXIS_VELOCITY[a]] = rests[a];
+        const double carried = at->F[AXIS_POSITION[a]][AXIS_VELOCITY[a]], left = at->F[AXIS_VELOCITY[a]][AXIS_VELOCITY[a]];
+        if (!rests[a] && fabs(left) <= 1.0) /* else the step is too long for either */
+            less[AXIS_POSITION[a]] = noise[AXIS_VELOCITY[a]] * carried * carried / 6.0;
+    }
     for (int i = 0; i < N; i++)
         if (!emptied[i]) {
             noise[i] /= 1.0 + kept[i] * kept[i];
             at->P[i][i] += noise[i];
+            noise[i] -= less[i];
         }
 }
 
@@ -363,16 +375,16 @@ static void empty_rows(const bool *chosen, double *rows, int width)
             rows[AXIS_VELOCITY[a] * width + k] = 0.0;
 }
 
-static void advance(filter_state *at, int64_t step)
+/* One piece of a step, `share` of it, from t_s on. */
+static void advance(filter_state *at, int64_t step, double t_s, double h_s, double share)
 {
     filter_request *const r = at->request;
-    const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
     double x[N], middle[N], noise[N], kept[N], level[AXES] = {0.0}, sign[AXES];
     bool rests[AXES], held[AXES];
     step_stages seen;
     plant_body before = at->body;
     for (int i = 0; i < N; i++)
-        noise[i] = AWAKE(i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] : 0.0) : 0.0;
+        noise[i] = AWAKE(i) ? r->q[i] * h_s + (r->stir ? r->stir[step * N + i] * share : 0.0) : 0.0;
     forgetting(at, h_s, kept, noise);
     for (int a = 0; a < AXES; a++)
         sign[a] = 1.0;
@@ -415,10 +427,41 @@ static void advance(filter_state *at, int64_t step)
     }
     stir(at, rests, kept, noise);
     spread(at, noise);
-    if (r->F)
-        for (int i = 0; i < N; i++)
-            for (int k = 0; k < N; k++)
-                r->F[(step * N + i) * N + k] = at->F[i][k];
+}
+
+/* How many pieces a step is done in: as many as the fastest state, noise with a memory apart, needs for series that end at h^2. */
+static int pieces_of(const filter_state *at, double h_s)
+{
+    double fastest = 0.0;
+    for (int i = 0; i < N; i++)
+        if (AWAKE(i) && at->request->forget[i] == 0.0)
+            fastest = fmax(fastest, fabs(at->j.A[i * N + i]));
+    return (int)fmin(fmax(ceil(h_s * fastest / FASTEST), 1.0), MOST_PIECES);
+}
+
+/* F of the pieces done so far: that of the last times that of those before it. */
+static void keep_transition(const filter_state *at, double *F, bool is_first)
+{
+    double product[N * N];
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < N; k++) {
+            product[i * N + k] = is_first ? at->F[i][k] : 0.0;
+            for (int m = 0; !is_first && m < N; m++)
+                product[i * N + k] += at->F[i][m] * F[m * N + k];
+        }
+    memcpy(F, product, sizeof(product));
+}
+
+static void advance_to_next(filter_state *at, int64_t step)
+{
+    const filter_request *const r = at->request;
+    const double t_s = r->t_s[step], h_s = r->t_s[step + 1] - t_s;
+    const int pieces = pieces_of(at, h_s);
+    for (int piece = 0; piece < pieces; piece++) {
+        advance(at, step, t_s + piece * h_s / pieces, h_s / pieces, 1.0 / pieces);
+        if (r->F)
+            keep_transition(at, r->F + step * N * N, piece == 0);
+    }
 }
 
 /* Returns the number of instants done; fewer than asked when the state left all bounds, or rattles in nearly every step. */
@@ -433,7 +476,7 @@ int32_t filter_run(filter_request *request)
         measure(&at, step);
         events_settle(at.body.x, at.body.sign, at.body.move, request->t_s[step], at.u, at.c);
         if (step + 1 < request->steps)
-            advance(&at, step);
+            advance_to_next(&at, step);
         for (int i = 0; i < N; i++)
             if (!(fabs(at.body.x[i]) < 1e9))
                 return (int32_t)step;

@@ -11,7 +11,7 @@ from diagnosis.hypothesis.case import Case
 from records.log import RunLog
 from tests.diagnosis.arm import arm_case, arm_log
 
-EVERY = 8  # rows: 80 ms, a tenth of the fastest sine's period
+EVERY = 4  # rows: 40 ms, a twentieth of the fastest sine's period
 
 
 def sparse(log: RunLog) -> RunLog:

@@ -32,11 +32,17 @@ def log() -> RunLog:
 
 
 def test_they_are_found_with_size_and_time(log: RunLog) -> None:
-    # 2000 rows hold 330 times six rows: 4 % of the size, some 15 % of the time; rounding beside it, hence 15 % and 40 %.
+    # 2000 rows hold 330 times six rows: 4 % of the size, some 15 % of the time; the arm's own noise may stand for a part of both, so that
+    # twice these are hardly less likely: 25 % and 50 %, and no more than two nats between what is found and the truth.
     case = arm_case(log)
-    noise = nominal_fit(case).hypothesis.reading_noise["theta_rad"]
-    assert noise.sd == pytest.approx(SD_RAD, rel=0.15)
-    assert noise.time_s == pytest.approx(TIME_S, rel=0.4)
+    found = nominal_fit(case)
+    noise = found.hypothesis.reading_noise["theta_rad"]
+    assert noise.sd == pytest.approx(SD_RAD, rel=0.25)
+    assert noise.time_s == pytest.approx(TIME_S, rel=0.5)
+    true = replace(
+        found.hypothesis, reading_noise={"theta_rad": ReadingNoise(SD_RAD, TIME_S)}, process_noise=np.array([-2.0])
+    )
+    assert likelihood_of(case, true) < found.log_likelihood + 2.0
 
 
 def test_an_encoder_alone_has_none() -> None:
