@@ -144,6 +144,16 @@ class Linearisation:
         own = len(self.case.library.states)
         return target if target < own else target + self.filter.states - own
 
+    def seconds(self) -> NDArray[np.int64]:
+        """Where in w each second of each log begins."""
+        begins, first = [], 0
+        for flight, run in zip(self.case.flights, self.runs, strict=True):
+            since_s = flight.log.t_s - flight.log.t_s[0]
+            rows = np.flatnonzero(np.diff(np.floor(since_s), prepend=-1.0) > 0.0)
+            begins.append(first + rows * run.w.shape[1])
+            first += run.w.size
+        return np.concatenate(begins)
+
     def instants(self) -> Array:
         """The grid of instants of steps (k,), in s."""
         end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
