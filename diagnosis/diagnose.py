@@ -23,16 +23,14 @@ from diagnosis.detect.detection import detect, form_scores
 from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, straight
-from diagnosis.fit.coloured_noise import coloured_noise_of
-from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
-from diagnosis.fit.gauss_newton import fit
+from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.nominal import plain_fit, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
-from diagnosis.search.draughts import Draught, draught
+from diagnosis.search.draughts import Draught, beyond_noise, draught, without_gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -40,8 +38,6 @@ from records.diagnosis import Firmware
 from records.reasons import Decision, Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
-
-WHITE_ROUNDS = 6
 
 
 def diagnose(bound: BoundPlant, material: Material) -> Result:
@@ -54,8 +50,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     if not _in_their_rows(material.firmware):
         material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
-    seen = _as_white(seen)
-    seen, found = _explained(seen)
+    seen, found = _explained(_beside_noise(seen))
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
     beyond = retune(seen.case, seen.retuned.fit)
@@ -150,20 +145,16 @@ def _detected(case: Case, checked: Case | None) -> Seen:
     return Seen(case, checked, retuned, linearisation, tuple(score_tests), lossy, detection, rules)
 
 
-def _as_white(seen: Seen) -> Seen:
-    """The same from the plant that white noise alone drives: a torque that comes and goes follows any motion, so that beside it a name
-    would explain only what is fast. Whether there is a gap at all has been asked with it."""
-    case, effects = seen.case, seen.case.library.effects
-    hypothesis = seen.retuned.fit.hypothesis
-    kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
-    if len(kept) == len(hypothesis.effects):
+def _beside_noise(seen: Seen) -> Seen:
+    """The same from the plant without torques that come and go and are larger than noise is: those follow any motion, so that beside them a
+    name would explain only what is fast. Whether there is a gap at all has been asked with them."""
+    case, large = seen.case, beyond_noise(seen.case, seen.retuned.fit.hypothesis)
+    still = without_gusts(case, seen.retuned, large) if large else None
+    if still is None:
         return seen
-    found = fit(case, coloured_noise_of(case, hypothesis.with_effects(kept)), rounds=WHITE_ROUNDS)
-    if found is None:
-        return seen
-    linearisation = linearised(case, found)
+    linearisation = linearised(case, still.fit)
     score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
-    return replace(seen, retuned=as_fitted(case, found), linearisation=linearisation, score_tests=score_tests)
+    return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests)
 
 
 def _false_alarm(of: str, p: float) -> Decision:
@@ -201,8 +192,7 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     seen = seen.because(*rules)
     if case is seen.case:
         return seen, None
-    again = _detected(case, seen.checked)
-    again = _as_white(again) if _alarmed(again.detection.p) else again
+    again = _beside_noise(_detected(case, seen.checked))
     return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
 
 

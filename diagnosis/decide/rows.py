@@ -84,7 +84,7 @@ def misplaced(case: Case, fitted: Callable[[Case], Fit], ways: Sequence[int]) ->
 
     def gain_of(slip: Misplaced) -> float:
         fit = fitted_or_none(moved(short, slip), fitted)
-        return -np.inf if fit is None or is_strained(fit) else fit.log_posterior - usual.log_posterior
+        return -np.inf if fit is None or is_strained(case, fit) else fit.log_posterior - usual.log_posterior
 
     slips = list(_by_one_row(len(case.library.bound.model.inputs), ways))
     gains = thread_map(gain_of, slips)

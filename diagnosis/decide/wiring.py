@@ -12,6 +12,7 @@ from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
+from diagnosis.search.draughts import beyond_noise
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 
@@ -34,7 +35,7 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
     `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
     `where` says which logs they are.
     """
-    found = likelier_wiring(case, fitted) if is_strained(nominal) else None
+    found = likelier_wiring(case, fitted) if is_strained(case, nominal) else None
     if found is not None:
         wiring, gain = found
         raise BadInput(
@@ -60,15 +61,16 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = fit.log_posterior - usual.log_posterior
-    return (best, gain) if gain > decisions.WIRING_GAIN and not is_strained(fit) else None
+    return (best, gain) if gain > decisions.WIRING_GAIN and not is_strained(case, fit) else None
 
 
-def is_strained(fit: Fit) -> bool:
-    """Whether the plant as stated is far off the logs: in a parameter, or in what the process noise must do."""
+def is_strained(case: Case, fit: Fit) -> bool:
+    """Whether the plant as stated is far off the logs: in a parameter, or in what the noise must do."""
     hypothesis = fit.hypothesis
     return bool(
         np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
         or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.WIRING_NOISE
+        or beyond_noise(case, hypothesis)
     )
 
 

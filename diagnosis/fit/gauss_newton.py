@@ -251,7 +251,9 @@ def _is_definite(information: Array) -> bool:
 def unfitted(case: Case, noisy: Hypothesis) -> Fit | None:
     """The plant as stated with the noise of another hypothesis, no more known of it than its file says; None where it cannot follow the
     logs."""
-    start = fit(case, nominal_hypothesis(case, 0.0).with_noise_of(noisy), rounds=0)
+    gusts = {name: values for name, values in noisy.effects.items() if case.library.effects[name].is_noise}
+    stated = nominal_hypothesis(case, 0.0).with_noise_of(noisy)
+    start = fit(case, stated.with_effects({**stated.effects, **gusts}), rounds=0)
     if start is None:
         return None
     information, pull = np.zeros_like(start.information), np.zeros_like(start.pull)

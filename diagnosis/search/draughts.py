@@ -1,5 +1,6 @@
-"""Whether a torque that comes and goes is the whole gap: noise of the plant alone, told where it is more than a rig's usual."""
+"""Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from diagnosis import decisions
@@ -8,10 +9,11 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
 from sim.effect import Role
 
-QUIET_ROUNDS = 4
+STILL_ROUNDS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,22 +26,36 @@ class Draught:
 
 def draught(case: Case, retuned: FittedHypothesis) -> tuple[Draught | None, tuple[Decision, ...]]:
     """The strongest gust of the plant's noise, `retuned` within its spread, where it is worth telling; and the rule that says so."""
-    library, hypothesis = case.library, retuned.fit.hypothesis
-    shares = {
-        name: hypothesis.effects[name][library.effects[name].symbol(Role.STRENGTH)]
-        / library.bound.model.places.axes[library.effects[name].place].torque_size
-        for name in hypothesis.effects
-        if library.effects[name].is_noise
-    }
+    shares = gust_shares(case, retuned.fit.hypothesis)
     if not shares:
         return None, ()
     name = max(shares, key=lambda name: shares[name])
     told = shares[name] >= decisions.DRAUGHT
     rule = decided("draught", name, shares[name], decisions.DRAUGHT, "a gust" if told else "usual noise")
-    if not told:
+    quiet = without_gusts(case, retuned, [name]) if told else None
+    if quiet is None:
         return None, (rule,)
-    still = hypothesis.with_effects({other: v for other, v in hypothesis.effects.items() if other != name})
-    found = fit(case, coloured_noise_of(case, still), rounds=QUIET_ROUNDS)
-    if found is None:
-        return None, (rule,)
-    return Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), as_fitted(case, found)), (rule,)
+    return Draught(FittedHypothesis((name,), retuned.fit, retuned.evidence), quiet), (rule,)
+
+
+def beyond_noise(case: Case, hypothesis: Hypothesis) -> list[str]:
+    """The torques that come and go and are larger than noise is: part of the gap."""
+    return [name for name, share in gust_shares(case, hypothesis).items() if share > decisions.USUAL_GUST]
+
+
+def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
+    """The standard deviation of each torque that comes and goes, as a share of its axis' usual torque."""
+    effects, axes = case.library.effects, case.library.bound.model.places.axes
+    return {
+        name: hypothesis.effects[name][effects[name].symbol(Role.STRENGTH)] / axes[effects[name].place].torque_size
+        for name in hypothesis.effects
+        if effects[name].is_noise
+    }
+
+
+def without_gusts(case: Case, fitted: FittedHypothesis, names: Collection[str]) -> FittedHypothesis | None:
+    """The same fitted without some of its torques that come and go; None where the plant cannot follow its logs then."""
+    hypothesis = fitted.fit.hypothesis
+    still = hypothesis.with_effects({name: v for name, v in hypothesis.effects.items() if name not in names})
+    found = fit(case, coloured_noise_of(case, still), rounds=STILL_ROUNDS)
+    return None if found is None else as_fitted(case, found)

@@ -12,7 +12,8 @@ from diagnosis.detect.instants import happens
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import nominal_fit, plain_fit
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.result import Result
 from diagnosis.validate.score import Score
@@ -91,7 +92,7 @@ def supposing(effects: dict[str, dict[str, float]]) -> FittedHypothesis:
 def rubbing() -> FittedHypothesis:
     """The arm as fitted to a run that rubs."""
     case = arm_case(arm_log(RUB, seed=32))
-    found: Fit | None = fit(case, nominal_fit(case).hypothesis.with_effects(RUB))
+    found: Fit | None = fit(case, with_process_noise(case, plain_fit(case).hypothesis.with_effects(RUB)))
     assert found is not None
     return FittedHypothesis(tuple(RUB), found, 1.0)
 
