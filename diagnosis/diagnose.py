@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.answer import gap, no_gap
 from diagnosis.decide.calibration import calibrated
-from diagnosis.decide.consequence import consequence
+from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, early_note
@@ -214,6 +214,8 @@ def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None
     seen = seen.because(*found.decisions)
     left, weighed = _weighed(seen, found, beyond)
     seen = seen.because(*weighed.decisions)
+    weighed, rules = without_idle(seen.case, weighed, found.fitted)
+    seen = seen.because(*rules)
     seen, holdout = _checked(seen, material, weighed.fitted[0].effects if weighed.fitted else ())
     weighed, told, rules = _favoured(holdout, weighed, found.fitted[0].evidence - retuned.evidence, left)
     doubts = doubt(seen.case, found, weighed, material.names)

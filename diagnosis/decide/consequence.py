@@ -1,11 +1,14 @@
-"""Whether a gap matters: some thousand rows make any small thing certain, and one that changes no prediction is none to an engineer."""
+"""Whether a gap matters, and each effect of a name: some thousand rows make any small thing certain, and what changes no prediction is
+nothing to an engineer."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
+from diagnosis.decide.weighing import Weighed
 from diagnosis.decisions import decided
 from diagnosis.fit.evidence import FittedHypothesis
 from diagnosis.hypothesis.case import Case
@@ -34,6 +37,48 @@ def consequence(case: Case, plain: FittedHypothesis, tried: Sequence[FittedHypot
     of = " + ".join(tried[gains.index(best)].effects) or "parameters"
     outcome = "matters" if best >= decisions.MATTERS else "no gap: too small to matter"
     return (decided("matters", of, best, decisions.MATTERS, outcome),)
+
+
+def without_idle(
+    case: Case, weighed: Weighed, tried: Sequence[FittedHypothesis]
+) -> tuple[Weighed, tuple[Decision, ...]]:
+    """What was weighed, without effects that predict the logs no better: the probability of a name goes to the likeliest of all that were
+    `tried` with one effect less, as long as that predicts as well; and the rules."""
+    judged: dict[FittedHypothesis, Errors] = {}
+    shares, rules = dict(zip(weighed.fitted, weighed.probabilities, strict=True)), list[Decision]()
+    for entry in sorted(shares, key=lambda entry: -len(entry.effects)):
+        while entry in shares and shares[entry] >= decisions.LEAST_PREFERRED:
+            fewer = _one_less(entry, tried)
+            if fewer is None:
+                break
+            own, other = (_errors(case, one, judged) for one in (entry, fewer))
+            gain = score(own, other).gain
+            left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
+            idle = gain < decisions.MATTERS
+            outcome = f"{left} is left out" if idle else f"{left} matters"
+            rules.append(decided("each_matters", " + ".join(entry.effects), gain, decisions.MATTERS, outcome))
+            if not idle:
+                break
+            shares[fewer] = shares.get(fewer, 0.0) + shares.pop(entry)
+            entry = fewer
+    ranked = sorted(shares, key=lambda entry: -shares[entry])
+    return replace(weighed, fitted=tuple(ranked), probabilities=tuple(shares[one] for one in ranked)), tuple(rules)
+
+
+def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> FittedHypothesis | None:
+    """The likeliest that was tried with all effects but one of it; None of a single effect."""
+    fewer = [
+        other
+        for other in tried
+        if len(other.effects) == len(entry.effects) - 1 > 0 and set(other.effects) < set(entry.effects)
+    ]
+    return max(fewer, key=lambda other: other.evidence, default=None)
+
+
+def _errors(case: Case, entry: FittedHypothesis, judged: dict[FittedHypothesis, Errors]) -> Errors:
+    if entry not in judged:
+        judged[entry] = errors_of(case, entry.fit.hypothesis, lambda hypothesis: _all(case, hypothesis))
+    return judged[entry]
 
 
 def _all(case: Case, hypothesis: Hypothesis) -> list[Array]:

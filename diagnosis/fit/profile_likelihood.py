@@ -18,7 +18,7 @@ from jobs.thread_map import thread_map
 
 MOST_STEPS = 12
 LITTLE_PROMISED = 0.1  # nats
-FURTHER = 0.7  # of the way that all numbers went together, at first
+AGAIN_AS_FAR = 0.7  # of the way that all numbers went together, at first
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ def along_each(case: Case, hypothesis: Hypothesis, value: float, numbers: Sequen
             hypothesis = number.put(hypothesis, y + share * (y - x))
         return hypothesis
 
-    return along(case, hypothesis, value, Number(lambda _: 0.0, put, FURTHER))
+    return along(case, hypothesis, value, Number(lambda _: 0.0, put, AGAIN_AS_FAR))
 
 
 def by_folds(at: Callable[[float], Point], start: Point, fold: float, low: float, high: float) -> Point:

@@ -1,10 +1,15 @@
 """A gap matters by what its explanation predicts, not by how certain many rows make it."""
 
-from diagnosis.decide.consequence import consequence
+import pytest
+
+from diagnosis.decide.consequence import consequence, without_idle
+from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from tests.diagnosis.arm import arm_case, arm_log
 
 
@@ -32,3 +37,31 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
 def test_what_was_not_tried_is_not_asked() -> None:
     case = arm_case(arm_log(seed=76))
     assert consequence(case, as_fitted(case, nominal_fit(case)), []) == ()
+
+
+def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:
+    """A fit of effects with the noise that then remains."""
+    found = fit(case, nominal_hypothesis(case, -1.5).with_effects(effects))
+    assert found is not None
+    ended = fit(case, with_process_noise(case, found.hypothesis))
+    assert ended is not None
+    return as_fitted(case, ended)
+
+
+def test_an_effect_that_predicts_no_better_is_left_out_and_one_that_does_stays() -> None:
+    # Truth: dry friction and a scale of the sensor that is off by a thousandth, which no prediction shows.
+    rub, idle = {"arm.coulomb": {"b": 4e-4}}, {"theta_sensor.scale": {"scale": 1.001}}
+    case = arm_case(arm_log({**rub, **idle}, seed=76))
+    both, alone, other = (settled(case, effects) for effects in ({**rub, **idle}, rub, idle))
+    weighed = Weighed((both, alone), (0.7, 0.2), 0.1, 0.0, 10.0)
+    found, (rule,) = without_idle(case, weighed, [alone, other, both])
+    assert [entry.effects for entry in found.fitted] == [("arm.coulomb",)]
+    assert found.probabilities == pytest.approx((0.9,))
+    assert found.unknown == 0.1
+    assert rule.value is not None
+    assert rule.value < 0.05
+    kept, rules = without_idle(
+        case, weighed, [other, both]
+    )  # nothing else was tried with one effect less: the friction would be missed
+    assert kept.fitted == weighed.fitted
+    assert [one.outcome for one in rules] == ["arm.coulomb matters"]
