@@ -8,9 +8,11 @@ from records.law_table import FlownTable
 from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
+from sim.columns import log_columns
 from sim.halving import StepError, step_error
 from sim.loop import fly, fly_law
-from sim.manoeuvres import flight
+from sim.manoeuvres import flight, stir
+from sim.simulate import simulate
 from sim.tracking import Tracking, tracking
 from twinlaw.cli.console import stage
 from verification.flown_law import FlownLaw
@@ -35,6 +37,16 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
         else:
             log = fly(bound, loading.row_of(table).float_law(table), whole, table_digest=table.digest)
     return ChainFlight(log, tracked(log), {})
+
+
+def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
+    """A run of the plant without a loop, every input changed in steps, and the error of its integration."""
+    moved = stir(bound)
+    with stage("stirring the plant without a loop"):
+        run = simulate(bound, moved.t_s, moved.x0, moved.u, keep="y")
+        error = step_error(bound, moved.t_s, moved.x0, moved.u)
+    assert run.y is not None
+    return RunLog(log_columns(bound.model), float(moved.t_s[1]), "open", moved.t_s, moved.u, run.y), error
 
 
 def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlight:

@@ -23,7 +23,7 @@ from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
-from records.plant import Plant, load_plant, plant_text
+from records.plant import Plant, load_plant, save_plant
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
 from twinlaw.cli import console, options
@@ -65,7 +65,7 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
             if plant.model == LATERAL
             else _operating_point(chosen, holdout, bind(plant), so_far.told)
         )
-    write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
+    save_plant(chosen.out / "plant.toml", found.result.plant)
     write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
     plots = pictures(found)
     page = frequency_page(found, plots)
