@@ -18,6 +18,7 @@ from records.text.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
 PLANTS = Path(__file__).resolve().parent.parent / "plants"  # what the project comes with
+OWN_NAME = "plant.toml"  # of every plant in a folder of its own: it is called by its equations
 Value = float | tuple[float, ...]
 
 
@@ -86,7 +87,9 @@ def load_plant(path: Path) -> Plant:
     Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
     """
     missing = f"name yours with --plant, or one of {PLANTS}"
-    return parse_plant(read_toml(path, "plant file", missing), path.stem, str(path), path.parent)
+    content = read_toml(path, "plant file", missing)
+    own = str(content.get("equations", "")).removesuffix(".py")
+    return parse_plant(content, own if own and path.name == OWN_NAME else path.stem, str(path), path.parent)
 
 
 def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path = Path()) -> Plant:
@@ -128,7 +131,7 @@ def read_equations(content: Mapping[str, Any], where: str, folder: Path) -> Equa
     return Equations(file, read_text(folder / file, "equations", beside), str(folder))
 
 
-def plant_files(plant: Plant, name: str = "plant.toml") -> Mapping[str, str]:
+def plant_files(plant: Plant, name: str = OWN_NAME) -> Mapping[str, str]:
     """The plant's file, called `name`, and that of its own equations beside it where it has them: name -> text."""
     own = {} if plant.equations is None else {plant.equations.file: plant.equations.text}
     return {**own, name: plant_text(plant)}

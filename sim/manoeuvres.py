@@ -134,7 +134,7 @@ class Stir:
 
 def stir(bound: BoundPlant, sample_period_s: float = 0.01) -> Stir:
     """Steps of every input about where the plant rests, or, where nothing drives it, a start away from there."""
-    t_s = np.arange(round(STIR_S / sample_period_s) + 1) * sample_period_s
+    t_s = np.asarray(np.arange(round(STIR_S / sample_period_s) + 1) * sample_period_s, dtype=float)
     x0, u0 = _rest(bound)
     u = np.tile(u0, (t_s.size, 1))
     for column, variable in enumerate(bound.model.inputs):

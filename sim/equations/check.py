@@ -73,7 +73,8 @@ def _kinds(model: Model, equations: Equations) -> Iterator[Slip]:
 
 def _is_expression(value: Any) -> bool:
     try:
-        return isinstance(sympy.sympify(value, strict=True), sympy.Expr)
+        expression = sympy.sympify(value, strict=True)
+        return isinstance(expression, sympy.Expr) and not expression.is_Matrix
     except (sympy.SympifyError, AttributeError, TypeError):
         return False
 
