@@ -1,6 +1,5 @@
 """Equations of one's own: a file beside the plant file, every slip of which is told with its line."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
