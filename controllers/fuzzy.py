@@ -85,7 +85,13 @@ class Fuzzy:
     AxisState = FuzzyState
 
     def axis_rest(
-        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        reference_rad: N,
+        angle_rad: N,
+        schedule_rad: N,
     ) -> FuzzyState[N]:
         """The filters at the angle."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)

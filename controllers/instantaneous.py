@@ -85,9 +85,11 @@ class Instantaneous:
 
     AxisState = AxisState
 
-    def axis_rest(self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any) -> Any:
+    def axis_rest(
+        self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any, schedule_rad: Any
+    ) -> Any:
         """As the scheduled law's."""
-        return SCHEDULED.axis_rest(law, axis, arithmetic, reference_rad, angle_rad)
+        return SCHEDULED.axis_rest(law, axis, arithmetic, reference_rad, angle_rad, schedule_rad)
 
     def axis_step(self, law: Any, axis: Any, arithmetic: Any, state: Any, sample: Sample[Any]) -> tuple[Any, Any]:
         """Design at the measured elevation, then differences of the error, v, the limits."""

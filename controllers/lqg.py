@@ -78,14 +78,21 @@ class Lqg:
     AxisState = LqgState
 
     def axis_rest(
-        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        reference_rad: N,
+        angle_rad: N,
+        schedule_rad: N,
     ) -> LqgState[N]:
-        """The rotor still, the arm at rest, nothing missing."""
+        """The operating point at this elevation: the rotor at the speed that holds the arm there, the arm at rest, nothing missing."""
         limit_rad = axis.gains.angle_max_rad
+        rest_V = polynomial(axis.feedforward_V, schedule_rad, law.zero)
         return LqgState(
             reference_rad,
             reference_rad,
-            law.zero,
+            arithmetic.saturate(rest_V, axis.u_min_V, axis.u_max_V, law.zero),
             arithmetic.clamp(angle_rad, -limit_rad, limit_rad),
             law.zero,
             law.zero,

@@ -56,7 +56,13 @@ class Pid:
     AxisState = PidState
 
     def axis_rest(
-        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        reference_rad: N,
+        angle_rad: N,
+        schedule_rad: N,
     ) -> PidState[N]:
         """The filters at the angle, nothing integrated."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)

@@ -25,6 +25,7 @@ from records.table import ControllerTable
 from records.verification import Verification
 from rig.programming.image import build_firmware
 from sim.bind import BoundPlant
+from twinlaw.cli.options import plant_file
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.designing import Designed, design_other_on, design_plant, table_poles
 from twinlaw.workflows.chain.flying import fly_double, fly_host, stirred
@@ -43,8 +44,8 @@ FLYING = ("board", "host", "double")
 
 
 def load(path: str | Path) -> BoundPlant:
-    """A plant file, with its equations."""
-    return load_bound(Path(path))
+    """A plant file, with its equations; `plants/NAME.toml` is the project's own where the current folder has none."""
+    return load_bound(plant_file(str(path)))
 
 
 def design(plant: BoundPlant, arithmetic: str = "float32") -> Designed:

@@ -77,7 +77,8 @@ def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
 def test_the_equations_of_the_page_keep_the_project_s_style(tmp_path: Path) -> None:
     source = next(block.text for block in blocks() if block.file and block.file.endswith(".py"))
     ruff = [str(Path(sys.executable).parent / "ruff"), "--config", str(ROOT / "pyproject.toml")]
-    path = tmp_path / "dc_motor.py"
+    path = tmp_path / "sim" / "plants" / "dc_motor.py"  # where Ruff takes `sim` for one package with the file
+    path.parent.mkdir(parents=True)
     path.write_text(source, encoding="utf-8")
     run([ruff[0], "format", "--check", *ruff[1:], str(path)], ROOT)
     run([ruff[0], "check", *ruff[1:], str(path)], ROOT)
