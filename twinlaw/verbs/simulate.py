@@ -16,6 +16,7 @@ from records.log import save_log
 from records.text.units import unit_of
 from sim.bind import BoundPlant
 from sim.halving import StepError
+from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
@@ -50,10 +51,13 @@ def run(chosen: argparse.Namespace) -> int:
     error = halved_step(bound, table)
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)
+    gone = left(flight.tracking)
     if chosen.json:
-        facts = {"log": str(path), "table_digest": table.digest, **_error_facts(bound, error)}
+        facts = {"log": str(path), "table_digest": table.digest, "left": list(gone), **_error_facts(bound, error)}
         print(json.dumps(facts | tracking_facts(flight.tracking)))
     else:
+        if gone:
+            print(f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
         print(f"\n{_error_told(bound, error)}\n{path}")
     return 0

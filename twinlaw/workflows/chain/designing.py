@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from controllers import loading
+from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
@@ -59,6 +60,8 @@ def design_other_on(bound: BoundPlant, name: str, where: str = "") -> LawTable[A
     row = CONTROLLERS[name]
     with stage(f"designing {row.title}"), _computable(where or bound.plant.name):
         table: LawTable[Any] = row.design(bound, read_settings(bound))
+        if isinstance(table, LawTable):  # the scheduled law's margins are judged where it is designed
+            demand_settling(bound, table, row.float_law(table), row.plants)
     return table
 
 
