@@ -14,6 +14,7 @@ from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import DesignSettings
 from records.errors import BadInput
+from records.loops import LOOPS
 from records.plant import plant_digest
 from records.table import AXES, AxisLaw, ControllerTable
 from sim.added_effects import linear_part, without_effects
@@ -23,7 +24,7 @@ from sim.equilibrium import OperatingPoint
 Array = NDArray[np.float64]
 
 LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
-SENSORS = {"elevation": "psi_rad", "azimuth": "phi_rad"}
+SENSORS = {loop.axis: loop.output for loop in LOOPS}
 
 
 def design(
