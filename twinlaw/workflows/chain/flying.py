@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from controllers import loading
+from design.structure import demand_helicopter
 from records.law_table import FlownTable
 from records.log import RunLog
 from records.table import ControllerTable
@@ -29,7 +30,8 @@ class ChainFlight:
 
 
 def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
-    """Fly the plant under the table's law in double precision."""
+    """Fly the plant under the table's law in double precision; raises BadInput for a plant without a helicopter's columns."""
+    demand_helicopter(bound)
     whole = flight(bound, table.sample_period_s)
     with stage("flying the law in double precision"):
         if isinstance(table, ControllerTable):
@@ -50,7 +52,8 @@ def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
 
 
 def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlight:
-    """Fly the plant under the table's generated law, compiled for this computer."""
+    """Fly the plant under the table's generated law, compiled for this computer; raises BadInput as `fly_double` does."""
+    demand_helicopter(bound)
     law = HostLaw(loading.generate(table, arithmetic), arithmetic)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
