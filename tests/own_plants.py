@@ -100,7 +100,7 @@ RATE_ONLY = OwnPlant(
         'sensors={"gyro": SensorPlace("omega_rad_s", "rad s^-1")}',
     ),
 )
-NO_PLACES = OwnPlant(ARM, ENCODER, _ARM[: _ARM.index("    places=")].replace('"b"] * omega', '"b"] * omega') + ")\n")
+NO_PLACES = OwnPlant(ARM, ENCODER, _ARM[: _ARM.index("    places=")] + ")\n")
 NO_AXIS_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "AxisPlace" not in line))
 NO_SENSOR_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "SensorPlace" not in line))
 NO_LIMITS = OwnPlant(ARM, ENCODER, _ARM.replace("input_limits={u: (-10, 10)}", "input_limits={}"))
