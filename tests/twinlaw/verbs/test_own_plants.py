@@ -16,7 +16,7 @@ from twinlaw.command import main
 
 # What each rig has and its plant file has not; where nothing is said, the arm rubs.
 RIGS = {"coil": "input.deadzone", "two_axes": "post.coulomb", "no_rotors": "post.coulomb", "elastic": "motor.coulomb"}
-SIZES = {"deadzone": {"d": 1.0}, "coulomb": {"b": 0.03}}
+SIZES = {"deadzone": 1.0, "coulomb": 0.03}  # V and N m
 
 
 def simulated(name: str, folder: Path) -> Path:
@@ -51,7 +51,8 @@ def test_what_a_rig_has_and_its_plant_has_not_is_a_gap(name: str, tmp_path: Path
     plant = WORKING[name].write(tmp_path, f"my_{name}")
     bound = bind(load_plant(plant))
     effect = RIGS.get(name, "arm.coulomb")
-    given = {symbol: SIZES[effect.split(".")[1]][symbol] for symbol in library(bound)[effect].parameter}
+    found = library(bound)[effect]
+    given = {entry.symbol: SIZES[found.kind] if entry.is_size else entry.reference for entry in found.parameters}
     save_plant(tmp_path / "rig" / "plant.toml", with_effects(bound, {effect: given}).plant)
     assert main(["simulate", "--plant", str(tmp_path / "rig" / "plant.toml"), "--out", str(tmp_path / "run")]) == 0
     log = str(tmp_path / "run" / "simulation.csv")
