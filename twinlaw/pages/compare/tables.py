@@ -10,7 +10,17 @@ from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
-MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
+MERIT_HEADING: Row = (
+    "controller",
+    "overshoot",
+    "settling",
+    "steady error",
+    "largest error",
+    "IAE",
+    "swing",
+    "travel",
+    "reversals",
+)
 SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
 EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
 
@@ -85,6 +95,7 @@ def _merit(merit: Merit) -> Row:
         f"{math.degrees(merit.iae_rad_s):.0f} deg s",
         f"{merit.swing_V:.2f} V",
         f"{merit.travel_V_s:.2f} V/s",
+        f"{merit.reversals_1_s:.1f} /s",
     )
 
 

@@ -74,8 +74,8 @@ def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, in
         (
             "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
             "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
-            "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; the last "
-            "column is how far the other axis' steps push it out of rest.",
+            "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
+            "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round.",
             f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),

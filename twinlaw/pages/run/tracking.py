@@ -8,11 +8,21 @@ from typing import Any
 from sim.tracking import Tracking
 from twinlaw.pages.page import Row
 
-TRACKING_HEADING: Row = ("tracking", "holds", "overshoot", "steady error", "mean |error|", "pushed by the other axis")
+TRACKING_HEADING: Row = (
+    "tracking",
+    "holds",
+    "overshoot",
+    "steady error",
+    "mean |error|",
+    "pushed by the other axis",
+    "input",
+    "travel",
+    "reversals",
+)
 
 
 def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
-    """One row per output: the worst overshoot, the worst mean error at rest, the mean error, how far the other axis pushes it."""
+    """One row per output: worst overshoot, worst mean error at rest, mean error, push of the other axis; its input's activity."""
     return [
         (
             entry.output,
@@ -21,6 +31,9 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             f"{math.degrees(entry.steady_error_rad):.3f} deg",
             f"{math.degrees(entry.mean_error_rad):.2f} deg",
             f"{math.degrees(entry.push_rad):.2f} deg",
+            entry.input,
+            f"{entry.activity.travel_V_s:.2f} V/s",
+            f"{entry.activity.reversals_1_s:.1f} /s",
         )
         for entry in tracking
     ]
