@@ -5,8 +5,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from records.quality import OVERSHOOT, STEADY_ERROR, Look, Quality
 from sim.tracking import Tracking
 from twinlaw.pages.page import Row
+from twinlaw.pages.quality import colour_of
 
 TRACKING_HEADING: Row = (
     "tracking",
@@ -18,6 +20,7 @@ TRACKING_HEADING: Row = (
     "input",
     "travel",
     "reversals",
+    "",
 )
 
 
@@ -34,9 +37,25 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             entry.input,
             f"{entry.activity.travel_V_s:.2f} V/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
+            colour_of(tracking_looks(entry)),
         )
         for entry in tracking
     ]
+
+
+def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
+    """What of one output's flight is judged; an output without a hold has nothing to judge."""
+    if not entry.holds:
+        return ()
+    return (
+        OVERSHOOT.look(entry.output, 100.0 * entry.overshoot),
+        STEADY_ERROR.look(entry.output, math.degrees(entry.steady_error_rad)),
+    )
+
+
+def flight_quality(tracking: Sequence[Tracking], further: Sequence[Look] = ()) -> Quality:
+    """Of a flight, all outputs together, and what else was looked at."""
+    return Quality((*(look for entry in tracking for look in tracking_looks(entry)), *further))
 
 
 def tracking_facts(tracking: Sequence[Tracking]) -> dict[str, Any]:
