@@ -81,11 +81,7 @@ class Identification:
         return (f"{', '.join(self.unfinished)}: {INTERRUPTED}, without interval",)
 
     def _unidentified(self) -> tuple[str, ...]:
-        poor = [
-            f"{entry.name} ({entry.by_data:.3g}, sd {_share(entry)})"
-            for entry in self.estimates
-            if not entry.identified
-        ]
+        poor = [f"{entry.name} (sd {_share(entry)})" for entry in self.estimates if not entry.identified]
         if not poor:
             return ()
         remedy = "free fewer of them (--free), or add experiments that tell them apart"
