@@ -56,19 +56,14 @@ def _median_and_worst(offs: Sequence[float]) -> str:
     return f"median {100.0 * np.median(offs):.2g} %, worst {100.0 * max(offs):.2g} %" if offs else ""
 
 
-def matrices(entry: ConditionResult | Interpolated) -> tuple[Table, ...]:
-    """A and B per sample, C and D, of one condition; each folded."""
-    state, output, name = entry.model.state, entry.model.output, entry.condition.name
-    x, u, y = map(_with_units, (STATES, INPUTS, OUTPUTS))
-    parts = (("A", state.A, x, x), ("B", state.B, x, u), ("C", output.C, y, x), ("D", output.D, y, u))
-    return tuple(
-        Table(
-            [(row, *(f"{value:.4g}" for value in line)) for row, line in zip(rows, matrix.tolist(), strict=True)],
-            (letter, *columns),
-            f"{name}: {letter}" + (f", per sample of {state.sample_period_s:g} s" if letter in "AB" else ""),
-        )
-        for letter, matrix, rows, columns in parts
-    )
+def matrices(entry: ConditionResult | Interpolated) -> Table:
+    """A and B per sample over C and D of one condition, as one folded table."""
+    state, output = entry.model.state, entry.model.output
+    whole = np.block([[state.A, state.B], [output.C, output.D]])
+    names = [*(f"next {name}" for name in _with_units(STATES)), *_with_units(OUTPUTS)]
+    rows = [(name, *(f"{value:.3g}" for value in line)) for name, line in zip(names, whole.tolist(), strict=True)]
+    heading = (f"per {state.sample_period_s:g} s", *_with_units(STATES), *_with_units(INPUTS))
+    return Table(rows, heading, f"{entry.condition.name}: A, B, C, D")
 
 
 def _with_units(names: Sequence[str]) -> tuple[str, ...]:

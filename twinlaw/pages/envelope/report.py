@@ -155,13 +155,13 @@ def _models(found: Study, modes: Sequence[Mode]) -> Section:
         "Modes, and A, B, C and D by condition",
         (
             f"The slowest oscillation, the phugoid, and the fastest, the Dutch roll, as eigenvalues.{beside}",
-            "x' = A x + B u per sample, y = C x + D u, all of deviations from trim; an element's unit is that of its row over that of its "
-            "column. Each matrix opens at a click.",
+            "The next x is A x + B u, a sample later, and y = C x + D u, all of deviations from trim; an element's unit is that of its row "
+            "over that of its column. The matrices of each condition, A B over C D, open at a click.",
         ),
         (
             *([models.modes_off(modes)] if known else []),
             *([models.modes(modes)] if modes else []),
-            *(table for entry in everything for table in models.matrices(entry)),
+            *(models.matrices(entry) for entry in everything),
         ),
         (models.modes_plot(modes),) if modes else (),
     )

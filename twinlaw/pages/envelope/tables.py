@@ -111,9 +111,9 @@ def conditions(found: Study) -> Table:
         )
     most = max((len(row) for row in rows), default=0)
     padded = [(*row[:-3], *[""] * (most - len(row)), *row[-3:]) for row in rows]
-    validations = ["validation 1 [%]" if number == 0 else f"{number + 1} [%]" for number in range(most - 8)]
-    radii = ("radius, open", "radius, closed")
-    heading = ("condition", "row chosen", *radii, "identification [%]", *validations, "held 3 s", "worst signal", "")
+    validations = ["valid. 1 [%]" if number == 0 else f"{number + 1} [%]" for number in range(most - 8)]
+    radii = ("radius, open", "closed")
+    heading = ("condition", "row", *radii, "ident. [%]", *validations, "held 3 s", "worst", "")
     return Table(padded, heading)
 
 
