@@ -41,7 +41,7 @@ def identify_page(
     """The whole page; `further` sections come last, and the `truth` beside the estimates where it is known."""
     told = sum(entry.identified for entry in result.estimates)
     quality = identification_quality(result, truth or {})
-    sections = [_estimates(result, truth), _correlation(result), _fits(result)]
+    sections = [_estimates(result, truth), *_correlation(result), *_fits(result)]
     by_kind = {experiment.kind: experiment for experiment in experiments}
     sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
     if "gravity" in by_kind:
@@ -67,22 +67,25 @@ def _estimates(result: Identification, truth: Mapping[str, float] | None) -> Sec
     return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))
 
 
-def _correlation(result: Identification) -> Section:
+def _correlation(result: Identification) -> list[Section]:
     """The pairs that hang together most; the whole matrix is in plant.toml."""
     matrix, names = result.belief.correlation, result.belief.names
     pairs = [(abs(matrix[i, j]), names[i], names[j], matrix[i, j]) for i in range(len(names)) for j in range(i)]
     rows = [(a, b, f"{value:+.3f}") for _, a, b, value in sorted(pairs, key=lambda pair: -pair[0])[:12]]
     sentence = "Pairs whose errors hang together most: only a combination of such two is known well. The whole matrix is in plant.toml."
-    return Section("Correlation", (sentence,), (Table(rows, ("parameter", "parameter", "correlation")),))
+    return (
+        [Section("Correlation", (sentence,), (Table(rows, ("parameter", "parameter", "correlation")),))] if rows else []
+    )
 
 
-def _fits(result: Identification) -> Section:
+def _fits(result: Identification) -> list[Section]:
+    """Every channel that has readings enough to be judged."""
     sentence = (
-        "rms of what is left, beside what the sensor's rounding alone leaves; fit = 1 - |y - prediction| / |y - mean|. "
+        "rms of what is left, beside what the sensor's rounding and noise alone leave; fit = 1 - |y - prediction| / |y - mean|. "
         "Readings that are more correlated than their rounding explains count for fewer samples in the intervals."
     )
     rows = [*fit_rows(result.stages), *held_out_rows(result.holdout)]
-    return Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))
+    return [Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))] if rows else []
 
 
 def _rotor(bound: BoundPlant, experiment: Experiment, result: Identification) -> Section:
