@@ -16,9 +16,9 @@ from design.margins import Margins, margins
 from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
 from design.operating_points import DesignPoints, equilibria
 from design.rounding import FLOAT32, Rounding
-from design.schedule import FitError, evaluate, fit_error, schedule_of
+from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
 from design.settings import DesignSettings
-from records.table import AXES, BothAxes, ControllerTable
+from records.table import AXES, BothAxes, ControllerTable, Polynomial
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
@@ -32,6 +32,8 @@ class AxisReport:
 
     `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, 6); `margins` and `controller_radius`, the largest |z| of the
     controller's own poles, belong to the table as its arithmetic rounds it, as it flies. `largest_q_V_rad` is that of eq (22).
+    `designs` and `operating_V` (points,) are the feedback and the voltage at each operating point, `schedule` and `feedforward_V` the
+    polynomials fitted to them.
     """
 
     axis: str
@@ -41,6 +43,10 @@ class AxisReport:
     condition: float
     fit_error: FitError
     feedforward_error_V: float
+    designs: tuple[DeltaForm, ...]
+    operating_V: Array
+    schedule: Schedule
+    feedforward_V: Polynomial
     poles_fitted_rad_s: Poles
     poles_flown_rad_s: Poles
     designed_slowest_rad_s: float
@@ -67,12 +73,13 @@ class AxisReport:
 class DesignReport(BothAxes[AxisReport]):
     """Both axes over the elevations psi_rad (angles,): the operating points and at least 200 angles between them.
 
-    `arithmetic` is that of the law that flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of both its loops closed on the
-    whole plant, and `coupled` its worst.
+    points_rad (points,) are the operating points alone. `arithmetic` is that of the law that flies; `coupled_slowest_rad_s` (angles,) is
+    the slowest pole of both its loops closed on the whole plant, and `coupled` its worst.
     """
 
     arithmetic: str
     psi_rad: Array
+    points_rad: Array
     elevation: AxisReport
     azimuth: AxisReport
     coupled_slowest_rad_s: Array
@@ -109,7 +116,13 @@ def make_report(
     elevation, azimuth = (_axis_report(survey, axis) for axis in AXES)
     poles = _coupled(survey)
     return DesignReport(
-        rounding.name, psi_rad, elevation, azimuth, np.max(poles.real, axis=1), slowest_of(psi_rad, poles)
+        rounding.name,
+        psi_rad,
+        points.psi_rad,
+        elevation,
+        azimuth,
+        np.max(poles.real, axis=1),
+        slowest_of(psi_rad, poles),
     )
 
 
@@ -164,6 +177,10 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
         condition=max(design.placement.condition for design in designs),
         fit_error=fit_error(scheduled.grid_rad, scheduled.designs, scheduled.schedule),
         feedforward_error_V=_feedforward_error_V(survey, axis),
+        designs=scheduled.designs,
+        operating_V=_operating_V(survey, axis),
+        schedule=scheduled.schedule,
+        feedforward_V=survey.table.axis(axis).feedforward_V,
         poles_fitted_rad_s=fitted,
         poles_flown_rad_s=rounded,
         designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.poles_rad_s),
@@ -176,8 +193,12 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
 
 
 def _feedforward_error_V(survey: _Survey, axis: str) -> float:
-    wanted_V = np.array([point.u0[AXES.index(axis)] for point in survey.points.equilibria])
-    return float(np.max(np.abs(polyval(survey.points.psi_rad, survey.table.axis(axis).feedforward_V) - wanted_V)))
+    fitted_V = polyval(survey.points.psi_rad, survey.table.axis(axis).feedforward_V)
+    return float(np.max(np.abs(fitted_V - _operating_V(survey, axis))))
+
+
+def _operating_V(survey: _Survey, axis: str) -> Array:
+    return np.array([point.u0[AXES.index(axis)] for point in survey.points.equilibria])
 
 
 def _coupled(survey: _Survey) -> Poles:

@@ -13,6 +13,7 @@ import logcheck.thresholds
 import replay.thresholds
 from diagnosis import decisions
 from records.deciding import Decides
+from records.quality import CRITERIA
 from twinlaw.verbs import VERBS, build_parser
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -87,13 +88,23 @@ def decisions_page() -> str:
         ("Firmware replay", replay.thresholds),
         ("Diagnosis", decisions),
     ):
-        known = ((name, value) for name, value in vars(module).items() if isinstance(value, Decides))
+        known = [(name, value) for name, value in vars(module).items() if isinstance(value, Decides)]
         parts += [f"## {heading}\n", "| constant | value | unit | reason | data that set it |", "|---|---|---|---|---|"]
         parts += [
             f"| `{name}` | {_shown(value)} | {value.unit} | {value.reason} | {value.data} |" for name, value in known
         ]
         parts.append("")
-    return "\n".join(parts)
+    parts += [
+        "## Green, amber and red\n",
+        "| criterion | green up to | amber up to | reasons | data |",
+        "|---|---|---|---|---|",
+    ]
+    parts += [
+        f"| {entry.name}: {entry.what} | {entry.green:g} {entry.unit} | {entry.amber:g} {entry.unit} | green: {entry.green.reason}; amber: "
+        f"{entry.amber.reason} | {entry.green.data} |"
+        for entry in CRITERIA
+    ]
+    return "\n".join([*parts, ""])
 
 
 def _shown(value: object) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.log import RunLog
+from sim.activity import Activity, activity
 from sim.columns import reference_name
 
 Array = NDArray[np.float64]
@@ -22,7 +23,8 @@ class Tracking:
 
     `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `steady_error_rad` the
     largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight; `push_rad` the
-    largest |error| in the holds that another output's change began: what the axes do to each other.
+    largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is what the output's
+    own input did for that over the whole flight.
     """
 
     output: str
@@ -31,6 +33,8 @@ class Tracking:
     steady_error_rad: float
     mean_error_rad: float
     push_rad: float
+    input: str
+    activity: Activity
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,10 @@ def left(found: Sequence[Tracking]) -> tuple[str, ...]:
 
 
 def tracking(log: RunLog, output: str) -> Tracking:
-    """Judge one output of a flight whose log has the references of all outputs; a log without such a hold gives zeros."""
+    """Judge one output of a flight whose log has the references of all outputs; a log without such a hold gives zeros.
+
+    Its own input is the one of the same place in the log, as each loop of a law closes from an output to its input.
+    """
     references = {name: log.column(reference_name(name)) for name in log.columns.outputs}
     reference, measured = references[output], log.column(output)
     holds = _holds(log.t_s, references, reference)
@@ -66,6 +73,7 @@ def tracking(log: RunLog, output: str) -> Tracking:
     pushes = [
         float(np.nanmax(np.abs(reference - measured)[hold.begin : hold.end])) for hold in holds[1:] if not hold.change
     ]
+    own_input = log.columns.inputs[log.columns.outputs.index(output)]
     overshoots = [_overshoot(reference, measured, hold) for hold in holds if hold.change]
     return Tracking(
         output=output,
@@ -74,6 +82,8 @@ def tracking(log: RunLog, output: str) -> Tracking:
         steady_error_rad=max((abs(error) for error in errors), default=0.0),
         mean_error_rad=float(np.nanmean(np.abs(reference - measured))),
         push_rad=max(pushes, default=0.0),
+        input=own_input,
+        activity=activity(log.t_s, log.column(own_input)),
     )
 
 

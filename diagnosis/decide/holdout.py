@@ -192,7 +192,7 @@ def favour(told: Score) -> float:
 def added(holdout: Holdout, first: FittedHypothesis) -> tuple[FittedHypothesis, tuple[Note, ...], tuple[Decision, ...]]:
     """What is to be added unless the hold-out is predicted worse by it; else the plant without it, as is told then."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
-    least = -decisions.WORSE * told.sd
+    least = -float(decisions.MATTERS)
     worse = told.gain < least
     rule = held_against("added", of, told.gain, least, NATS, "nothing added" if worse else "added")
     if not worse:

@@ -8,6 +8,7 @@ import numpy as np
 from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import Match, passed, score_percent
 from identification.envelope.flights.flight import INPUTS, OUTPUTS, STATES
+from identification.envelope.modes import Mode
 from identification.envelope.one_condition import ConditionResult, Interpolated
 from identification.envelope.study import Study
 
@@ -27,6 +28,25 @@ def facts(found: Study) -> dict[str, Any]:
         "conditions": [_condition(entry) for entry in found.conditions],
         "left_out": [_left_out(entry) for entry in found.left_out],
     }
+
+
+def modes_facts(modes: Sequence[Mode]) -> list[dict[str, Any]]:
+    """Modes for envelope.json; an eigenvalue is its real and its imaginary part in rad/s."""
+    return [
+        {
+            "condition": mode.condition.name,
+            "mode": mode.name,
+            "left_out": mode.left_out,
+            **{what: _parts(getattr(mode, what)) for what in ("model", "least_squares", "truth")},
+            "model_off": mode.off(mode.model),
+            "least_squares_off": mode.off(mode.least_squares),
+        }
+        for mode in modes
+    ]
+
+
+def _parts(value: complex | None) -> list[float] | None:
+    return None if value is None else [value.real, value.imag]
 
 
 def summary(found: Study) -> dict[str, Any]:

@@ -36,10 +36,6 @@ class Study:
     flights: int
     unused: tuple[str, ...] = ()
 
-    def at(self, name: str) -> ConditionResult:
-        """The condition of a name, or the first where there is none of it."""
-        return next((entry for entry in self.conditions if entry.condition.name == name), self.conditions[0])
-
 
 def _unsaved(_: Study) -> None:
     pass

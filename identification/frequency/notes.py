@@ -8,65 +8,57 @@ from numpy.typing import NDArray
 from identification.frequency.match.cost import GOOD_COHERENCE
 from identification.frequency.match.fit import FrequencyFit
 from identification.frequency.models.linear_model import held_response
+from identification.frequency.pairs import Pair
 from identification.frequency.responses.conditioned import Responses
 from identification.results.result import Estimated
+from records.quality import MISFIT
 
 Array = NDArray[np.float64]
 POOR_J = 100.0
 SAME_J = 1.01
 MOST_BANDS = 3
-BEYOND = 2.0
 
 
-def notes_on(
-    estimates: Sequence[Estimated], fit: FrequencyFit, unmatched: Sequence[tuple[str, str, float]]
-) -> tuple[str, ...]:
-    """One sentence for each parameter that is not told, for each of the `unmatched` pairs (input, output, best coherence), and for a
-    match or a search that is in doubt.
+def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[Pair]) -> tuple[str, ...]:
+    """One sentence for each parameter that is not told, for each pair that is not matched or misses more than its random errors, and
+    for a match or a search that is in doubt.
     """
     reasons: dict[str, list[str]] = {}
     for entry in estimates:
         if not entry.identified:
-            reasons.setdefault(_reason(fit, entry.name), []).append(entry.name)
+            by_data = f"{entry.name} (by the data {entry.by_data:.2g}, sd {entry.by_data_sd:.2g} {entry.unit})"
+            reasons.setdefault(_reason(fit, entry.name), []).append(by_data)
     untold = [
         f"{', '.join(names)}: not told; {reason}; the plant file's value is kept" for reason, names in reasons.items()
     ]
     silent = [
-        f"{name} to {output}: not matched, as its coherence is nowhere {GOOD_COHERENCE:g} over four frequencies (at most {best:.2f})"
-        for name, output, best in unmatched
-    ]
-    matched = len(fit.model.inputs) * len(fit.model.outputs) - len(unmatched)
-    mean = fit.J / matched
-    poor = [
-        f"J is {mean:.0f} on average over the pairs, above {POOR_J:g}: the model has not the form of these responses"
+        f"{pair.input} to {pair.output}: not matched, as its coherence is nowhere {GOOD_COHERENCE:g} over four frequencies (at most "
+        f"{pair.coherence:.2f})"
+        for pair in pairs
+        if not pair.points
     ]
     beyond = [
-        f"{name} to {output}: the model misses {times:.1f} times as much as random errors explain: the plant has something there that "
-        "the model lacks, and the intervals do not cover it"
-        for name, output, times in _misses(fit)
-        if times > BEYOND
+        f"{pair.input} to {pair.output}: the model misses {pair.misfit:.1f} times as much as random errors explain: the plant has "
+        "something there that the model lacks, and the intervals do not cover it"
+        for pair in pairs
+        if pair.misfit > MISFIT.green
     ]
-    alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
-    lonely = [f"only one of {len(fit.searches)} searches came to this J; try other starts with --search SEED"]
     edge = [
         f"{name}: ended at its bound; the data pull it further: widen --bounds, or doubt the model"
         for name in fit.at_bound
     ]
-    return (*untold, *edge, *silent, *beyond, *(poor if mean > POOR_J else []), *(lonely if alone else []))
+    return (*untold, *edge, *silent, *beyond, *doubts(fit, pairs))
 
 
-def _misses(fit: FrequencyFit) -> list[tuple[str, str, float]]:
-    """For each matched pair what is left of its responses beside their random errors, eq (3) of responses.py, both as rms."""
-    found = []
-    for o, output in enumerate(fit.model.outputs):
-        for i, name in enumerate(fit.model.inputs):
-            mine = (fit.points.output == o) & (fit.points.input == i)
-            k = fit.points.frequency[mine]
-            if k.size:
-                left = float(np.mean(np.abs(fit.points.T[mine] / fit.T[k, o, i] - 1.0) ** 2))
-                error = float(np.mean(2.0 * fit.responses.error[k, o, i] ** 2))
-                found.append((name, output, float(np.sqrt(left / max(error, 1e-300)))))
-    return found
+def doubts(fit: FrequencyFit, pairs: Sequence[Pair]) -> tuple[str, ...]:
+    """What is in doubt of the match as a whole: its form, and whether the search has found it."""
+    mean = fit.J / sum(pair.points > 0 for pair in pairs)
+    poor = (
+        f"J is {mean:.0f} on average over the pairs, above {POOR_J:g}: the model has not the form of these responses",
+    )
+    alone = sum(entry.J <= SAME_J * fit.searches[0].J for entry in fit.searches) == 1 and len(fit.searches) > 1
+    lonely = (f"only one of {len(fit.searches)} searches came to this J; try other starts with --seed",)
+    return (*(poor if mean > POOR_J else ()), *(lonely if alone else ()))
 
 
 def _reason(fit: FrequencyFit, name: str) -> str:

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from identification.fit.belief import Belief
-from identification.frequency.match.cost import pair_cost
 from identification.frequency.match.fit import FrequencyFit
 from identification.frequency.models.linear_model import held_response
 from identification.frequency.models.linear_run import linear_run
 from identification.frequency.notes import notes_on
+from identification.frequency.pairs import Pair, pairs_of
 from identification.frequency.responses.record import Record
 from identification.results.facts import facts
 from identification.results.result import Identification, identification
@@ -24,31 +24,12 @@ METHOD = "frequency"
 WINDOW_S = 1.0
 
 
-@dataclass(frozen=True)
-class Pair:
-    """One input and output: over which range it was matched, at how many points; mean coherence there, cost, and what is left.
-
-    `stated_*` are between the responses measured and those of the plant file as it was.
-    """
-
-    input: str
-    output: str
-    from_rad_s: float | None
-    to_rad_s: float | None
-    points: int
-    coherence: float
-    J: float
-    left_dB: float
-    left_deg: float
-    stated_dB: float
-    stated_deg: float
-
-
 @dataclass(frozen=True, eq=False)
 class TimeCheck:
     """A record that was not matched, and the model under its inputs: y and the model's y (n, outputs), rms and fit by output.
 
-    The model starts anew every `window_s`, inf: never. `stated_fit` is that of the plant file as it was.
+    The model starts anew every `window_s`, inf: never. `noise` is the rms that the sensors alone leave; `stated_fit` is that of the
+    plant file as it was.
     """
 
     name: str
@@ -58,16 +39,24 @@ class TimeCheck:
     y: Array
     y_model: Array
     rms: tuple[float, ...]
+    noise: tuple[float, ...]
     fit: tuple[float, ...]
     stated_fit: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class FrequencyIdentification:
-    """Estimates and plant (`result`), the fit behind them, its pairs, checks in time; T_stated is the plant file's response."""
+    """Estimates and plant (`result`), the fit behind them, its pairs, checks in time.
+
+    theta and covariance are as plant.toml holds them: what the data do not tell is as the plant file had it. T (f, outputs, inputs) is
+    the response at theta, T_stated that of the plant file as it was.
+    """
 
     result: Identification
     fit: FrequencyFit
+    theta: Array
+    covariance: Array
+    T: Complex
     T_stated: Complex
     pairs: tuple[Pair, ...]
     checks: tuple[TimeCheck, ...]
@@ -78,25 +67,35 @@ def frequency_identification(
     plant: Plant, fit: FrequencyFit, holdout: Sequence[Record] = ()
 ) -> FrequencyIdentification:
     """All that is to be told about a match."""
-    belief = Belief(fit.model.names, fit.theta, fit.covariance)
-    result = identification(plant, (), belief)
-    stated = fit.model.matrices(fit.model.start)
-    assert stated is not None
-    T_stated = held_response(stated, fit.responses.omega_rad_s, fit.records[0].period_s)
-    pairs = tuple(
-        _pair(fit, T_stated, o, i) for o in range(len(fit.model.outputs)) for i in range(len(fit.model.inputs))
-    )
-    checks = tuple(time_check(fit, record) for record in holdout)
-    unmatched = [(pair.input, pair.output, pair.coherence) for pair in pairs if not pair.points]
-    return FrequencyIdentification(result, fit, T_stated, pairs, checks, notes_on(result.estimates, fit, unmatched))
+    begun = dict(zip(fit.model.names, fit.searches[0].start.tolist(), strict=True))
+    result = identification(plant, (), Belief(fit.model.names, fit.theta, fit.covariance), begun=begun)
+    theta = np.array([entry.value for entry in result.estimates])
+    T, T_stated = _response(fit, theta), _response(fit, fit.model.start)
+    pairs = tuple(pairs_of(fit, T, T_stated))
+    checks = tuple(time_check(plant, fit, theta, record) for record in holdout)
+    notes = notes_on(result.estimates, fit, pairs)
+    return FrequencyIdentification(result, fit, theta, _covariance(result, fit), T, T_stated, pairs, checks, notes)
 
 
-def time_check(fit: FrequencyFit, record: Record) -> TimeCheck:
-    """The identified model under the inputs of a record; start and trim are fitted, parameters are not.
+def _response(fit: FrequencyFit, theta: Array) -> Complex:
+    of = fit.model.matrices(theta)
+    assert of is not None
+    return held_response(of, fit.responses.omega_rad_s, fit.records[0].period_s)
+
+
+def _covariance(result: Identification, fit: FrequencyFit) -> Array:
+    """That of the match, and the plant file's sd, correlated with nothing, where its value is kept."""
+    told = np.array([entry.identified for entry in result.estimates])
+    kept = np.diag([0.0 if entry.identified else entry.sd**2 for entry in result.estimates])
+    return np.asarray(np.where(np.outer(told, told), fit.covariance, kept))
+
+
+def time_check(plant: Plant, fit: FrequencyFit, theta: Array, record: Record) -> TimeCheck:
+    """The model at theta under the inputs of a record; start and trim are fitted, parameters are not.
 
     A closed loop's inputs answer disturbances that the record does not name, so there the model starts anew every second.
     """
-    identified, stated = fit.model.matrices(fit.theta), fit.model.matrices(fit.model.start)
+    identified, stated = fit.model.matrices(theta), fit.model.matrices(fit.model.start)
     assert identified is not None
     assert stated is not None
     stretch_s = WINDOW_S if record.loop == "closed" else np.inf
@@ -104,7 +103,11 @@ def time_check(fit: FrequencyFit, record: Record) -> TimeCheck:
     share, stated_share = _share(record.y, y_model), _share(record.y, linear_run(stated, record, stretch_s).y)
     t_s = np.asarray(record.period_s * np.arange(record.u.shape[0]), dtype=float)
     rms = tuple(np.sqrt(np.mean((record.y - y_model) ** 2, axis=0)).tolist())
-    return TimeCheck(record.name, stretch_s, t_s, record.u, record.y, y_model, rms, share, stated_share)
+    noise = tuple(
+        float(np.hypot(plant.sensors[name] / np.sqrt(12.0), plant.sensor_noise.get(name, 0.0)))
+        for name in fit.model.outputs
+    )
+    return TimeCheck(record.name, stretch_s, t_s, record.u, record.y, y_model, rms, noise, share, stated_share)
 
 
 def _share(y: Array, y_model: Array) -> tuple[float, ...]:
@@ -113,31 +116,9 @@ def _share(y: Array, y_model: Array) -> tuple[float, ...]:
     return tuple((1.0 - np.linalg.norm(y - y_model, axis=0) / spread).tolist())
 
 
-def _pair(fit: FrequencyFit, T_stated: Complex, o: int, i: int) -> Pair:
-    mine = (fit.points.output == o) & (fit.points.input == i)
-    names, k = (fit.model.inputs[i], fit.model.outputs[o]), fit.points.frequency[mine]
-    if not k.size:
-        best = float(np.max(fit.responses.coherence[:, o, i]))
-        return Pair(*names, None, None, 0, best, 0.0, np.nan, np.nan, np.nan, np.nan)
-    omega = fit.responses.omega_rad_s[k]
-    left = _apart(fit.points.T[mine], fit.T[k, o, i])
-    stated = _apart(fit.points.T[mine], T_stated[k, o, i])
-    mean = float(np.mean(fit.responses.coherence[k, o, i]))
-    return Pair(
-        *names, float(omega[0]), float(omega[-1]), int(k.size), mean, pair_cost(fit.points, fit.r, o, i), *left, *stated
-    )
-
-
-def _apart(T_c: Complex, T: Complex) -> tuple[float, float]:
-    """Rms difference in dB and in degrees."""
-    ratio = np.log(T_c / T)
-    gain_dB, phase_deg = 20.0 / np.log(10.0) * ratio.real, np.degrees(ratio.imag)
-    return float(np.sqrt(np.mean(gain_dB**2))), float(np.sqrt(np.mean(phase_deg**2)))
-
-
 def frequency_facts(found: FrequencyIdentification) -> dict[str, Any]:
     """The result as plain values for identification.json: what every identification has, and the section of this method."""
-    fit, of = found.fit, found.fit.model.matrices(found.fit.theta)
+    fit, of = found.fit, found.fit.model.matrices(found.theta)
     assert of is not None
     return {
         **facts(found.result),
@@ -151,7 +132,11 @@ def frequency_facts(found: FrequencyIdentification) -> dict[str, Any]:
             "pairs": [_plain(asdict(pair)) for pair in found.pairs],
             "matrices": {name: getattr(of, name).tolist() for name in "ABCD"},
             "checks": [
-                {"run": check.name, "outputs": list(fit.model.outputs), "rms": check.rms, "fit": check.fit, "stated_fit": check.stated_fit}
+                {
+                    "run": check.name,
+                    "outputs": list(fit.model.outputs),
+                    **{key: getattr(check, key) for key in ("rms", "noise", "fit", "stated_fit")},
+                }
                 for check in found.checks
             ],
         },

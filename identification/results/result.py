@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from identification.experiments.table import AID_UNITS
 from identification.fit.belief import Belief
 from identification.results.notes import bound_warning, relative, stage_notes
@@ -14,12 +12,16 @@ from identification.uncertainty.residuals import ResidualTest
 from records.plant import Plant, coefficient_names
 
 INTERRUPTED = "the best so far of a fit that was interrupted"
+NORMAL = 1.96  # half the width of a 95 % interval of a normal distribution, in standard deviations
 FARTHEST = 0.6  # of a size: a parameter whose interval reaches farther is held by having been given one, not by data
 
 
 @dataclass(frozen=True)
 class Estimated:
-    """One coefficient: where it started, its estimate with sd and 95 % interval, and whether the data told it at all."""
+    """One coefficient: where its fit started; value, sd and 95 % interval as plant.toml holds them; whether the data told it at all.
+
+    One that they did not tell keeps the plant file's value and sd; `by_data` and `by_data_sd` are what the data say of each.
+    """
 
     name: str
     unit: str
@@ -29,13 +31,16 @@ class Estimated:
     lower: float
     upper: float
     identified: bool
+    by_data: float
+    by_data_sd: float
 
 
 @dataclass(frozen=True, eq=False)
 class Identification:
     """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
     `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
-    come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves.
+    come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves, `flags` what makes
+    the estimates doubtful.
     """
 
     plant: Plant
@@ -46,6 +51,7 @@ class Identification:
     holdout: tuple[ResidualTest, ...] = ()
     unfinished: Mapping[str, float] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    flags: tuple[str, ...] = ()
 
     @property
     def at_bound(self) -> tuple[str, ...]:
@@ -63,6 +69,7 @@ class Identification:
         """One sentence for each thing that the data cannot tell or tell twice in different ways."""
         return (
             *self.remarks,
+            *self.flags,
             *self._interrupted(),
             *self._unidentified(),
             *(note for title, stage in self.stages for note in stage_notes(title, stage)),
@@ -82,45 +89,34 @@ class Identification:
 
 
 def _share(entry: Estimated) -> str:
-    return relative(entry.sd / abs(entry.value)) if entry.value else f"{entry.sd:.2g} {entry.unit}"
+    return relative(entry.by_data_sd / abs(entry.by_data)) if entry.by_data else f"{entry.by_data_sd:.2g} {entry.unit}"
 
 
 def identification(
-    plant: Plant, stages: Sequence[tuple[str, Estimate]], belief: Belief, aids: Sequence[tuple[Belief, float]] = ()
+    plant: Plant,
+    stages: Sequence[tuple[str, Estimate]],
+    belief: Belief,
+    aids: Sequence[tuple[Belief, float]] = (),
+    begun: Mapping[str, float] | None = None,
 ) -> Identification:
-    """Put the final belief into the plant; what the data do not tell keeps the file's value and sd."""
-    starts = numbers(plant)
+    """Put the final belief into the plant; what the data do not tell keeps the file's value and sd.
+
+    `begun` tells where a fit that is none of the `stages` started, by name.
+    """
+    stated = numbers(plant)
     factors = interval_factors(stage for _, stage in stages)
-    scales = {name: max(abs(starts[name][0]), abs(belief.value(name)), starts[name][1]) for name in belief.names}
-    begun = _begun(stages)
+    began = _begun(stages) if begun is None else begun
     estimates = tuple(
-        _estimated(
-            name,
-            starts[name][2],
-            begun.get(name, starts[name][0]),
-            belief,
-            factors.get(name, 1.96),
-            FARTHEST * scales[name],
-        )
-        for name in belief.names
+        _estimated(name, began[name], stated[name], belief, factors.get(name, NORMAL)) for name in belief.names
     )
-    found = tuple(
-        _estimated(name, _aid_unit(name), 0.0, part, interval_factor(dof), np.inf)
-        for part, dof in aids
-        for name in part.names
-    )
+    found = tuple(_aid(name, began[name], part, interval_factor(dof)) for part, dof in aids for name in part.names)
     told = with_belief(plant, belief, [entry.name for entry in estimates if entry.identified])
     return Identification(told, estimates, belief, tuple(stages), found)
 
 
 def _begun(stages: Sequence[tuple[str, Estimate]]) -> dict[str, float]:
-    """Where fits started that a search looked ahead for, by name."""
-    return {
-        name: value
-        for _, stage in stages
-        for found in stage.searched[:1]
-        for name, value in zip(found.names, found.values.tolist(), strict=True)
-    }
+    """Where the first fit of each coefficient started, by name."""
+    return {name: value for _, stage in reversed(stages) for name, value in stage.start.items()}
 
 
 def _aid_unit(name: str) -> str:
@@ -128,10 +124,23 @@ def _aid_unit(name: str) -> str:
     return name.rpartition("_")[2] if name.startswith("offset.") and "_" in name else AID_UNITS.get(name, "")
 
 
-def _estimated(name: str, unit: str, start: float, belief: Belief, factor: float, reach: float) -> Estimated:
-    value, sd = belief.value(name), float(belief.sd[belief.names.index(name)])
-    told = factor * sd < reach or start == 0.0
-    return Estimated(name, unit, start, value, sd, value - factor * sd, value + factor * sd, told)
+def _estimated(name: str, start: float, stated: tuple[float, float, str], belief: Belief, factor: float) -> Estimated:
+    """`stated` are value, sd and unit of the plant file; what it states as 0 has no size by which to be called poor."""
+    before, before_sd, unit = stated
+    value, sd = _told(name, belief)
+    told = factor * sd < FARTHEST * max(abs(before), abs(value), before_sd) or before == 0.0
+    kept, kept_sd, reach = (value, sd, factor) if told else (before, before_sd, NORMAL)
+    return Estimated(name, unit, start, kept, kept_sd, kept - reach * kept_sd, kept + reach * kept_sd, told, value, sd)
+
+
+def _aid(name: str, start: float, belief: Belief, factor: float) -> Estimated:
+    """What the plant file does not have."""
+    value, sd = _told(name, belief)
+    return Estimated(name, _aid_unit(name), start, value, sd, value - factor * sd, value + factor * sd, True, value, sd)
+
+
+def _told(name: str, belief: Belief) -> tuple[float, float]:
+    return belief.value(name), float(belief.sd[belief.names.index(name)])
 
 
 def interrupted(result: Identification, values: Mapping[str, float]) -> Identification:

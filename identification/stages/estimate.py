@@ -31,7 +31,7 @@ class Estimate:
     """The result of a stage: belief over all parameters so far, those it was about, degrees of freedom of the intervals, and tests.
 
     `at_bound` names parameters that ended at a bound of their range: the data pull them further, and their intervals mean little.
-    `discords` name those in which runs that were fitted together contradict one another.
+    `discords` name those in which runs that were fitted together contradict one another. `start` is where the fit began, by name.
     """
 
     belief: Belief
@@ -44,6 +44,7 @@ class Estimate:
     at_bound: tuple[str, ...]
     residuals: tuple[ResidualTest, ...]
     runs: tuple[Run, ...]
+    start: Mapping[str, float]
     searched: tuple[Searched, ...] = ()
     discords: tuple[Discord, ...] = ()
 
@@ -78,13 +79,19 @@ def estimate(
     better parameters as soon as there are any.
     """
     problem = problem_of(tuple(runs), tuple(own), ranges, before)
-    problem, searched = _searched(problem, own, wanted, told)
+    problem, searched = searched_for(problem, own, wanted, told)
+    start = starts_of(problem)
     tell = by_name(problem.names, told)
     problem, point = _fitted(problem, len(before.names), lambda better: tell(better.theta))
-    return _estimate(problem, point, tuple(own), before, searched)
+    return _estimate(problem, point, tuple(own), before, start, searched)
 
 
-def _searched(
+def starts_of(problem: Problem) -> dict[str, float]:
+    """Where a fit of the problem begins, by name."""
+    return dict(zip(problem.names, problem.start.tolist(), strict=True))
+
+
+def searched_for(
     problem: Problem, own: Sequence[str], wanted: Search | None, told: Told | None
 ) -> tuple[Problem, tuple[Searched, ...]]:
     """The problem from the start that a search found, where one is wanted, and what was found."""
@@ -96,7 +103,12 @@ def _searched(
 
 
 def _estimate(
-    problem: Problem, point: Point, own: tuple[str, ...], before: Belief, searched: tuple[Searched, ...]
+    problem: Problem,
+    point: Point,
+    own: tuple[str, ...],
+    before: Belief,
+    start: Mapping[str, float],
+    searched: tuple[Searched, ...],
 ) -> Estimate:
     """What the optimum tells."""
     after = Belief(problem.names, point.theta, inverse(point.H + problem.prior.information))
@@ -111,6 +123,7 @@ def _estimate(
         at_bound=_at_bound(problem, point),
         residuals=tests_at(point),
         runs=point.runs,
+        start=start,
         searched=searched,
         discords=discords(problem, point),
     )

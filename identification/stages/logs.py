@@ -16,9 +16,9 @@ from identification.fit.solve import solve
 from identification.fit.steps import followed
 from identification.runs.log_run import run_of
 from identification.runs.run import Run, offset_names
-from identification.search.methods import Search, search, started
+from identification.search.methods import Search, Searched
 from identification.stages.best_fit import best_fit, may_explain, nothing_left, with_best_starts
-from identification.stages.estimate import Estimate, estimate, problem_of
+from identification.stages.estimate import Estimate, estimate, problem_of, searched_for, starts_of
 from identification.stages.sizes import ranges_of_logs
 from records.log import RunLog
 from sim.bind import BoundPlant
@@ -53,10 +53,14 @@ def fits_of_logs(
     coarse = _short_windows(bound, logs)
     ranges = ranges_of_logs(bound, logs, coarse, (*before.names, *names), limits or {}, offsets)
     names = (*names, *(offset_names(bound.model) if offsets else ()))
-    first = _coarse(coarse, names, ranges, before, wanted, told)
+    first, begun, searched = _coarse(coarse, names, ranges, before, wanted, told)
     reached = dict(zip(widened(before, names, {})[0], first.theta.tolist(), strict=True))
     start = {name: reached[name] for name in names}
-    fitted = partial(_fitted, bound, logs, coarse, ranges, before, told)
+    from_there = partial(_fitted, bound, logs, coarse, ranges, before, told)
+
+    def fitted(length_s: float, start: Mapping[str, float]) -> Estimate:
+        return replace(from_there(length_s, start), start=begun, searched=searched)
+
     if window_s is not None:
         yield fitted(window_s, start)
         return
@@ -111,11 +115,8 @@ def _coarse(
     before: Belief,
     wanted: Search | None,
     told: Told | None,
-) -> Point:
-    """A start for the fine fit."""
-    problem = problem_of(runs, tuple(names), ranges, before)
-    if wanted is not None:
-        places = [problem.names.index(name) for name in names]
-        problem = started(problem, places, search(problem, places, replace(wanted, beside=()), told)[0])
+) -> tuple[Point, Mapping[str, float], tuple[Searched, ...]]:
+    """A start for the fine fit, where it began itself, and what was searched for that."""
+    problem, searched = searched_for(problem_of(runs, tuple(names), ranges, before), names, wanted, told)
     tell = by_name(problem.names, told)
-    return solve(problem, lambda better: tell(better.theta), COARSE_SETTLED)
+    return solve(problem, lambda better: tell(better.theta), COARSE_SETTLED), starts_of(problem), searched

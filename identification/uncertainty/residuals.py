@@ -1,5 +1,6 @@
 """Whether what is left of a run's readings looks like errors of its sensors: size, and correlation from sample to sample."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,8 @@ LAGS = 20
 class ResidualTest:
     """One channel of one run.
 
-    `rms` of the residuals in the channel's unit and `floor`, what its sensor alone leaves (rounding of the prediction included);
+    `rms` of the residuals in the channel's unit, `floor`, what rounding the prediction leaves, and `noise`, what its sensor alone may
+    leave: rounding, a step over sqrt(12) at least, and the plant file's noise; both 0 where nobody states them.
     `fit` = 1 - |y - y_hat| / |y - mean| in norms; `whiteness_p` is the chance that errors of the sensor are at least so correlated over
     the first 20 lags. Rounded readings are correlated by nature where the motion is slow, so the correlation that rounding the
     prediction itself gives is taken off first.
@@ -29,8 +31,14 @@ class ResidualTest:
     samples: int
     rms: float
     floor: float
+    noise: float
     fit: float
     whiteness_p: float
+
+    @property
+    def motion_rms(self) -> float:
+        """Of the readings about their mean."""
+        return self.rms / (1.0 - self.fit) if self.fit < 1.0 else math.inf
 
     @property
     def white(self) -> bool:
@@ -53,19 +61,22 @@ def residual_tests(run: Run, blocks: tuple[Block, ...]) -> tuple[ResidualTest, .
         mine = run.channel[places] == number
         if mine.sum() > 2 * LAGS:
             step = float(run.step[number]) if run.step.size else 0.0
-            found.append(_test(run.name, channel, run.y[places][mine], residual[mine], step))
+            noise = run.bound.plant.sensor_noise.get(channel, 0.0) if step > 0.0 else 0.0
+            found.append(_test(run.name, channel, run.y[places][mine], residual[mine], step, noise))
     return tuple(found)
 
 
-def _test(name: str, channel: str, y: Array, residual: Array, step: float) -> ResidualTest:
+def _test(name: str, channel: str, y: Array, residual: Array, step: float, noise: float) -> ResidualTest:
     rounding = step * np.round((y - residual) / step) - (y - residual) if step > 0.0 else np.zeros(y.size)
+    floor = float(np.sqrt(np.mean(rounding**2)))
     spread = float(np.linalg.norm(y - np.mean(y)))
     return ResidualTest(
         run=name,
         channel=channel,
         samples=y.size,
         rms=float(np.sqrt(np.mean(residual**2))),
-        floor=float(np.sqrt(np.mean(rounding**2))),
+        floor=floor,
+        noise=math.hypot(max(floor, step / math.sqrt(12.0)), noise),
         fit=1.0 - float(np.linalg.norm(residual)) / spread if spread > 0.0 else 0.0,
         whiteness_p=_whiteness(residual, rounding),
     )

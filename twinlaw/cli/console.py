@@ -77,19 +77,27 @@ def tally(title: str, count: int) -> Iterator[Callable[[bool, bool], None]]:
 
 
 class Countdown:
-    """How far a long piece of work is and how long the rest may take, written over one line of a terminal; nothing in a pipe."""
+    """How far a long piece of work is and how long the rest may take, written over one line of a terminal; nothing in a pipe.
 
-    def __init__(self, thing: str) -> None:
-        self._thing, self._began_s = thing, time.monotonic()
+    The work comes in `rounds`, each counted from 1 on; one may end early, and each is taken to last as long as those before it.
+    """
+
+    def __init__(self, thing: str, rounds: int = 1) -> None:
+        self._thing, self._rounds, self._began_s = thing, rounds, time.monotonic()
+        self._round, self._last = 1, 0
 
     def __call__(self, done: int, of: int) -> None:
-        """So many are done of so many; behind the last of them the clock begins anew."""
+        """So many are done of so many of the round at hand; what does not go on from the last call begins another."""
+        if self._last and done <= self._last:
+            self._round += 1
+        self._last = done
         if not sys.stderr.isatty():
             return
-        left_s = (time.monotonic() - self._began_s) / done * (of - done)
-        sys.stderr.write(f"\r{f'  {self._thing} {done} of {of}, {_duration(left_s)} to go':<{WIDTH}}")
+        share = min((self._round - 1 + done / of) / self._rounds, 1.0)
+        left_s = (time.monotonic() - self._began_s) / share * (1.0 - share)
+        which = f", {self._round} of {self._rounds}" if self._rounds > 1 else ""
+        sys.stderr.write(f"\r{f'  {self._thing} {done} of {of}{which}, {_duration(left_s)} to go':<{WIDTH}}")
         if done == of:
-            self._began_s = time.monotonic()
             sys.stderr.write(f"\r{'':<{WIDTH}}\r")
         sys.stderr.flush()
 

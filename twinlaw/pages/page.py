@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from records.quality import Colour
 from twinlaw.templates import TEMPLATES
 
 Row = tuple[str, ...]
@@ -12,10 +13,12 @@ Row = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text under an optional heading."""
+    """Rows of text under an optional heading; `folded` is what stands in the place of a table that opens at a click, "" of one that
+    is open."""
 
     rows: Sequence[Sequence[str]]
     heading: Sequence[str] = ()
+    folded: str = ""
 
 
 @dataclass(frozen=True)
@@ -30,11 +33,12 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """A report: its verdict in one sentence, whether that is good news, and named facts under it (digests, files)."""
+    """A report: its verdict in one sentence, the colour of that and why, and named facts under it (digests, files)."""
 
     title: str
     verdict: str
-    passed: bool
+    colour: Colour
+    why: str
     facts: Sequence[tuple[str, str]]
     sections: Sequence[Section]
 

@@ -12,10 +12,12 @@ import shlex
 
 from controllers.table import CONTROLLERS
 from records.files import write_atomic
+from records.quality import quality_facts
 from twinlaw.cli import console, options
 from twinlaw.pages.compare import tables
 from twinlaw.pages.compare.comparison import Wanted, facts
 from twinlaw.pages.compare.plots import figure_plot
+from twinlaw.pages.compare.quality import controller_quality
 from twinlaw.pages.compare.report import page_text, verdict
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.verifying import STEPS
@@ -58,7 +60,8 @@ def run(chosen: argparse.Namespace) -> int:
     each = sweeping.each("flights, 25 at a time", crew, chosen.out / "jobs", lambda order: order.name)
     rows = compare_controllers(bound, names, wanted, chosen.out, each)
     eq26 = eq26_errors(bound, names)
-    content = facts(bound, rows, wanted, eq26)
+    colours = {row.row.name: quality_facts(controller_quality(row)) for row in rows}
+    content = facts(bound, rows, wanted, eq26) | {"quality": colours}
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
     for name in FIGURES:
         write_atomic(chosen.out / f"controllers-{name}.svg", figure_plot(rows, name))
@@ -71,6 +74,7 @@ def run(chosen: argparse.Namespace) -> int:
         for axis in ("elevation", "azimuth"):
             print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
             print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))
+        print(f"\n{console.table(tables.quality_rows(rows), tables.QUALITY_HEADING)}")
         print(f"\n{verdict(rows)}\n{chosen.out / 'controllers.md'}")
     demand_equal(rows)
     return 0

@@ -1,7 +1,8 @@
 """Design the controller of a plant at its operating points, fit it, judge it, and write the table.
 
-Writes DIR/controller.json. Refuses (exit 2) a table that is unstable or below its margins anywhere in the range. The
-table serves both arithmetics: --arithmetic says in which its poles and margins are computed, and a table without a law in it is refused.
+Writes DIR/controller.json and, of the scheduled law, DIR/design.html. Refuses (exit 2) a table that is unstable or below its margins
+anywhere in the range. The table serves both arithmetics: --arithmetic says in which its poles and margins are computed, and a table
+without a law in it is refused.
 --controller chooses another controller of docs/controllers.md; `build`, `flash`, `validate`, `watch` and `simulate` take its table as well.
 """
 
@@ -12,7 +13,9 @@ from controllers.table import CONTROLLERS
 from records.files import write_atomic
 from records.table import table_text
 from twinlaw.cli import console, options
+from twinlaw.pages.page import page_text
 from twinlaw.pages.run.design import design_facts, design_heading, design_rows
+from twinlaw.pages.run.design_page import design_page
 from twinlaw.workflows.chain.designing import design_controller, design_other
 
 SCHEDULED = "scheduled"
@@ -37,6 +40,8 @@ def run(chosen: argparse.Namespace) -> int:
     designed = design_controller(chosen.plant, chosen.arithmetic)
     path = chosen.out / "controller.json"
     write_atomic(path, table_text(designed.table))
+    page = design_page(chosen.plant.stem, designed.report, designed.table.digest)
+    write_atomic(chosen.out / "design.html", page_text(page))
     if chosen.json:
         print(json.dumps({"table": str(path), "table_digest": designed.table.digest, **design_facts(designed.report)}))
     else:

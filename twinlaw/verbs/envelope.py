@@ -10,28 +10,37 @@ Initial states are tuned automatically; --starts takes others, typed in by fligh
 import argparse
 import json
 import shutil
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from identification.envelope.by_hand import tried
+from identification.envelope.flights.conditions import Condition
 from identification.envelope.flights.flight import Flight
 from identification.envelope.flights.flight_file import load_flights, save_flight
 from identification.envelope.flights.starts import NONE, load_starts
-from identification.envelope.record import facts, summary
+from identification.envelope.modes import modes_of
+from identification.envelope.quality import envelope_quality
+from identification.envelope.record import facts, modes_facts, summary
+from identification.envelope.state_equation.free_run import Model
 from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
 from identification.envelope.truth.fly import fly
+from identification.envelope.truth.linear import linearised
 from identification.envelope.truth.plan import plan
 from records.errors import BadInput
 from records.files import write_atomic
+from records.quality import quality_facts
 from twinlaw.cli import console, options
-from twinlaw.pages.envelope.report import SHOWN, envelope_page, notes_of, verdict
+from twinlaw.pages.envelope.models import modes_off
+from twinlaw.pages.envelope.report import envelope_page, notes_of, shown, verdict
 from twinlaw.pages.envelope.tables import by_hand, conditions, interpolation, open_loop
 from twinlaw.pages.page import Table, page_text
+from twinlaw.pages.quality import quality_sentence
 from twinlaw.workflows import sweeping
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--seed, --keep-flights, --forgetting, --starts, --workers, --cluster, --out, --json, FLIGHTS."""
+    """--seed, --keep-flights, --forgetting, --starts, --show, --workers, --cluster, --out, --json, FLIGHTS."""
     options.seed(parser, "the simulated helicopter and its flights")
     parser.add_argument(
         "--keep-flights", action="store_true", help="write the simulated flights to DIR/flights, some 30 MB"
@@ -42,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--starts", type=Path, metavar="STARTS.toml", help="initial states to try: sections [FLIGHT] of STATE = VALUE"
     )
+    parser.add_argument(
+        "--show", metavar="CONDITION", help="draw this condition, as HA6000ft-50kts; default: the worst"
+    )
     sweeping.workers(parser)
     options.out(parser)
     options.as_json(parser)
@@ -50,7 +62,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Fly or read, identify, write, tell."""
-    flights, origin = _flights(chosen)
+    flights, origin, exact = _flights(chosen)
+    _demand_shown(chosen.show, flights)
     if not any(flight.use == "identification" for flight in flights):
         raise BadInput("flights", origin, "none to identify from", 'one with use = "identification"', "set its use")
     starts = NONE if chosen.starts is None else load_starts(chosen.starts, flights)
@@ -65,21 +78,27 @@ def run(chosen: argparse.Namespace) -> int:
     each = sweeping.each("flight conditions", sweeping.crew_of(chosen), kept, lambda order: order.name)
     with console.leaving(lambda: _left(path, saved)):
         found = study(flights, chosen.forgetting, each, save, starts)
-    tries = tried(found, starts)
+    tries, modes = tried(found, starts), modes_of(found, exact)
+    quality = envelope_quality(found)
+    content = {**facts(found), "quality": quality_facts(quality), "modes": modes_facts(modes)}
+    write_atomic(path, json.dumps(content, indent=1) + "\n")
     with console.stage("drawing the report"):
-        write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries)))
+        write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries, chosen.show, modes)))
     shutil.rmtree(kept, ignore_errors=True)
     if chosen.json:
-        print(json.dumps({**summary(found), "notes": list(notes_of(found))}))
+        print(json.dumps({**summary(found), "quality": quality_facts(quality), "notes": list(notes_of(found))}))
         return 0
-    print(verdict(summary(found)))
+    drawn_one = shown(found, chosen.show)
+    print(f"{verdict(summary(found))}\n{quality_sentence(quality)}")
     for flight in tries:
         print(f"\n{_shown(by_hand(flight))}")
-    print(f"\n{found.at(SHOWN).condition.name}, one step ahead\n{_shown(open_loop(found.at(SHOWN)))}")
+    print(f"\n{drawn_one.condition.name}, one step ahead\n{_shown(open_loop(drawn_one))}")
     print(f"\nPoints outside the margins, starts tuned\n{_shown(conditions(found))}")
     if found.left_out:
         tables = "\n\n".join(map(_shown, interpolation(found)))
         print(f"\nConditions left out\n{tables}")
+    if exact is not None:
+        print(f"\n{_shown(modes_off(modes))}")
     for note in notes_of(found):
         print(f"- {note}")
     print(f"\n{chosen.out / 'report.html'}")
@@ -95,16 +114,32 @@ def _left(path: Path, saved: list[Study]) -> str:
     return f"{path} holds {held}; {again}"
 
 
-def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str]:
-    """Read or flown, and where they came from."""
+def _demand_shown(name: str | None, flights: Sequence[Flight]) -> None:
+    """Raise BadInput now for a condition that no flight identifies."""
+    known = sorted({flight.condition.name for flight in flights if flight.use == "identification"})
+    if name is not None and name not in known:
+        raise BadInput("--show", "command line", repr(name), f"one of {', '.join(known)}", "name one of these")
+
+
+Exact = Callable[[Condition], Model]
+
+
+def _flights(chosen: argparse.Namespace) -> tuple[tuple[Flight, ...], str, Exact | None]:
+    """Read or flown, where they came from, and the exact model of a condition where it is known."""
     if chosen.flights is not None:
-        return load_flights(chosen.flights), str(chosen.flights)
+        return load_flights(chosen.flights), str(chosen.flights), None
+    machine = drawn(chosen.seed)
     with console.stage(f"flying the simulated helicopter, seed {chosen.seed}"):
-        flights = fly(drawn(chosen.seed), plan(), chosen.seed)
+        flights = fly(machine, plan(), chosen.seed)
+    period_s = flights[0].sample_period_s
     if chosen.keep_flights:
         for flight in flights:
             save_flight(chosen.out / "flights", flight)
-    return flights, f"simulated helicopter, seed {chosen.seed}"
+    return (
+        flights,
+        f"simulated helicopter, seed {chosen.seed}",
+        lambda condition: Model(*linearised(machine, condition, period_s), period_s),
+    )
 
 
 def _shown(table: Table) -> str:

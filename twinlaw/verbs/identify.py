@@ -5,11 +5,12 @@ taken in the order of the paper, each for its own subsystem, and what one tells 
 and are cut into windows with free starts, so that closed loops and unstable plants are welcome. Writes DIR/plant.toml, which every verb
 takes, DIR/identification.json and DIR/report.html; an interrupted run leaves plant.toml and identification.json of what was found so far.
 --search looks through the whole range first (genetic: the algorithm of seed 001), and the report lays the gradient method beside it.
-With --truth the controller designed from the result flies that plant, and the report lays both flights over one another; for
+With --truth the report lays the truth beside every estimate, and the controller designed from the result flies that plant; for
 ce150_velagic it redraws Figs. 12 to 14 of seed 001.
 
 --method frequency matches the frequency responses of swept logs (`twinlaw sweep`) instead: the plant linearised where the logs rest, or
-the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --band-rad-s, --trim, --holdout and --seed.
+the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --band-rad-s, --trim, --truth, --holdout and
+--seed.
 """
 
 import argparse
@@ -18,11 +19,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from identification.results.facts import facts
+from identification.results.quality import identification_quality
 from identification.results.result import Identification
 from identification.runs.run import coefficient_names
 from identification.search.methods import METHODS, Search
 from records.errors import BadInput
 from records.files import write_atomic
+from records.quality import Quality, quality_facts
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.identify.report import identify_page
@@ -32,10 +35,11 @@ from twinlaw.pages.identify.summary import (
     aid_rows,
     estimate_heading,
     estimate_rows,
-    test_rows,
+    held_out_rows,
 )
 from twinlaw.pages.identify.truth import true_values
 from twinlaw.pages.page import page_text
+from twinlaw.pages.quality import quality_sentence
 from twinlaw.workflows.identify.by_time import Wishes, identify
 from twinlaw.workflows.identify.columns import usable_inputs
 from twinlaw.workflows.identify.inputs import free_names, read_limits
@@ -84,7 +88,10 @@ def _add_log_arguments(parser: argparse.ArgumentParser) -> None:
         "--trim", nargs=2, type=float, metavar=("BEGIN", "END"), help="use only these seconds of the logs to fit"
     )
     parser.add_argument(
-        "--truth", type=Path, metavar="PLANT.toml", help="fly this plant with the controller designed from the result"
+        "--truth",
+        type=Path,
+        metavar="PLANT.toml",
+        help="the plant that was recorded: to lay beside the result, and to fly",
     )
     parser.add_argument(
         "--offsets", action="store_true", help="estimate a constant added to each input of logs, the rig's trim"
@@ -108,8 +115,8 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
-    wishes = _wishes(chosen, bound)
     inputs = usable_inputs(chosen.files, holdout, bound, chosen.trim)
+    wishes = _wishes(chosen, bound, len(inputs.experiments) + bool(inputs.logs))
     result = identify(bound, inputs, wishes, chosen.out)
     known = None if truth is None else true_values(truth)
     sections, pictures = proven(result, truth)
@@ -118,36 +125,37 @@ def run(chosen: argparse.Namespace) -> int:
     write_atomic(
         chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections, known))
     )
-    _tell(chosen, result, known)
+    quality = identification_quality(result, known or {})
+    content = facts(result) | {"quality": quality_facts(quality)} | ({} if known is None else {"truth": dict(known)})
+    write_atomic(chosen.out / "identification.json", json.dumps(content, indent=1) + "\n")
+    if chosen.json:
+        print(json.dumps(content))
+    else:
+        _tell(chosen, result, known, quality)
     return 0
 
 
-def _wishes(chosen: argparse.Namespace, bound: BoundPlant) -> Wishes:
+def _wishes(chosen: argparse.Namespace, bound: BoundPlant, fits: int) -> Wishes:
+    """What the command line asks of so many `fits`, each with a search of its own."""
     names = free_names(bound, chosen.free)
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
     beside = tuple(method for method in ("gradient",) if method != chosen.search)
-    search = (
-        None
-        if chosen.search is None
-        else Search(
-            chosen.search, chosen.seed, beside=beside, progress=console.Countdown(f"{chosen.search} search: generation")
-        )
-    )
+    progress = console.Countdown(f"{chosen.search} search: generation", fits)
+    search = None if chosen.search is None else Search(chosen.search, chosen.seed, beside=beside, progress=progress)
     only = None if chosen.free is None else names
     return Wishes(names, limits, search, chosen.window, chosen.prior, chosen.offsets, only)
 
 
-def _tell(chosen: argparse.Namespace, result: Identification, truth: Mapping[str, float] | None) -> None:
-    if chosen.json:
-        print(json.dumps(facts(result)))
-        return
+def _tell(
+    chosen: argparse.Namespace, result: Identification, truth: Mapping[str, float] | None, quality: Quality
+) -> None:
     if result.warning:
         print(f"{result.warning}\n")
     print(console.table(estimate_rows(result.estimates, result.at_bound, truth), estimate_heading(truth)))
     if result.aids:
         print("\n" + console.table(aid_rows(result.aids), AID_HEADING))
     if result.holdout:
-        print("\n" + console.table(test_rows("held out", result.holdout), FIT_HEADING))
+        print("\n" + console.table(held_out_rows(result.holdout), FIT_HEADING))
     for note in result.notes:
         print(f"- {note}")
-    print(f"\n{chosen.out / 'plant.toml'}")
+    print(f"\n{quality_sentence(quality)}\n{chosen.out / 'plant.toml'}")

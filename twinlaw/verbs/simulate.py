@@ -13,12 +13,14 @@ from controllers import loading
 from design.structure import demand_helicopter, missing
 from records.law_table import FlownTable
 from records.log import save_log
+from records.quality import STEP_ERROR, quality_facts
 from records.text.units import unit_of
 from sim.bind import BoundPlant
 from sim.halving import StepError
 from sim.tracking import left
 from twinlaw.cli import console, options
-from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_facts, tracking_rows
+from twinlaw.pages.quality import quality_sentence
+from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller
 from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step, stirred
@@ -49,17 +51,20 @@ def run(chosen: argparse.Namespace) -> int:
     generated = chosen.arithmetic in ARITHMETICS
     flight = fly_host(bound, table, chosen.arithmetic) if generated else fly_double(bound, table)
     error = halved_step(bound, table)
+    by_output = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
+    exact = [STEP_ERROR.look(name, value / bound.plant.sensors[name]) for name, value in by_output]
+    quality = flight_quality(flight.tracking, exact)
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)
     gone = left(flight.tracking)
     if chosen.json:
         facts = {"log": str(path), "table_digest": table.digest, "left": list(gone), **_error_facts(bound, error)}
-        print(json.dumps(facts | tracking_facts(flight.tracking)))
+        print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
         if gone:
             print(f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-        print(f"\n{_error_told(bound, error)}\n{path}")
+        print(f"\n{_error_told(bound, error)}\n{quality_sentence(quality)}\n{path}")
     return 0
 
 

@@ -3,11 +3,13 @@
 A hold is what lies between two changes of any reference; its step is the change of this axis' reference that began it.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sim.activity import activity
 
 Array = NDArray[np.float64]
 
@@ -23,8 +25,8 @@ class Merit:
     `overshoot` is the largest excess beyond a new reference as a share of its step; `settling_s` the longest time from a step until the
     angle stays within 1 deg of it, None where it does not before the next change; `steady_error_rad` the largest |mean error| of the last
     two seconds of a hold; `iae_rad_s` the integral of |error|; `largest_error_rad` that of all samples later than the longest
-    time to settle asked for, 5 s after the last change; `swing_V` largest minus least voltage after the first hold; `travel_V_s` the
-    way of the voltage per second.
+    time to settle asked for, 5 s after the last change; `swing_V` largest minus least voltage after the first hold; `travel_V_s` and
+    `reversals_1_s` its activity from then on.
     """
 
     overshoot: float
@@ -34,6 +36,7 @@ class Merit:
     largest_error_rad: float
     swing_V: float
     travel_V_s: float
+    reversals_1_s: float
 
 
 CALM_S = 5.0
@@ -50,7 +53,8 @@ def merit(t_s: Array, reference_rad: Array, y_rad: Array, u_V: Array, axis: int)
     steps = [entry for entry in steps if abs(entry[2]) >= LEAST_STEP_RAD]
     settling = [_settling_s(error[begin:end], period_s) for begin, end, _ in steps]
     calm = [error[begin + round(CALM_S / period_s) : end] for begin, end in holds]
-    late = u[holds[0][1] :] if len(holds) > 1 else u
+    late = slice(holds[0][1] if len(holds) > 1 else 0, None)
+    busy = activity(t_s[late], u[late])
     return Merit(
         overshoot=max((_overshoot(error[begin:end], step) for begin, end, step in steps), default=0.0),
         settling_s=None if None in settling else max((time for time in settling if time is not None), default=0.0),
@@ -59,8 +63,8 @@ def merit(t_s: Array, reference_rad: Array, y_rad: Array, u_V: Array, axis: int)
         ),
         iae_rad_s=float(np.sum(np.abs(error)) * period_s),
         largest_error_rad=max((float(np.max(np.abs(part))) for part in calm if part.size), default=0.0),
-        swing_V=float(np.ptp(late)),
-        travel_V_s=float(np.sum(np.abs(np.diff(late))) / (period_s * late.size)),
+        swing_V=float(np.ptp(u[late])),
+        **asdict(busy),
     )
 
 

@@ -102,7 +102,7 @@ def balance_run(experiment: Experiment, bound: BoundPlant) -> Run:
         sd=np.full(n, TORQUE_SD_NM),
         at_s=np.arange(float(n)),
         channel=np.zeros(n, dtype=np.int64),
-        channels=("torque_N_m",),
+        channels=("torque_Nm",),
         select=select,
         begins=np.array([0]),
         stops=np.array([len(u)]),

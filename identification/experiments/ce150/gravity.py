@@ -72,7 +72,7 @@ def run(experiment: Experiment, bound: BoundPlant) -> Run:
         sd=np.full(n, TORQUE_SD_NM),
         at_s=np.arange(float(n)),
         channel=np.zeros(n, dtype=np.int64),
-        channels=("torque_N_m",),
+        channels=("torque_Nm",),
         select=np.arange(n),
         begins=np.array([0]),
         stops=np.array([n]),

@@ -68,7 +68,7 @@ def flight(plant: Plant, t_s: Array, u: Array, rng: np.random.Generator) -> RunL
     q, q_dot = _pitching(t_s.size, rng)
     omega = np.column_stack([x[:, 1], q, x[:, 2]])
     omega_dot = np.column_stack([rates[:, 1], q_dot, rates[:, 2]])
-    a_y_m_s2 = a_y_m_s2 + lever_terms(omega, omega_dot, np.array(plant.parameters["r_s"].values))[:, 1]
+    a_y_m_s2 = a_y_m_s2 + np.sum(lever_terms(omega, omega_dot, np.array(plant.parameters["r_s"].values)), axis=0)[:, 1]
     y = np.column_stack([omega, a_y_m_s2])
     for place, name in enumerate(MEASURED):
         y[:, place] += plant.sensor_noise.get(name, 0.0) * rng.standard_normal(t_s.size)

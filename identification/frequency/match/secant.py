@@ -30,8 +30,9 @@ MU_MOST = 1e8
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The best theta of one search, its J, how often F was evaluated, and whether the search settled."""
+    """Where one search began, the best theta that it came to, its J, how often F was evaluated, and whether the search settled."""
 
+    start: Array
     theta: Array
     J: float
     evaluations: int
@@ -43,17 +44,17 @@ def secant_search(residual: Residual, start: Array, size: Array) -> Found | None
     F = residual(start)
     if F is None:
         return None
-    best = Found(np.array(start), float(F @ F), 1, False)
+    best = Found(np.array(start), np.array(start), float(F @ F), 1, False)
     step, stalls = FIRST_STEP, 0
     for _ in range(MOST_STEPS):
         S, spent = _through_points(residual, best.theta, F, size, step)
         after, F = _descend(residual, best, F, S, size)
         gain = best.J - after.J
-        best = Found(after.theta, after.J, after.evaluations + spent, False)
+        best = Found(best.start, after.theta, after.J, after.evaluations + spent, False)
         stalls = stalls + 1 if gain <= SETTLED * best.J else 0
         step = max(LATER_STEP, step / 10.0)
         if stalls and step == LATER_STEP:
-            return Found(best.theta, best.J, best.evaluations, True)
+            return Found(best.start, best.theta, best.J, best.evaluations, True)
     return best
 
 
@@ -100,4 +101,4 @@ def _descend(residual: Residual, best: Found, F: Array, S: Array, size: Array) -
         theta, F, J, mu = theta + s * size, other, J_other, max(mu / 5.0, 1e-10)
         if small:
             break
-    return Found(theta, J, best.evaluations + spent, False), F
+    return Found(best.start, theta, J, best.evaluations + spent, False), F

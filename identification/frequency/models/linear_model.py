@@ -16,7 +16,7 @@ from scipy.linalg import expm
 
 from design.linearise import linearise
 from identification.fit.ranges import Range, ranges_of
-from identification.frequency.lateral import StateSpace, state_space
+from identification.frequency.lateral import STATES, StateSpace, state_space
 from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from records.plant import Plant
@@ -46,6 +46,11 @@ class LinearModel(Protocol):
         ...
 
     @property
+    def states(self) -> tuple[str, ...]:
+        """Names of x, with their units as far as they have one."""
+        ...
+
+    @property
     def inputs(self) -> tuple[str, ...]:
         """Columns of u."""
         ...
@@ -68,6 +73,7 @@ class LateralModel:
     names: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    states: tuple[str, ...] = STATES
 
     @property
     def start(self) -> Array:
@@ -100,6 +106,11 @@ class OperatingPointModel:
     def names(self) -> tuple[str, ...]:
         """Free parameters."""
         return tuple(self.ranges)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The plant's states."""
+        return tuple(str(state) for state in self.bound.model.states)
 
     @property
     def inputs(self) -> tuple[str, ...]:

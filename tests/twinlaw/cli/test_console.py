@@ -1,5 +1,6 @@
 """Colours and progress: on a terminal that wants them, and nowhere else."""
 
+import io
 import os
 import pty
 import re
@@ -11,6 +12,7 @@ import pytest
 
 from tests.soak import sampled
 from toolchain.cache import CACHE_DIR
+from twinlaw.cli import console
 
 ROOT = Path(__file__).resolve().parents[3]
 TWINLAW = [sys.executable, "-m", "twinlaw.command"]
@@ -50,6 +52,28 @@ def test_a_pipe_gets_neither_colours_nor_progress() -> None:
     done = subprocess.run(FAILS, capture_output=True, text=True, cwd=ROOT, check=False)
     assert ESCAPE not in done.stdout + done.stderr
     assert done.stderr.count("\n") == 1
+
+
+class Terminal(io.StringIO):
+    """Keeps what a terminal is shown."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_countdown_knows_in_which_round_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Truth: three rounds of four, the second of which ends after two.
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    tell = console.Countdown("search: generation", 3)
+    for done in (1, 2, 3, 4, 1, 2, 1, 2, 3, 4):
+        tell(done, 4)
+    shown = [line.strip() for line in sys.stderr.getvalue().split("\r") if line.strip()]  # type: ignore[attr-defined]
+    assert [line.rpartition(", ")[0] for line in shown] == [
+        f"search: generation {done} of 4, {which} of 3"
+        for which, last in ((1, 4), (2, 2), (3, 4))
+        for done in range(1, last + 1)
+    ]
+    assert shown[-1].endswith(", 0 s to go")
 
 
 def test_who_has_no_home_hears_nothing_of_it() -> None:

@@ -19,6 +19,7 @@ from identification.envelope.truth.fly import fly
 from identification.envelope.truth.plan import plan
 from identification.margins import MARGINS
 from jobs.plain import plain
+from records.quality import Colour
 from tests.soak import SOAK
 from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
@@ -113,7 +114,25 @@ def test_the_verb_identifies_interpolates_and_draws(answered: Answered) -> None:
     page = (answered.out / "report.html").read_text()
     for words in ("Table 2.1", "Tables 2.2 and 2.3", "Tables 3.1 to 3.10", "Tables 4.1 to 4.8", "HF3000ft-60kts"):
         assert words in page
-    assert "HF3000ft-50kts, one step ahead" in answered.said
+    outside = {
+        entry["condition"]: max(
+            signal["outside_percent"] for check in entry["checks"] for signal in check["states"]["with trim"].values()
+        )
+        for entry in told["conditions"]
+    }
+    worst = max(outside, key=outside.__getitem__)
+    assert f"{worst}, one step ahead" in answered.said
+    assert f"{worst}, the worst" in page
+    assert (told["quality"]["colour"] == "green") == (
+        not any(look["colour"] != "green" for look in told["quality"]["looked_at"])
+    )
+    assert {entry["mode"] for entry in told["modes"]} == {"phugoid", "Dutch roll"}
+
+
+def test_a_condition_to_show_that_no_flight_identifies_is_refused(folder: Path, tmp_path: Path, capsys) -> None:
+    assert main(["envelope", "--show", "HF3000ft-60kts", "--out", str(tmp_path / "out"), str(folder)]) == 2
+    assert "--show: got 'HF3000ft-60kts', expected one of HF3000ft-50kts, HF3000ft-70kts" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_initial_states_typed_in_are_tried_beside_the_tuned_ones(
@@ -259,10 +278,12 @@ def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answe
     assert [entry["condition"] for entry in told["conditions"]] == [ENDS[0].name]
     assert np.array(told["conditions"][0]["A"]).shape == (8, 8)
 
-    drawn_of = watched(monkeypatch, lambda *_: Page("not drawn", "", True, (), ()))
+    drawn_of = watched(monkeypatch, lambda *_: Page("not drawn", "", Colour.GREEN, "", (), ()))
     works_here(monkeypatch)  # what was done is kept, and the rest is little
     assert main(words) == 0
     assert (tmp_path / "envelope.json").read_bytes() == (answered.out / "envelope.json").read_bytes()
-    assert plain(drawn_of) == plain(answered.drawn_of)
+    (mine,), (theirs,) = drawn_of, answered.drawn_of
+    assert plain(mine[:4]) == plain(theirs[:4])
+    assert mine[4:] == theirs[4:]  # the modes, complex numbers
     assert (tmp_path / "report.html").is_file()
     assert not (tmp_path / "jobs").exists()

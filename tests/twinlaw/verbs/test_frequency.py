@@ -31,7 +31,7 @@ def swept(folder):
 def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_path, capsys):
     if not SOAK:
         monkeypatch.setattr(fit, "RESTARTS", 0)  # further searches: tests/identification/frequency/test_match.py
-    held = ["--holdout", str(flown / "doublets.csv")]
+    held = ["--holdout", str(flown / "doublets.csv"), "--truth", str(PLANTS / "raptor50.toml")]
     assert main([*FREQUENCY, *held, "--out", str(tmp_path), "--json", "--band-rad-s", "0.4", "12", *swept(flown)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads((tmp_path / "identification.json").read_text())
@@ -40,17 +40,32 @@ def test_flights_become_a_plant_file_a_report_and_json(flown, monkeypatch, tmp_p
     assert len(told["estimates"]) == 15
     assert len(told["frequency"]["pairs"]) == 6
     assert [check["run"] for check in told["frequency"]["checks"]] == ["doublets"]
+    assert told["quality"]["colour"] in ("green", "amber")
     true, found = load_plant(PLANTS / "raptor50.toml"), load_plant(tmp_path / "plant.toml")
+    for entry in told["estimates"]:
+        assert entry["value"] == found.parameters[entry["name"]].value
+        assert entry["sd"] == found.parameters[entry["name"]].sd
+        assert told["truth"][entry["name"]] == true.parameters[entry["name"]].value
+    A = told["frequency"]["matrices"]["A"]
+    assert A[1][2] == pytest.approx(found.parameters["L_r"].value, rel=1e-12)
     assert found.correlation is not None
     for name in ("L_p", "N_r", "L_lat", "N_ped"):
         assert found.parameters[name].value == pytest.approx(true.parameters[name].value, rel=0.1)
         assert 0.0 < found.parameters[name].sd < 0.1 * abs(found.parameters[name].value)
     page = (tmp_path / "report.html").read_text()
-    for words in ("Fig. 5", "Fig. 6", "eq (8)", "coherence", "delta_ped to a_y_m_s2"):
+    for words in (
+        "Figs. 2 and 3",
+        "Fig. 5",
+        "Fig. 6",
+        "eq (8)",
+        "coherence",
+        "delta_ped to a_y [m/s^2]",
+        "What the colour stands on",
+    ):
         assert words in page
     assert all(path.read_text() in page for path in tmp_path.glob("*.svg"))
     assert {path.name for path in tmp_path.glob("*.svg")} == {
-        "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg",
+        "fig-5-p_rad_s.svg", "fig-5-r_rad_s.svg", "fig-5-a_y_m_s2.svg", "fig-6-doublets.svg", "fig-2.svg", "fig-3.svg",
     }  # fmt: skip
 
 

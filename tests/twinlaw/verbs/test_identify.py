@@ -3,6 +3,7 @@
 import json
 import shutil
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,14 @@ import pytest
 from identification.experiments.table import kinds_of
 from identification.proof import monte_carlo
 from identification.proof.bench import task
+from identification.search import genetic, methods
+from identification.search.methods import METHODS
 from records.log import load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
 from tests.angles import few_angles
-from tests.soak import SOAK
+from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
 from twinlaw.command import main
@@ -87,6 +90,24 @@ def test_an_interrupted_run_leaves_what_was_found_so_far(monkeypatch, folder, tm
     found = json.loads((tmp_path / "identification.json").read_text())
     assert {entry["name"] for entry in found["estimates"]} >= {"K_M", "tau_gE"}
     assert load_plant(tmp_path / "plant.toml").correlation is not None
+
+
+@pytest.mark.parametrize("method", sampled(METHODS, keep=["genetic"]))
+def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder, monkeypatch, tmp_path, capsys):
+    """Truth: the weight's torque within its interval, by each method; what the experiment needs besides, Psi_m, has no known truth."""
+    few_angles(monkeypatch)
+    monkeypatch.setattr(methods, "evolve", partial(genetic.evolve, settings=genetic.Settings(generations=5)))
+    truth = ["--truth", str(folder / "truth.toml")]
+    experiments = [str(folder / "03-gravity.toml")]
+    assert main(["identify", "--search", method, *truth, "--out", str(tmp_path), "--json", *experiments]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["quality"]["colour"] == "green"
+    (estimate,) = told["estimates"]
+    assert abs(estimate["value"] - told["truth"]["tau_gE"]) < 3.5 * estimate["sd"]
+    assert estimate["start"] == told["stages"][0]["searches"][0]["values"]["tau_gE"]
+    page = (tmp_path / "report.html").read_text()
+    assert "Psi_m" in page
+    assert "readings and residuals" in page
 
 
 @pytest.fixture(scope="module")

@@ -76,6 +76,8 @@ class Spread:
     worst_settling_s: float | None
     worst_steady_error_rad: float
     worst_swing_V: float
+    median_travel_V_s: float
+    median_reversals_1_s: float
 
 
 def spread_of(flown: Sequence[Mapping[str, Merit]], axis: str) -> Spread:
@@ -90,6 +92,8 @@ def spread_of(flown: Sequence[Mapping[str, Merit]], axis: str) -> Spread:
         worst_settling_s=max(times, default=None),
         worst_steady_error_rad=max(merit.steady_error_rad for merit in merits),
         worst_swing_V=max(merit.swing_V for merit in merits),
+        median_travel_V_s=float(np.median([merit.travel_V_s for merit in merits])),
+        median_reversals_1_s=float(np.median([merit.reversals_1_s for merit in merits])),
     )
 
 

@@ -48,6 +48,7 @@ def page_text(
             filtered=min(FILTERED, wanted.trial.runs),
             effects=_markdown(*effects),
             verdict=verdict(rows),
+            quality=_markdown(tables.QUALITY_HEADING, tables.quality_rows(rows)),
         )
     )
 

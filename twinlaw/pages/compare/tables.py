@@ -5,13 +5,36 @@ from collections.abc import Mapping, Sequence
 
 from records.board import STM32G071
 from twinlaw.pages.compare.comparison import Compared, spread_of
+from twinlaw.pages.compare.quality import axis_looks, controller_quality
 from twinlaw.pages.page import Row
+from twinlaw.pages.quality import colour_of, quality_sentence
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES
 from verification.comparison.measures import Merit
 
-MERIT_HEADING: Row = ("controller", "overshoot", "settling", "steady error", "largest error", "IAE", "swing", "travel")
-SPREAD_HEADING: Row = ("controller", "settled", "overshoot", "settling", "steady error", "IAE, median / worst", "swing")
+MERIT_HEADING: Row = (
+    "controller",
+    "overshoot",
+    "settling",
+    "steady error",
+    "largest error",
+    "IAE",
+    "swing",
+    "travel",
+    "reversals",
+)
+SPREAD_HEADING: Row = (
+    "controller",
+    "settled",
+    "overshoot",
+    "settling",
+    "steady error",
+    "IAE, median / worst",
+    "swing",
+    "travel, reversals, median",
+    "colour",
+)
+QUALITY_HEADING: Row = ("controller", "colour", "why")
 EQ26_HEADING: Row = ("eq (26) in float32", "axis", "coefficients", "Q(1)", "slowest pole over the range")
 
 
@@ -85,6 +108,7 @@ def _merit(merit: Merit) -> Row:
         f"{math.degrees(merit.iae_rad_s):.0f} deg s",
         f"{merit.swing_V:.2f} V",
         f"{merit.travel_V_s:.2f} V/s",
+        f"{merit.reversals_1_s:.1f} /s",
     )
 
 
@@ -106,9 +130,17 @@ def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
                 f"{math.degrees(found.worst_steady_error_rad):.2f} deg",
                 f"{math.degrees(found.median_iae_rad_s):.0f} / {math.degrees(found.worst_iae_rad_s):.0f} deg s",
                 f"{found.worst_swing_V:.2f} V",
+                f"{found.median_travel_V_s:.2f} V/s, {found.median_reversals_1_s:.1f} /s",
+                colour_of(axis_looks(row, axis)),
             )
         )
     return shown
+
+
+def quality_rows(rows: Sequence[Compared]) -> list[Row]:
+    """The colour of each controller on the spread plants, and why."""
+    found = [(row.row.name, controller_quality(row)) for row in rows]
+    return [(name, str(quality.colour), quality_sentence(quality)) for name, quality in found]
 
 
 def filter_rows(rows: Sequence[Compared], axis: str) -> tuple[Row, list[Row]]:

@@ -11,12 +11,14 @@ from twinlaw.pages.diagnose.answers import answers_section
 from twinlaw.pages.diagnose.causes import causes_section
 from twinlaw.pages.diagnose.firmware import differs, firmware_in_words
 from twinlaw.pages.diagnose.pictures import Predicted, curves, maps, shape_section
+from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, retuned_sentence
 from twinlaw.pages.diagnose.shrinkage import shrinkage_sections
 from twinlaw.pages.diagnose.verdict import verdict_sentence
 from twinlaw.pages.diagnose.why import why_section
 from twinlaw.pages.diagnose.words import alarm_in_words, plain_notes, plain_text, words
 from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.quality import quality_section, quality_sentence
 
 UNSEEN, HIDDEN = "unseen", "hidden"  # kinds of notes
 
@@ -36,6 +38,7 @@ def diagnosis_page(
     curve of an effect without a name, `moved` the plant's own numbers that moved most, `widths` see `sized`."""
     firmware = Section("Firmware", (firmware_in_words(diagnosis.firmware),))
     amiss = differs(diagnosis.firmware)
+    quality = diagnosis_quality(diagnosis)
     sections: list[Section | None] = [firmware] if amiss else []
     sections += [_place(diagnosis, places), causes_section(diagnosis, stories, moved, widths)]
     if shape is not None:
@@ -54,11 +57,13 @@ def diagnosis_page(
         _unseen(diagnosis),
         why_section(diagnosis),
         _notes(diagnosis),
+        quality_section(quality),
     ]
     return Page(
         title=f"{plant}: where the model and the rig part",
         verdict=verdict_sentence(diagnosis),
-        passed=diagnosis.verdict == "no gap" and not amiss,
+        colour=quality.colour,
+        why=quality_sentence(quality),
         facts=(("Logs", ", ".join(logs)),),
         sections=tuple(section for section in sections if section is not None),
     )

@@ -6,9 +6,11 @@ from records.diagnosis import Diagnosis
 from twinlaw.cli import console
 from twinlaw.pages.diagnose.answers import surest_answer
 from twinlaw.pages.diagnose.firmware import firmware_first, firmware_in_words
+from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
 from twinlaw.pages.diagnose.words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
+from twinlaw.pages.quality import quality_sentence
 
 MOST = 5
 
@@ -48,6 +50,7 @@ def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, fl
     if diagnosis.firmware is not None:
         yield f"firmware: {firmware_in_words(diagnosis.firmware)}"
     yield from plain_notes(diagnosis.note_records)
+    yield quality_sentence(diagnosis_quality(diagnosis))
 
 
 def _rows(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> list[tuple[str, str, str]]:

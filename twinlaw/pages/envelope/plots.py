@@ -29,7 +29,7 @@ def inputs() -> str:
     for (name, steps), colour in zip(INPUTS.items(), COLOURS, strict=True):
         over_time.append(Curve(t_s, multistep(t_s, steps, 1.0), name, colour))
         over_frequency.append(Curve(f, spectrum(f, steps, 1.0), name, colour))
-    panels = (Panel("input", over_time), Panel("|U|^2 [s^2]", over_frequency))
+    panels = (Panel("input [-]", over_time), Panel("|U|^2 [s^2]", over_frequency))
     return row(panels, ("time [s]", "frequency [Hz]"), height_in=2.8)
 
 

@@ -6,13 +6,14 @@ from typing import Any
 from identification.envelope.by_hand import Tried
 from identification.envelope.check import FINAL, Check
 from identification.envelope.criteria import outside_percent
-from identification.envelope.one_condition import ConditionResult
+from identification.envelope.modes import Mode
+from identification.envelope.one_condition import ConditionResult, Interpolated
+from identification.envelope.quality import envelope_quality
 from identification.envelope.record import summary
 from identification.envelope.study import Study
-from twinlaw.pages.envelope import plots, tables
+from twinlaw.pages.envelope import models, plots, tables
 from twinlaw.pages.page import Page, Section, Table
-
-SHOWN = "HA6000ft-50kts"  # the condition that the thesis shows
+from twinlaw.pages.quality import quality_section, quality_sentence
 
 THEIL_AND_NOISE = (
     "The rms error needs no weights. Theil's fit of a signal that is mostly noise, as A_x and A_y are here, ranks badly: an estimate as "
@@ -20,15 +21,20 @@ THEIL_AND_NOISE = (
 )
 
 
-def envelope_page(found: Study, origin: str, by_hand: Sequence[Tried] = ()) -> Page:
-    """The whole page; `origin` says where the flights came from, `by_hand` tells of starts that were typed in."""
-    entry, told = found.at(SHOWN), summary(found)
-    missed = sum(group["flights"] - group["held_three_seconds"] for group in told.values())
+def envelope_page(
+    found: Study, origin: str, by_hand: Sequence[Tried] = (), show: str | None = None, modes: Sequence[Mode] = ()
+) -> Page:
+    """The whole page; `origin` says where the flights came from, `by_hand` tells of starts that were typed in, `show` names the condition
+    that is drawn, by default the worst."""
+    entry, told = shown(found, show), summary(found)
+    quality = envelope_quality(found)
+    drawn = entry.condition.name + ("" if show else ", the worst; another by --show CONDITION")
     return Page(
         title="Models over the flight envelope",
         verdict=verdict(told),
-        passed=missed == 0,
-        facts=(("Flights", origin), ("Shown", entry.condition.name)),
+        colour=quality.colour,
+        why=quality_sentence(quality),
+        facts=(("Flights", origin), ("Shown", drawn)),
         sections=(
             _inputs(entry, found),
             _open_loop(entry),
@@ -36,11 +42,22 @@ def envelope_page(found: Study, origin: str, by_hand: Sequence[Tried] = ()) -> P
             *([_by_hand(by_hand)] if by_hand else []),
             *(_validation(check, entry) for check in entry.checks[1:]),
             _all_conditions(found),
+            _models(found, modes),
             _output_equation(entry, found),
             _global_model(entry, found),
             *([_interpolation(found)] if found.left_out else []),
+            quality_section(quality),
         ),
     )
+
+
+def shown(found: Study, name: str | None) -> ConditionResult:
+    """The condition of that name, by default the one whose worst signal leaves its margins most."""
+    if name is None:
+        return max(
+            found.conditions, key=lambda entry: max(m.outside_percent for c in entry.checks for m in c.states[FINAL])
+        )
+    return next(entry for entry in found.conditions if entry.condition.name == name)
 
 
 def verdict(told: dict[str, Any]) -> str:
@@ -127,6 +144,26 @@ def _all_conditions(found: Study) -> Section:
             *notes_of(found),
         ),
         (tables.conditions(found),),
+    )
+
+
+def _models(found: Study, modes: Sequence[Mode]) -> Section:
+    known = any(mode.truth is not None for mode in modes)
+    beside = " The truth is the exact derivatives of the simulated helicopter's equations." if known else ""
+    everything: list[ConditionResult | Interpolated] = [*found.conditions, *found.left_out]
+    return Section(
+        "Modes, and A, B, C and D by condition",
+        (
+            f"The slowest oscillation, the phugoid, and the fastest, the Dutch roll, as eigenvalues.{beside}",
+            "The next x is A x + B u, a sample later, and y = C x + D u, all of deviations from trim; an element's unit is that of its row "
+            "over that of its column. The matrices of each condition, A B over C D, open at a click.",
+        ),
+        (
+            *([models.modes_off(modes)] if known else []),
+            *([models.modes(modes)] if modes else []),
+            *(models.matrices(entry) for entry in everything),
+        ),
+        (models.modes_plot(modes),) if modes else (),
     )
 
 

@@ -11,8 +11,10 @@ from identification.envelope.flights.flight import OUTPUTS, STATES
 from identification.envelope.flights.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.one_condition import ConditionResult
 from identification.envelope.output_equation.outputs import METHODS
+from identification.envelope.quality import check_looks
 from identification.envelope.study import Study
 from identification.margins import MARGINS, FOOT_m
+from records.quality import Quality
 from twinlaw.pages.page import Row, Table
 
 # Table 2.1 of the thesis, open loop at HA6000ft-50kts [%].
@@ -54,9 +56,9 @@ def open_loop(entry: ConditionResult) -> Table:
     rows = [
         ("fit [%]", *(f"{match.fit_percent:.2f}" for match in found)),
         ("fit [%], trim put back", *(f"{match.fit_percent:.2f}" for match in whole)),
-        ("fit [%], thesis", *(f"{value:.2f}" for value in THESIS_FIT)),
+        ("fit [%], thesis at HA6000ft-50kts", *(f"{value:.2f}" for value in THESIS_FIT)),
         ("correlation [%]", *(f"{100 * match.correlation:.2f}" for match in found)),
-        ("correlation [%], thesis", *(f"{value:.2f}" for value in THESIS_CORRELATION)),
+        ("correlation [%], thesis at HA6000ft-50kts", *(f"{value:.2f}" for value in THESIS_CORRELATION)),
         ("points outside [%]", *(f"{match.outside_percent:.2f}" for match in found)),
     ]
     return Table(rows, ("", *symbols(STATES)))
@@ -104,15 +106,22 @@ def conditions(found: Study) -> Table:
                 f"{outside_percent(own.states[FINAL]):.2f}",
                 *(f"{outside_percent(check.states[FINAL]):.2f}" for check in others),
                 f"{held} of {len(others)}",
+                *_worst(entry.checks),
             )
         )
     most = max((len(row) for row in rows), default=0)
-    padded = [(*row[:-1], *[""] * (most - len(row)), row[-1]) for row in rows]
-    validations = ["validation 1" if number == 0 else f"{number + 1}" for number in range(most - 6)]
-    return Table(
-        padded,
-        ("condition", "row chosen", "radius, open", "radius, closed", "identification", *validations, "held 3 s"),
-    )
+    padded = [(*row[:-3], *[""] * (most - len(row)), *row[-3:]) for row in rows]
+    validations = ["valid. 1 [%]" if number == 0 else f"{number + 1} [%]" for number in range(most - 8)]
+    radii = ("radius, open", "closed")
+    heading = ("condition", "row", *radii, "ident. [%]", *validations, "held 3 s", "worst", "")
+    return Table(padded, heading)
+
+
+def _worst(checks: Sequence[Check]) -> tuple[str, str]:
+    """The signal that is outside its margins most, and the colour of all."""
+    quality = Quality(tuple(look for check in checks for look in check_looks(check)))
+    most = max((look for look in quality.looks if look.value is not None), key=lambda look: look.value or 0.0)
+    return f"{most.value:.1f} %", str(quality.colour)
 
 
 def outputs_by_condition(found: Study) -> Table:
@@ -194,8 +203,8 @@ def _left_out(title: str, checks: Sequence[tuple[str, Check]]) -> Table:
     for name, check in checks:
         shares = [f"{outside_percent(check.states[how]):.2f}" for how in tunings]
         held = f"{check.held[FINAL]} of {len(check.data.x)}"
-        rows.append((name, *shares, held, f"{outside_percent(check.overall['linear']):.2f}"))
-    return Table(rows, (f"{title}: outside [%]", *tunings, "held 3 s", "accelerations"))
+        rows.append((name, *shares, held, f"{outside_percent(check.overall['linear']):.2f}", *_worst([check])))
+    return Table(rows, (f"{title}: outside [%]", *tunings, "held 3 s", "accelerations", "worst signal", ""))
 
 
 def margins() -> Table:

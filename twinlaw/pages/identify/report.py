@@ -7,10 +7,12 @@ import numpy as np
 from identification.experiments.table import KINDS
 from identification.proof.linear_rotor import linear_rotor, readings_by
 from identification.proof.validation import Comparison
+from identification.results.quality import identification_quality
 from identification.results.result import Identification
 from identification.stages.estimate import Estimate
 from records.experiment import Experiment
 from sim.bind import BoundPlant
+from twinlaw.pages.identify.residuals import fit_section
 from twinlaw.pages.identify.summary import (
     AID_HEADING,
     FIT_HEADING,
@@ -18,10 +20,12 @@ from twinlaw.pages.identify.summary import (
     estimate_heading,
     estimate_rows,
     fit_rows,
-    test_rows,
+    held_out_rows,
 )
+from twinlaw.pages.measured import measured
 from twinlaw.pages.page import Page, Section, Table
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, row, stack
+from twinlaw.pages.quality import quality_section, quality_sentence
 
 ROTORS = {"main_rotor": ("main rotor", "Fig. 7"), "tail_rotor": ("tail rotor", "Fig. 8")}
 SHOWN_S = 15.0
@@ -36,20 +40,23 @@ def identify_page(
 ) -> Page:
     """The whole page; `further` sections come last, and the `truth` beside the estimates where it is known."""
     told = sum(entry.identified for entry in result.estimates)
-    sections = [_estimates(result, truth), _correlation(result), _fits(result)]
+    quality = identification_quality(result, truth or {})
+    sections = [_estimates(result, truth), *_correlation(result), *_fits(result)]
     by_kind = {experiment.kind: experiment for experiment in experiments}
     sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
     if "gravity" in by_kind:
         sections.append(_gravity(by_kind["gravity"], result))
+    sections += [fit_section(title, stage) for title, stage in result.stages]
     return Page(
         title=f"{result.plant.name}: identified",
         verdict=(
             f"{result.warning}. " * bool(result.warning)
             + f"{told} of {len(result.estimates)} parameters identified; {len(result.notes)} remarks."
         ),
-        passed=told == len(result.estimates) and not result.warning,
+        colour=quality.colour,
+        why=quality_sentence(quality),
         facts=(("Equations", result.plant.model),),
-        sections=(*sections, *further),
+        sections=(*sections, *further, quality_section(quality)),
     )
 
 
@@ -60,22 +67,25 @@ def _estimates(result: Identification, truth: Mapping[str, float] | None) -> Sec
     return Section("Parameters", result.notes or ("Nothing to remark.",), tuple(tables))
 
 
-def _correlation(result: Identification) -> Section:
+def _correlation(result: Identification) -> list[Section]:
     """The pairs that hang together most; the whole matrix is in plant.toml."""
     matrix, names = result.belief.correlation, result.belief.names
     pairs = [(abs(matrix[i, j]), names[i], names[j], matrix[i, j]) for i in range(len(names)) for j in range(i)]
     rows = [(a, b, f"{value:+.3f}") for _, a, b, value in sorted(pairs, key=lambda pair: -pair[0])[:12]]
     sentence = "Pairs whose errors hang together most: only a combination of such two is known well. The whole matrix is in plant.toml."
-    return Section("Correlation", (sentence,), (Table(rows, ("parameter", "parameter", "correlation")),))
+    return (
+        [Section("Correlation", (sentence,), (Table(rows, ("parameter", "parameter", "correlation")),))] if rows else []
+    )
 
 
-def _fits(result: Identification) -> Section:
+def _fits(result: Identification) -> list[Section]:
+    """Every channel that has readings enough to be judged."""
     sentence = (
-        "rms of what is left, beside what the sensor's rounding alone leaves; fit = 1 - |y - prediction| / |y - mean|. "
+        "rms of what is left, beside what the sensor's rounding and noise alone leave; fit = 1 - |y - prediction| / |y - mean|. "
         "Readings that are more correlated than their rounding explains count for fewer samples in the intervals."
     )
-    rows = [*fit_rows(result.stages), *test_rows("held out", result.holdout)]
-    return Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))
+    rows = [*fit_rows(result.stages), *held_out_rows(result.holdout)]
+    return [Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))] if rows else []
 
 
 def _rotor(bound: BoundPlant, experiment: Experiment, result: Identification) -> Section:
@@ -147,7 +157,7 @@ def flight_section(comparison: Comparison) -> Section:
             Curve(here.t_s, scale * here.column(name), "identified", RED, "--"),
         ]
         panels.append(Panel(label, tuple(curves)))
-    rows = [(name, f"{value:.3g}") for name, value in comparison.rms.items()]
+    rows = [(name, measured(value, name)) for name, value in comparison.rms.items()]
     return Section(
         "Validation in the control structure (Fig. 13)",
         ("One controller, designed from the identified plant, flies the real plant and the identified one.",),

@@ -5,10 +5,11 @@ from itertools import cycle
 
 import numpy as np
 
+from identification.results.result import Estimated
 from identification.search.methods import Searched
 from identification.stages.estimate import Estimate
 from sim.bind import BoundPlant
-from twinlaw.pages.identify.truth import off, told, true_values
+from twinlaw.pages.identify.truth import off, told, true_values, z
 from twinlaw.pages.page import Section, Table
 from twinlaw.pages.plots import COLOURS, Curve, Panel, row
 
@@ -17,20 +18,21 @@ Stages = Sequence[tuple[str, Estimate]]
 
 
 def search_sections(
-    stages: Stages, truth: BoundPlant | None, evolution: str, units: Mapping[str, str]
+    stages: Stages, truth: BoundPlant | None, evolution: str, estimates: Sequence[Estimated]
 ) -> list[Section]:
     """The table of all stages that searched, and Fig. 6, their `evolution_plot`, where there is one; nothing where no stage did."""
     searched = [(title, stage) for title, stage in stages if stage.searched]
     if not searched:
         return []
-    return [_side_by_side(searched, true_values(truth), units), *_evolution(evolution)]
+    return [_side_by_side(searched, true_values(truth), estimates), *_evolution(evolution)]
 
 
-def _side_by_side(stages: Stages, truth: Mapping[str, float], units: Mapping[str, str]) -> Section:
+def _side_by_side(stages: Stages, truth: Mapping[str, float], estimates: Sequence[Estimated]) -> Section:
     methods = [found.method for found in stages[0][1].searched]
-    compared = [cell for method in methods for cell in ((method, "error") if truth else (method,))]
+    compared = [cell for method in methods for cell in ((method, "error", "z") if truth else (method,))]
     known = ("truth",) if truth else ()
-    rows = [line for title, stage in stages for line in _rows(title, stage, truth, units)]
+    by_name = {entry.name: entry for entry in estimates}
+    rows = [line for title, stage in stages for line in _rows(title, stage, truth, by_name)]
     costs = [
         (_short(title), found.method, f"{found.error:.4g}", f"{found.cpu_s:.2f} s")
         for title, stage in stages
@@ -40,20 +42,23 @@ def _side_by_side(stages: Stages, truth: Mapping[str, float], units: Mapping[str
         "What each method found by itself within the same ranges; gradient is the compiled least squares, from the best of 50 "
         "points in them. "
         "The estimates above start from the first of them.",
-        "Below: what is left, sum |e| with angles in degrees, and CPU time.",
+        "z counts in the standard deviations of those. Below: what is left, sum |e| with angles in degrees, and CPU time.",
     )
     tables = (Table(rows, (*HEADING, *known, *compared)), Table(costs, ("data", "method", "sum |e| [deg]", "CPU")))
     return Section("Search over the whole range", sentences, tables)
 
 
-def _rows(title: str, stage: Estimate, truth: Mapping[str, float], units: Mapping[str, str]) -> list[tuple[str, ...]]:
+def _rows(
+    title: str, stage: Estimate, truth: Mapping[str, float], estimates: Mapping[str, Estimated]
+) -> list[tuple[str, ...]]:
     first, rows = stage.searched[0], []
     for place, name in enumerate(first.names):
+        unit, sd = (estimates[name].unit, estimates[name].by_data_sd) if name in estimates else ("", 0.0)
         bits = f"{first.bits[place]}" if first.bits else ""
         cells = [
             _short(title),
             name,
-            units.get(name, ""),
+            unit,
             f"{first.lower[place]:.4g} .. {first.upper[place]:.4g}",
             bits,
         ]
@@ -61,7 +66,8 @@ def _rows(title: str, stage: Estimate, truth: Mapping[str, float], units: Mappin
         cells += [told(known)] if truth else []
         for found in stage.searched:
             cells.append(f"{found.values[place]:.5g}")
-            cells += [off(float(found.values[place]), known)] if truth else []
+            value = float(found.values[place])
+            cells += [off(value, known), z(value, sd, known)] if truth else []
         rows.append(tuple(cells))
     return rows
 

@@ -3,15 +3,18 @@
 from collections.abc import Container, Mapping, Sequence
 
 from identification.results.notes import chance, relative
+from identification.results.quality import fit_looks, held_out_look
 from identification.results.result import Estimated
 from identification.stages.estimate import Estimate
 from identification.uncertainty.residuals import ResidualTest
 from twinlaw.pages.identify.truth import HEADING as TRUTH_HEADING
 from twinlaw.pages.identify.truth import off, told, z
+from twinlaw.pages.measured import measured
+from twinlaw.pages.quality import colour_of
 
 HEADING = ("parameter", "unit", "start", "estimate", "95 % interval", "sd", "")
 AID_HEADING = ("besides", "unit", "estimate", "95 % interval", "sd")
-FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated")
+FIT_HEADING = ("data", "run", "channel", "samples", "rms", "sensor alone", "fit", "correlated", "")
 
 
 def estimate_heading(truth: Mapping[str, float] | None) -> tuple[str, ...]:
@@ -32,7 +35,7 @@ def estimate_rows(
             f"{entry.lower:.5g} .. {entry.upper:.5g}",
             _relative(entry),
             *(() if truth is None else _against(entry, truth.get(entry.name))),
-            "at its bound" if entry.name in at_bound else "" if entry.identified else "not identified",
+            "at its bound" if entry.name in at_bound else _untold(entry),
         )
         for entry in estimates
     ]
@@ -40,6 +43,10 @@ def estimate_rows(
 
 def _against(entry: Estimated, known: float | None) -> tuple[str, str, str]:
     return told(known), off(entry.value, known), z(entry.value, entry.sd, known)
+
+
+def _untold(entry: Estimated) -> str:
+    return "" if entry.identified else "kept"
 
 
 def _relative(entry: Estimated) -> str:
@@ -53,19 +60,28 @@ def aid_rows(aids: Sequence[Estimated]) -> list[tuple[str, ...]]:
 
 def fit_rows(stages: Sequence[tuple[str, Estimate]]) -> list[tuple[str, ...]]:
     """One row for each channel of each stage."""
-    return [row for title, stage in stages for row in test_rows(title, stage.residuals)]
+    return [
+        (*row, colour_of(fit_looks(test)))
+        for title, stage in stages
+        for test, row in zip(stage.residuals, _test_rows(title, stage.residuals), strict=True)
+    ]
 
 
-def test_rows(title: str, tests: Sequence[ResidualTest]) -> list[tuple[str, ...]]:
-    """One row for each channel of each run."""
+def held_out_rows(tests: Sequence[ResidualTest]) -> list[tuple[str, ...]]:
+    """One row for each channel of each log that was kept from the fit."""
+    rows = _test_rows("held out", tests)
+    return [(*row, colour_of([held_out_look(test)])) for test, row in zip(tests, rows, strict=True)]
+
+
+def _test_rows(title: str, tests: Sequence[ResidualTest]) -> list[tuple[str, ...]]:
     return [
         (
             title,
             test.run,
             test.channel,
             f"{test.samples}",
-            f"{test.rms:.3g}",
-            f"{test.floor:.3g}" if test.floor else "",
+            measured(test.rms, test.channel),
+            measured(test.noise, test.channel) if test.noise else "",
             f"{100.0 * test.fit:.2f} %",
             "" if test.white else chance(test.whiteness_p),
         )

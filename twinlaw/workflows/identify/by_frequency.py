@@ -3,9 +3,10 @@
 import argparse
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +14,12 @@ from identification.fit.problem import Told
 from identification.frequency.lateral import MODEL as LATERAL
 from identification.frequency.lateral import UNITS, check_plant, log_columns
 from identification.frequency.match.fit import match
-from identification.frequency.models.lateral_record import lateral_model, lateral_records
+from identification.frequency.models.lateral_record import LateralFlight, lateral_flight, lateral_model, lateral_records
 from identification.frequency.models.linear_model import LinearModel, operating_point_model
+from identification.frequency.quality import frequency_quality
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import FrequencyIdentification, frequency_facts, frequency_identification
+from identification.frequency.truth import Truth, truth_of
 from identification.results.notes import bound_warning
 from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
@@ -24,23 +27,20 @@ from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
 from records.plant import Plant, load_plant, save_plant
+from records.quality import Quality, quality_facts
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
 from twinlaw.cli import console, options
-from twinlaw.pages.identify.frequency import (
-    CHECK_HEADING,
-    PAIR_HEADING,
-    check_rows,
-    frequency_page,
-    pair_rows,
-    pictures,
-)
-from twinlaw.pages.identify.summary import HEADING, estimate_rows
+from twinlaw.pages.identify.frequency import frequency_page
+from twinlaw.pages.identify.frequency_plots import pictures
+from twinlaw.pages.identify.frequency_tables import CHECK_HEADING, check_rows, pair_heading, pair_rows
+from twinlaw.pages.identify.summary import estimate_heading, estimate_rows
 from twinlaw.pages.page import page_text
+from twinlaw.pages.quality import quality_sentence
 from twinlaw.workflows.identify.inputs import Inputs, free_names, looked_at, read_limits
 from twinlaw.workflows.identify.progress import progress, save_result, told_files
 
-OTHER_METHODS = ("window", "truth", "offsets", "prior", "search")
+OTHER_METHODS = ("window", "offsets", "prior", "search")
 
 
 def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -> int:
@@ -55,28 +55,50 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
                 "leave it out",
             )
     plant = load_plant(chosen.plant)
+    true = None if chosen.truth is None else load_plant(chosen.truth)
+    if true is not None and true.model != plant.model:
+        raise BadInput("--truth", str(chosen.truth), repr(true.model), f"the model {plant.model!r}", "give another")
     save = partial(save_result, chosen.out)
     with (
         progress(plant, save, told_files(chosen.out)) as so_far,
         console.stage("frequency responses, secant search, intervals"),
     ):
-        found = (
-            _lateral(chosen, holdout, plant, so_far.told)
+        done = (
+            _lateral(chosen, holdout, plant, true, so_far.told)
             if plant.model == LATERAL
-            else _operating_point(chosen, holdout, bind(plant), so_far.told)
+            else _operating_point(chosen, holdout, bind(plant), true, so_far.told)
         )
+    found = done.found
     save_plant(chosen.out / "plant.toml", found.result.plant)
-    write_atomic(chosen.out / "identification.json", json.dumps(frequency_facts(found), indent=1) + "\n")
-    plots = pictures(found)
-    page = frequency_page(found, plots)
+    content = frequency_facts(found) | quality_of(frequency_quality(found, done.truth), done.truth)
+    write_atomic(chosen.out / "identification.json", json.dumps(content, indent=1) + "\n")
+    plots = pictures(found, done.truth, done.flown)
+    page = frequency_page(found, plots, done.truth, done.flown)
     for name, picture in plots.items():
         write_atomic(chosen.out / f"{name}.svg", picture)
     write_atomic(chosen.out / "report.html", page_text(page))
-    _tell(chosen, found)
+    if chosen.json:
+        print(json.dumps(content))
+    else:
+        _tell(chosen, done)
     return 0
 
 
-def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, told: Told) -> FrequencyIdentification:
+@dataclass(frozen=True, eq=False)
+class Done:
+    """What was found, what is true of it where that is known, and the first flight of a helicopter as it was flown."""
+
+    found: FrequencyIdentification
+    truth: Truth | None
+    flown: LateralFlight | None = None
+
+
+def quality_of(quality: Quality, truth: Truth | None) -> dict[str, Any]:
+    """For a program."""
+    return {"quality": quality_facts(quality)} | ({} if truth is None else {"truth": dict(truth.values)})
+
+
+def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, true: Plant | None, told: Told) -> Done:
     check_plant(plant)
     if chosen.bounds is not None:
         raise BadInput(
@@ -86,9 +108,13 @@ def _lateral(chosen: argparse.Namespace, holdout: Sequence[Path], plant: Plant, 
             "nothing: its parameters have no bounds",
             "leave it out",
         )
-    model = lateral_model(plant, _lateral_names(chosen.free, plant))
+    names = _lateral_names(chosen.free, plant)
+    model = lateral_model(plant, names)
     logs, held = _read(chosen, holdout, log_columns())
-    return _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
+    found = _matched(chosen, plant, model, lateral_records(logs, plant), lateral_records(held, plant), told)
+    name, log = next(iter(logs.items()))
+    truth = None if true is None else truth_of(true, lateral_model(true, model.names), found.fit)
+    return Done(found, truth, lateral_flight(log, name, plant))
 
 
 def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
@@ -105,8 +131,8 @@ def _lateral_names(wanted: str | None, plant: Plant) -> tuple[str, ...] | None:
 
 
 def _operating_point(
-    chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant, told: Told
-) -> FrequencyIdentification:
+    chosen: argparse.Namespace, holdout: Sequence[Path], bound: BoundPlant, true: Plant | None, told: Told
+) -> Done:
     if bound.input_path or bound.output_path:
         raise BadInput(
             "effects", bound.plant.name, "effects on the way of an input or output", "effects in the equations alone",
@@ -119,9 +145,11 @@ def _operating_point(
     )
     means = dict(zip(outputs, np.mean(np.concatenate([record.y for record in records]), axis=0).tolist(), strict=True))
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
-    model = operating_point_model(bound, free_names(bound, chosen.free), means, limits)
-    found = _matched(chosen, bound.plant, model, records, others, told)
-    return replace(found, notes=(*inputs.notes, *found.notes))
+    names = free_names(bound, chosen.free)
+    found = _matched(chosen, bound.plant, operating_point_model(bound, names, means, limits), records, others, told)
+    found = replace(found, notes=(*inputs.notes, *found.notes))
+    truth = None if true is None else truth_of(true, operating_point_model(bind(true), names, means), found.fit)
+    return Done(found, truth)
 
 
 def _matched(
@@ -164,17 +192,16 @@ def _log(path: Path, columns: LogColumns) -> RunLog:
     return log
 
 
-def _tell(chosen: argparse.Namespace, found: FrequencyIdentification) -> None:
-    if chosen.json:
-        print(json.dumps(frequency_facts(found)))
-        return
+def _tell(chosen: argparse.Namespace, done: Done) -> None:
+    found, truth = done.found, done.truth
+    known = None if truth is None else truth.values
     warning = bound_warning(found.fit.at_bound)
     if warning:
         print(f"{warning}\n")
-    print(console.table(estimate_rows(found.result.estimates, found.fit.at_bound), HEADING))
-    print("\n" + console.table(pair_rows(found.pairs), PAIR_HEADING))
+    print(console.table(estimate_rows(found.result.estimates, found.fit.at_bound, known), estimate_heading(known)))
+    print("\n" + console.table(pair_rows(found, truth), pair_heading(truth)))
     if found.checks:
         print("\n" + console.table(check_rows(found.checks, found.fit.model.outputs), CHECK_HEADING))
     for note in found.notes:
         print(f"- {note}")
-    print(f"\n{chosen.out / 'plant.toml'}")
+    print(f"\n{quality_sentence(frequency_quality(found, truth))}\n{chosen.out / 'plant.toml'}")

@@ -49,8 +49,8 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         done = _from_experiments(bound, inputs.experiments, wishes, so_far)
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
-    remarks = (*inputs.notes, *_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
-    result = replace(so_far.finished(done), remarks=remarks)
+    flags = (*_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
+    result = replace(so_far.finished(done), remarks=inputs.notes, flags=flags)
     save_result(folder, result)
     if not inputs.holdout:
         return result

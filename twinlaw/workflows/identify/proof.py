@@ -13,15 +13,10 @@ from twinlaw.pages.identify.velagic import figure_plots, figure_section
 from twinlaw.pages.page import Section
 
 
-def _units(result: Identification) -> Mapping[str, str]:
-    """Units of all that was estimated, by name."""
-    return {entry.name: entry.unit for entry in (*result.estimates, *result.aids)}
-
-
 def proven(result: Identification, truth: BoundPlant | None) -> tuple[list[Section], Mapping[str, str]]:
     """Sections of the report, and pictures (SVG text) by the number of the paper's figure."""
     evolution = evolution_plot(result.stages)
-    sections = search_sections(result.stages, truth, evolution, _units(result))
+    sections = search_sections(result.stages, truth, evolution, (*result.estimates, *result.aids))
     pictures = {"6": evolution} if evolution else {}
     if truth is None:
         return sections, pictures

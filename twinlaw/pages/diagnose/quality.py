@@ -1,0 +1,36 @@
+"""The colour of a diagnosis: how well the plant that it hands on predicts, and what it leaves open."""
+
+from records.diagnosis import Diagnosis
+from records.quality import MISFIT, Colour, Look, Quality, flag
+from twinlaw.pages.diagnose.firmware import differs
+from twinlaw.pages.diagnose.retune import parameters_alone
+from twinlaw.pages.diagnose.words import words
+
+
+def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
+    """Errors on the logs held out against what their sensors leave, and a flag for a gap, for what cannot be told, for the firmware."""
+    shrinkage = diagnosis.shrinkage
+    left = (
+        {}
+        if shrinkage is None
+        else {name: (rms, shrinkage.rms_floor[name]) for name, rms in shrinkage.rms_after.items()}
+    )
+    flags = [_verdict(diagnosis)]
+    if differs(diagnosis.firmware):
+        flags.append(flag("the firmware does not do as its table says", Colour.RED))
+    misfits = [MISFIT.look(f"{name} on the logs held out", rms / floor) for name, (rms, floor) in left.items() if floor]
+    return Quality((*misfits, *(entry for entry in flags if entry is not None)))
+
+
+def _verdict(diagnosis: Diagnosis) -> Look | None:
+    if diagnosis.verdict == "no gap":
+        return flag("no gap", Colour.GREEN)
+    if diagnosis.verdict == "cannot tell":
+        return flag("too little motion to tell a gap")
+    if diagnosis.found:
+        return flag(f"the plant file lacks {' and '.join(map(words, diagnosis.found))}")
+    if parameters_alone(diagnosis) > max(
+        diagnosis.unknown.probability, *(h.probability for h in diagnosis.effects), 0.0
+    ):
+        return flag("the plant file's parameters are not the rig's")
+    return flag("the plant file lacks something that has no name", Colour.RED)

@@ -1,0 +1,155 @@
+"""A design as a page: where its poles lie, its margins, its coefficients over the elevation, and what storing them does."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from design.report import AxisReport, DesignReport
+from records.quality import Colour, Quality, flag
+from twinlaw.pages.page import Page, Section, Table
+from twinlaw.pages.plots import BLACK, BLUE, GREY, ORANGE, Curve, Panel, grid, row, stack
+from twinlaw.pages.quality import quality_section, quality_sentence
+from twinlaw.pages.run.design import design_heading, design_rows
+
+Array = NDArray[np.float64]
+FINE = 200  # angles at which a fit is drawn
+
+
+def design_page(plant: str, report: DesignReport, digest: str) -> Page:
+    """The whole page of `twinlaw design`; a design that does not keep its margins is refused, so there is no page of one."""
+    angles = len(report.psi_rad)
+    held = f"stable, and no margin below the plant file's, at {angles} angles, as its {report.arithmetic} table flies"
+    quality = Quality((flag(held, Colour.GREEN),))
+    return Page(
+        title=f"{plant}: the controller as designed",
+        verdict=f"The design is {held}.",
+        colour=quality.colour,
+        why=quality_sentence(quality),
+        facts=(("Controller table", digest),),
+        sections=(*design_sections(report), quality_section(quality)),
+    )
+
+
+def design_sections(report: DesignReport) -> tuple[Section, ...]:
+    """What a design is, for the report of a run as well."""
+    return _poles(report), _margins(report), _coefficients(report), _migration(report)
+
+
+def _poles(report: DesignReport) -> Section:
+    panels = [_pole_panel(axis) for axis in (report.elevation, report.azimuth)]
+    return Section(
+        "Closed-loop poles before and after fit and rounding",
+        (f"Each dot is a pole at one of {len(report.psi_rad)} angles; the crosses are the poles that were asked for.",),
+        plots=(row(panels, ["real part [rad/s]"] * 2),),
+    )
+
+
+def _pole_panel(axis: AxisReport) -> Panel:
+    def curve(poles: NDArray[np.complex128], label: str, colour: str, marker: str, size: float = 4.0) -> Curve:
+        return Curve(poles.real.ravel(), poles.imag.ravel(), label, colour, "", marker, size)
+
+    return Panel(
+        f"{axis.axis}: imaginary part [rad/s]",
+        (
+            curve(axis.poles_fitted_rad_s, "after the fit", ORANGE, "o"),
+            curve(axis.poles_flown_rad_s, "after rounding, as they fly", BLUE, "."),
+            curve(np.array(axis.poles_rad_s), "designed", BLACK, "x", 8.0),
+        ),
+    )
+
+
+def _margins(report: DesignReport) -> Section:
+    psi_deg = np.degrees(report.psi_rad)
+
+    def panel(label: str, figure: str, scale: float) -> Panel:
+        curves = [
+            Curve(psi_deg, scale * np.array([getattr(m, figure) for m in axis.margins]), axis.axis, colour, dash)
+            for axis, colour, dash in ((report.elevation, BLUE, "-"), (report.azimuth, ORANGE, "--"))
+        ]
+        return Panel(label, curves)
+
+    panels = (
+        panel("largest sensitivity Ms [-]", "sensitivity", 1.0),
+        panel("phase margin [deg]", "phase_rad", 180.0 / math.pi),
+        panel("delay margin [ms]", "delay_s", 1e3),
+        Panel("slowest pole, coupled [rad/s]", (Curve(psi_deg, report.coupled_slowest_rad_s, "both loops", GREY),)),
+    )
+    return Section(
+        "Margins over the elevation",
+        (
+            f"Of the {report.arithmetic} table, as it flies. The last panel closes both loops on the whole plant, cross-coupling included.",
+        ),
+        (Table(design_rows(report), design_heading(report)),),
+        (stack(panels, "elevation Psi [deg]", panel_height_in=1.7),),
+    )
+
+
+def _coefficients(report: DesignReport) -> Section:
+    worst = [f"{axis.axis} {1e3 * axis.feedforward_error_V:.2g} mV" for axis in (report.elevation, report.azimuth)]
+    return Section(
+        "Coefficients over the elevation",
+        (
+            f"The law's coefficients in powers of delta = 1 - z^-1, and the voltage of the operating point: dots as designed at each of "
+            f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. p_0 = P(1) is 0 everywhere, as the law "
+            f"integrates. The fit of u_ff is off by at most {' and '.join(worst)}.",
+        ),
+        (),
+        (coefficient_plot(report),),
+    )
+
+
+def coefficient_plot(report: DesignReport) -> str:
+    """q_i, p_i and u_ff of both axes over Psi, as SVG text."""
+    axes = (report.elevation, report.azimuth)
+    lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.elevation)]
+    return grid(lines, [axis.axis for axis in axes], "elevation Psi [deg]", height_in=1.3)
+
+
+def _which(axis: AxisReport) -> list[tuple[str, int]]:
+    """All but what is 0 at every elevation, as p_0 = P(1) of a law that integrates."""
+    fitted = [(of, place, values) for of in "qp" for place, values in enumerate(getattr(axis.schedule, of))]
+    return [*((of, place) for of, place, values in fitted if any(values)), ("u_ff", 0)]
+
+
+def _coefficient(report: DesignReport, axis: AxisReport, of: str, place: int) -> Panel:
+    fine = np.linspace(report.points_rad[0], report.points_rad[-1], FINE)
+    if of == "u_ff":
+        designed, fitted, label = axis.operating_V, axis.feedforward_V, "u_ff [V]"
+    else:
+        designed = np.array([getattr(design, of)[place] for design in axis.designs])
+        fitted = getattr(axis.schedule, of)[place]
+        label = f"q_{place} [V/rad]" if of == "q" else f"p_{place} [-]"
+    return Panel(label, _fit(report.points_rad, designed, fine, np.asarray(polyval(fine, fitted), dtype=float)))
+
+
+def _fit(points_rad: Array, designed: Array, fine_rad: Array, fitted: Array) -> Sequence[Curve]:
+    return (
+        Curve(np.degrees(fine_rad), fitted, "fitted", BLUE),
+        Curve(np.degrees(points_rad), designed, "designed", ORANGE, "", "o", 3.0),
+    )
+
+
+def _migration(report: DesignReport) -> Section:
+    rows = [
+        (
+            axis.axis,
+            m.form,
+            m.source,
+            m.storage,
+            f"{m.slowest.worst_rad_s:.3f} rad/s",
+            "yes" if m.slowest.stable else "no",
+        )
+        for axis in (report.elevation, report.azimuth)
+        for m in axis.migrations
+    ]
+    return Section(
+        "Why the delta form: where the slowest pole goes when the table is stored",
+        (
+            "The same controllers in powers of delta = 1 - z^-1 (what is generated) and in powers of z^-1 (the paper's eq (22)), exact "
+            "at every angle or fitted, stored in double, in float32, or printed with few digits. The worst of all angles.",
+        ),
+        (Table(rows, ("axis", "form", "source", "stored as", "slowest pole", "stable")),),
+    )
