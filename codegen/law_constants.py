@@ -83,9 +83,8 @@ def _refuse_unusable(table: ControllerTable) -> None:
         # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
         span_V = axis.u_max_V - axis.u_min_V
         feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
-        recursion_V = (
-            sum(polynomial_bound(p, psi_rad) + abs(a) for p, a in zip(axis.p, axis.a, strict=True)) * 4.0 * span_V
-        )
+        recursion = sum(polynomial_bound(p, psi_rad) * 2.0**power for power, p in enumerate(axis.p))
+        recursion_V = (recursion + 4.0 * sum(map(abs, axis.a))) * span_V
         reference_rad = max(abs(table.elevation.reference_min_rad), abs(table.elevation.reference_max_rad))
         reached_V = feedback_V + recursion_V + span_V + polynomial_bound(axis.feedforward_V, reference_rad)
         if not reached_V < PLAUSIBLE_V:

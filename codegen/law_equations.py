@@ -5,7 +5,7 @@ equations are those of records/table.py with w = v - s and w = u - limited(u):
 
     A v = Q e + (A - P) s,   A = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2],   P likewise with p_i
     A - P = z^-1 [(a_0 - p_0) + (p_1 - a_1) delta + (p_2 - a_2) delta^2]
-    v = v(k-1) + Q e + z^-1 [-p_0 s + p_1 delta s + p_2 delta^2 s] + z^-1 [-a_0 w + a_1 delta w + a_2 delta^2 w]
+    v = v(k-1) + Q e + z^-1 [-p_0 s + p_1 delta s + p_2 delta^2 s + p_3 delta^3 s] + z^-1 [-a_0 w + a_1 delta w + a_2 delta^2 w]
 
 so that with p_0 = 0 and no saturation v moves by Q e and past moves alone: the integrator is exact in any arithmetic.
 """
@@ -69,6 +69,7 @@ class AxisState(Generic[N]):
     s_0_V: N
     s_1_V: N
     s_2_V: N
+    s_3_V: N
     w_0_V: N
     w_1_V: N
     w_2_V: N
@@ -140,11 +141,14 @@ def move(axis: AxisConstants[Any], state: AxisState[Any], e_rad: tuple[Any, ...]
 def moved(
     state: AxisState[Any], e_rad: tuple[Any, ...], q_V_rad: Sequence[Any], p: Sequence[Any], a: Sequence[Any]
 ) -> Any:
-    """Q e - p_0 s + p_1 delta s + p_2 delta^2 s - a_0 w + a_1 delta w + a_2 delta^2 w, from left to right; None leaves a term out."""
-    s_V = (state.s_0_V, state.s_1_V, state.s_2_V)
+    """Q e - p_0 s + p_1 delta s + p_2 delta^2 s + p_3 delta^3 s - a_0 w + a_1 delta w + a_2 delta^2 w, from left to right.
+
+    None leaves a term out; without a roll-off there is no p_3.
+    """
+    s_V = (state.s_0_V, state.s_1_V, state.s_2_V, state.s_3_V)[: len(p)]
     w_V = (state.w_0_V, state.w_1_V, state.w_2_V)
     terms = [(c, e, +1) for c, e in zip(q_V_rad, e_rad, strict=True)]
-    terms += [(c, s, sign) for c, s, sign in zip(p, s_V, (-1, +1, +1), strict=True)]
+    terms += [(c, s, sign) for c, s, sign in zip(p, s_V, (-1, +1, +1, +1)[: len(p)], strict=True)]
     terms += [(c, w, sign) for c, w, sign in zip(a, w_V, (-1, +1, +1), strict=True)]
     products = [(c * x, sign) for c, x, sign in terms if c is not None]
     move_V = products[0][0]
@@ -178,6 +182,7 @@ def drive(
     s_0_V = v_V - w_0_V
     s_1_V = s_0_V - kept(state.s_0_V)
     s_2_V = s_1_V - kept(state.s_1_V)
+    s_3_V = s_2_V - kept(state.s_2_V)
     remembered = AxisState(
         reference_1_rad=state.reference_1_rad,
         reference_2_rad=state.reference_2_rad,
@@ -188,6 +193,7 @@ def drive(
         s_0_V=s_0_V,
         s_1_V=s_1_V,
         s_2_V=s_2_V,
+        s_3_V=s_3_V,
         w_0_V=w_0_V,
         w_1_V=w_1_V,
         w_2_V=w_2_V,

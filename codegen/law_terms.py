@@ -8,7 +8,7 @@ from records.table import AxisLaw, Polynomial
 # What each coefficient multiplies, by the power of delta: the error, s and w (records/table.py).
 FACTORS: Mapping[str, tuple[str, ...]] = {
     "q": ("e_0_rad", "e_1_rad", "e_2_rad", "e_3_rad"),
-    "p": ("s_0_V", "s_1_V", "s_2_V"),
+    "p": ("s_0_V", "s_1_V", "s_2_V", "s_3_V"),
     "a": ("w_0_V", "w_1_V", "w_2_V"),
 }
 UNITS: Mapping[str, str] = {"q": "V/rad", "p": "1", "a": "1", "u_ff": "V"}

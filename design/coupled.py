@@ -12,37 +12,38 @@ from design.loop import Poles, to_rad_s
 
 Array = NDArray[np.float64]
 
-MEMORY = 6
+ERRORS = 3  # of the error and its differences that the law remembers
 
 
 def controller_states(controller: DeltaForm) -> tuple[Array, Array, Array, float]:
-    """A (6, 6), B (6,), C (6,), D of the unlimited law from e to v, in the state (e, its differences, s, its differences)."""
+    """A (m, m), B (m,), C (m,), D of the unlimited law from e to v, in the state (e, its differences, s, its differences)."""
     q_0, q_1, q_2, q_3 = controller.q
-    p_0, p_1, p_2 = controller.p
-    C = np.array([-(q_1 + q_2 + q_3), -(q_2 + q_3), -q_3, 1.0 - p_0, p_1, p_2])
+    C = np.array([-(q_1 + q_2 + q_3), -(q_2 + q_3), -q_3, 1.0 - controller.p[0], *controller.p[1:]])
     D = float(q_0 + q_1 + q_2 + q_3)
-    A, B = np.zeros((MEMORY, MEMORY)), np.zeros(MEMORY)
-    for row in range(3):
+    A, B = np.zeros((len(C), len(C))), np.full(len(C), D)
+    for row in range(ERRORS):
         A[row, :row] = -1.0
-        A[3 + row] = C
-        A[3 + row, 3 : 3 + row] -= 1.0
-    B[:3], B[3:] = 1.0, D
+    for row in range(ERRORS, len(C)):
+        A[row] = C
+        A[row, ERRORS:row] -= 1.0
+    B[:ERRORS] = 1.0
     return A, B, C, D
 
 
 def coupled_step(plant: SampledPlant, controllers: tuple[DeltaForm, ...]) -> Array:
-    """The matrix (m, m) of one sample of the closed loop minus I, m = n + 6 for each controller; controller i takes output i to input i."""
+    """The matrix of one sample of the closed loop minus I, over plant and controllers; controller i takes output i to input i."""
     n = len(plant.N)
-    step = np.zeros((n + MEMORY * len(controllers),) * 2)
+    memories = [ERRORS + len(controller.p) for controller in controllers]
+    step = np.zeros((n + sum(memories),) * 2)
     step[:n, :n] = plant.N
     for index, controller in enumerate(controllers):
         A, B, C, D = controller_states(controller)
-        rows = slice(n + MEMORY * index, n + MEMORY * (index + 1))
+        rows = slice(n + sum(memories[:index]), n + sum(memories[: index + 1]))
         output, drive = plant.C[index], plant.B[:, index]
         step[:n, :n] -= np.outer(drive, D * output)
         step[:n, rows] = np.outer(drive, C)
         step[rows, :n] = -np.outer(B, output)
-        step[rows, rows] = A - np.eye(MEMORY)
+        step[rows, rows] = A - np.eye(len(C))
     return step
 
 

@@ -1,13 +1,13 @@
 """The paper's form of the controller, eqs (22) and (27), and the change of basis to the delta form that is generated.
 
-    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3,    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3      (22)
+    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3,    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3 (+ p_4 z^-4)      (22)
 
 With delta = 1 - z^-1 the same two polynomials are (records.table)
 
-    Q = d_0 + d_1 delta + d_2 delta^2 + d_3 delta^3,    P = 1 - z^-1 [(1 - c_0) + c_1 delta + c_2 delta^2]
+    Q = d_0 + d_1 delta + d_2 delta^2 + d_3 delta^3,    P = 1 - z^-1 [(1 - c_0) + c_1 delta + c_2 delta^2 (+ c_3 delta^3)]
 
 so the change of basis has integer entries. The direct form is kept as reference: in it the slow poles hang on differences
-of large coefficients, which a rounded table does not keep.
+of large coefficients, which a rounded table does not keep. What is in brackets is the roll-off, which the paper's controller lacks.
 """
 
 from collections.abc import Sequence
@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# z^-k = (1 - delta)^k: column k holds the coefficients of delta^0 .. delta^3. The matrix is its own inverse.
+# z^-k = (1 - delta)^k: column k holds the coefficients of delta^0 .. delta^3. The matrix, and its upper left corner, is its own inverse.
 _BINOMIAL = np.array([[1.0, 1.0, 1.0, 1.0], [0.0, -1.0, -2.0, -3.0], [0.0, 0.0, 1.0, 3.0], [0.0, 0.0, 0.0, -1.0]])
 
 
 @dataclass(frozen=True)
 class DirectForm:
-    """Coefficients of eq (22) at one angle, ascending powers of z^-1: q (4,) in V/rad, p (4,) with p[0] = 1."""
+    """Coefficients of eq (22) at one angle, ascending powers of z^-1: q (4,) in V/rad, p (order + 1,) with p[0] = 1."""
 
     q: Array
     p: Array
@@ -32,26 +32,28 @@ class DirectForm:
 
 @dataclass(frozen=True)
 class DeltaForm:
-    """The same controller in powers of delta: q (4,) in V/rad and p (3,) of records.table, p[0] = P(1)."""
+    """The same controller in powers of delta: q (4,) in V/rad and p (order,) of records.table, p[0] = P(1)."""
 
     q: Array
     p: Array
 
 
 def to_delta(direct: DirectForm) -> DeltaForm:
-    """Change of basis of Q, and of -z (P - 1) = -(p_1 + p_2 z^-1 + p_3 z^-2); shapes (4,) or (..., 4) by rows."""
-    feedback = -_BINOMIAL[:3, :3] @ direct.p[1:]
-    return DeltaForm(q=_BINOMIAL @ direct.q, p=np.array([1.0 - feedback[0], feedback[1], feedback[2]]))
+    """Change of basis of Q, and of -z (P - 1) = -(p_1 + p_2 z^-1 + p_3 z^-2 + ..)."""
+    order = len(direct.p) - 1
+    feedback = -_BINOMIAL[:order, :order] @ direct.p[1:]
+    return DeltaForm(q=_BINOMIAL @ direct.q, p=np.append(1.0 - feedback[0], feedback[1:]))
 
 
 def to_direct(delta: DeltaForm) -> DirectForm:
     """The inverse of `to_delta`."""
-    feedback = np.array([1.0 - delta.p[0], delta.p[1], delta.p[2]])
-    return DirectForm(q=_BINOMIAL @ delta.q, p=np.append(1.0, -_BINOMIAL[:3, :3] @ feedback))
+    order = len(delta.p)
+    feedback = np.append(1.0 - delta.p[0], delta.p[1:])
+    return DirectForm(q=_BINOMIAL @ delta.q, p=np.append(1.0, -_BINOMIAL[:order, :order] @ feedback))
 
 
 def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequence[float]) -> float:
-    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (4,) of k .. k-3 and outputs (3,) of k-1 .. k-3.
+    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (4,) of k .. k-3 and outputs (order,) of k-1, k-2 ..
 
     The outputs are those of the feedback alone. The paper writes the total voltage, which multiplies the feed-forward by 1/P(1).
     """
@@ -59,5 +61,5 @@ def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequenc
 
 
 def controller_poles_z(direct: DirectForm) -> NDArray[np.complex128]:
-    """The controller's own poles (3,): roots of z^3 P."""
+    """The controller's own poles (order,): roots of z^order P."""
     return np.asarray(np.roots(direct.p), dtype=complex)

@@ -2,11 +2,12 @@
 
 Per axis, with e0 = filtered reference - angle and its backward differences e1, e2, e3 (D.4 of docs/theory.md):
 
-    v = v_prev - p_0 s_0 + p_1 s_1 + p_2 s_2 + q_0 e0 + q_1 e1 + q_2 e2 + q_3 e3 - a_0 w_0 + a_1 w_1 + a_2 w_2
+    v = v_prev - p_0 s_0 + p_1 s_1 + p_2 s_2 + p_3 s_3 + q_0 e0 + q_1 e1 + q_2 e2 + q_3 e3 - a_0 w_0 + a_1 w_1 + a_2 w_2
     u = v + u_ff(filtered elevation reference),   u_limited = limits(u),   w = u - u_limited,   s = v - w
 
-where s_0 = s(k-1), s_1, s_2 are its backward differences, w_0, w_1, w_2 those of w, v_prev = v(k-1) = s_0 + w_0. Inserting
-P = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2], A alike and v = s + w gives P s = Q e - A w, which is A v = Q e + (A - P) s.
+where s_0 = s(k-1), s_1, s_2, s_3 are its backward differences, w_0, w_1, w_2 those of w, v_prev = v(k-1) = s_0 + w_0. Inserting
+P = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2 + p_3 delta^3], A alike and v = s + w gives P s = Q e - A w, which is
+A v = Q e + (A - P) s. Without a roll-off there is no p_3.
 """
 
 import math
@@ -15,8 +16,9 @@ from dataclasses import dataclass, replace
 
 from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable
 
-Differences = tuple[float, float, float]
+Differences = tuple[float, ...]
 _ZERO: Differences = (0.0, 0.0, 0.0)
+_ZERO_OF_S: Differences = (*_ZERO, 0.0)
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class AxisState:
     x2_rad: float
     v_V: float = 0.0
     e: Differences = _ZERO
-    s: Differences = _ZERO
+    s: Differences = _ZERO_OF_S
     w: Differences = _ZERO
 
 
@@ -97,28 +99,31 @@ def _control(
     e = _differences(state.x2_rad - state.angle_rad, state.e)
     v = _feedback(law, state, e, psi_scheduled_rad)
     if not abs(v) <= PLAUSIBLE_V:  # only a broken state gets here: start the feedback afresh from the present error
-        state, e, v = replace(state, s=_ZERO, w=_ZERO), (e[0], 0.0, 0.0, 0.0), 0.0
+        state, e, v = replace(state, s=_ZERO_OF_S, w=_ZERO), (e[0], 0.0, 0.0, 0.0), 0.0
     u = v + polynomial(law.feedforward_V, elevation_reference_rad)
     u_limited = saturate(law, u)
     w = u - u_limited
-    remembered = replace(state, v_V=v, e=e[:3], s=_differences(v - w, state.s)[:3], w=_differences(w, state.w)[:3])
+    remembered = replace(state, v_V=v, e=e[:3], s=_differences(v - w, state.s)[:4], w=_differences(w, state.w)[:3])
     return remembered, u_limited
 
 
-def _feedback(law: AxisLaw, state: AxisState, e: tuple[float, float, float, float], psi_rad: float) -> float:
+def _feedback(law: AxisLaw, state: AxisState, e: Differences, psi_rad: float) -> float:
     q_0, q_1, q_2, q_3 = (polynomial(row, psi_rad) for row in law.q_V_rad)
-    p_0, p_1, p_2 = (polynomial(row, psi_rad) for row in law.p)
-    (a_0, a_1, a_2), (s_0, s_1, s_2), (w_0, w_1, w_2) = law.a, state.s, state.w
-    v = state.v_V - p_0 * s_0 + p_1 * s_1 + p_2 * s_2
+    p_0, *p = (polynomial(row, psi_rad) for row in law.p)
+    (a_0, a_1, a_2), (s_0, *s), (w_0, w_1, w_2) = law.a, state.s, state.w
+    v = state.v_V - p_0 * s_0
+    for p_i, s_i in zip(p, s, strict=False):  # without a roll-off there is no p_3
+        v = v + p_i * s_i
     v = v + q_0 * e[0] + q_1 * e[1] + q_2 * e[2] + q_3 * e[3]
     return v - a_0 * w_0 + a_1 * w_1 + a_2 * w_2
 
 
-def _differences(value: float, previous: Differences) -> tuple[float, float, float, float]:
-    """`value` with its first to third backward difference, from the last value and its first two."""
-    first = value - previous[0]
-    second = first - previous[1]
-    return value, first, second, second - previous[2]
+def _differences(value: float, previous: Differences) -> Differences:
+    """`value` with its backward differences of one order more than the last value's own in `previous`."""
+    found = [value]
+    for last in previous:
+        found.append(found[-1] - last)
+    return tuple(found)
 
 
 def polynomial(coefficients: Sequence[float], argument: float) -> float:

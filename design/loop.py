@@ -1,13 +1,15 @@
 """The linear closed loop at one angle, in powers of gamma = z - 1, where slow poles do not cancel against 1.
 
-    z^3 A, z^3 B from the sampled plant by Faddeev and LeVerrier;  z^3 P, z^3 Q from the delta form, as delta = gamma / (1 + gamma)
-    z^6 (A P + B Q) = 0  ->  gamma_i  ->  s_i = ln(1 + gamma_i) / Ts
+    z^3 A, z^3 B from the sampled plant by Faddeev and LeVerrier;  z^n P, z^n Q from the delta form, as delta = gamma / (1 + gamma)
+    z^(3 + n) (A P + B Q) = 0  ->  gamma_i  ->  s_i = ln(1 + gamma_i) / Ts;      n = 3, or 4 with a roll-off
 
 Poles of multiplicity m still move by (relative error)^(1/m): six equal poles at -8 rad/s are only known to about 0.05 rad/s in
 double precision, in this basis, and to 0.3 rad/s in powers of z. Distinct poles do not have that trouble.
 """
 
+import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +20,10 @@ from design.discretise import SampledPlant
 Array = NDArray[np.float64]
 Poles = NDArray[np.complex128]
 
-# Coefficients, ascending in gamma, of (1 + gamma)^3, gamma (1 + gamma)^2, gamma^2 (1 + gamma), gamma^3: z^3 delta^k, k = 0 .. 3.
-_DELTA_POWERS = np.array([[1.0, 3.0, 3.0, 1.0], [0.0, 1.0, 2.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
-# z^2 delta^k, k = 0 .. 2, in the same powers.
-_DELTA_POWERS_LATE = np.array([[1.0, 2.0, 1.0, 0.0], [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
-
 
 @dataclass(frozen=True)
 class OpenLoop:
-    """L = B Q / (A P) as polynomials in gamma, ascending powers: shapes (4,) each."""
+    """L = B Q / (A P) as polynomials in gamma, ascending powers: b (4,), a (4,), q (n + 1,), p (n + 1,)."""
 
     b: Array
     a: Array
@@ -65,25 +62,34 @@ def plant_polynomials(plant: SampledPlant) -> PlantPolynomials:
 
 
 def controller_polynomials(controller: DeltaForm) -> tuple[Array, Array]:
-    """z^3 Q and z^3 P, ascending powers of gamma, shapes (4,)."""
-    c_0, c_1, c_2 = controller.p
-    # P = delta + z^-1 (c_0 - c_1 delta - c_2 delta^2), so c_0 = 0 leaves a factor gamma: the integrator stays exact.
-    p = _DELTA_POWERS[1] + np.array([c_0, -c_1, -c_2]) @ _DELTA_POWERS_LATE
-    return controller.q @ _DELTA_POWERS, p
+    """z^n Q and z^n P, ascending powers of gamma, shapes (n + 1,), n the order of P."""
+    order = len(controller.p)
+    # P = delta + z^-1 (c_0 - c_1 delta - c_2 delta^2 ..), so c_0 = 0 leaves a factor gamma: the integrator stays exact.
+    p = _delta_power(order, 1) + controller.p[0] * _delta_power(order, 0, late=1)
+    p = p - sum(c * _delta_power(order, power, late=1) for power, c in enumerate(controller.p[1:], start=1))
+    q = sum(d * _delta_power(order, power) for power, d in enumerate(controller.q))
+    return np.asarray(q), np.asarray(p)
+
+
+@cache
+def _delta_power(order: int, power: int, late: int = 0) -> Array:
+    """z^(order - late) delta^power = gamma^power (1 + gamma)^(order - late - power), ascending in gamma, shape (order + 1,)."""
+    steps = order - late - power
+    return np.array([math.comb(steps, k - power) if k >= power else 0 for k in range(order + 1)], dtype=float)
 
 
 def closed_loop_polynomial(loop: OpenLoop) -> Array:
-    """z^6 (A P + B Q) of eq (24), ascending powers of gamma, shape (7,)."""
+    """z^(3 + n) (A P + B Q) of eq (24), ascending powers of gamma, shape (4 + n,)."""
     return np.asarray(np.convolve(loop.a, loop.p) + np.convolve(loop.b, loop.q))
 
 
 def closed_loop_poles(loop: OpenLoop) -> Poles:
-    """The six poles s_i [rad/s] of the closed loop."""
+    """The poles s_i [rad/s] of the closed loop, shape (3 + n,)."""
     return to_rad_s(polynomial_roots(closed_loop_polynomial(loop)), loop.sample_period_s)
 
 
 def controller_poles(controller: DeltaForm) -> Poles:
-    """Roots gamma of z^3 P; the controller is stable where |1 + gamma| <= 1."""
+    """Roots gamma of z^n P; the controller is stable where |1 + gamma| <= 1."""
     return polynomial_roots(controller_polynomials(controller)[1])
 
 

@@ -89,7 +89,7 @@ def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -
 
 
 def pole_map(plants: Sequence[PlantPolynomials], controllers: Sequence[DeltaForm]) -> Poles:
-    """Closed-loop poles [rad/s] at every angle, shape (angles, 6)."""
+    """Closed-loop poles [rad/s] at every angle, shape (angles, poles)."""
     closed = [closed_loop_polynomial(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)]
     return to_rad_s(polynomial_roots(np.array(closed)), plants[0].sample_period_s)
 

@@ -73,7 +73,7 @@ def design_point(
 
 def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSettings, where: str) -> PointDesign:
     """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma; raises BadInput naming `where` (see place)."""
-    wanted = characteristic(poles_z(wishes.poles_rad_s, plant.sample_period_s))
+    wanted = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s))
     placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
     return PointDesign(transfer, placement, exact_delta(plant, placement, wishes))
 
@@ -81,9 +81,9 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
 def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSettings) -> DeltaForm:
     """The delta form to rounding, in which the coefficient that the free degree makes zero is zero to the last bit."""
     free_degree = wishes.free_degree
-    delta = refined(plant, to_delta(placement.controller), wishes.poles_rad_s, FREE_DEGREES[free_degree])
+    delta = refined(plant, to_delta(placement.controller), wishes.placed_rad_s, FREE_DEGREES[free_degree])
     if free_degree == "integral":
-        return DeltaForm(delta.q, np.array([0.0, delta.p[1], delta.p[2]]))
+        return DeltaForm(delta.q, np.append(0.0, delta.p[1:]))
     if free_degree == "q3_zero":
         return DeltaForm(np.append(delta.q[:3], 0.0), delta.p)
     return delta

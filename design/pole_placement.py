@@ -6,6 +6,9 @@
     P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3,    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3
 
 The paper counts seven equations for the seven unknowns; that of z^0 reads 1 = 1, so six remain.
+
+A roll-off adds p_4 z^-4 to P and one pole to place: Q/P then falls by 20 dB a decade towards the Nyquist frequency, where the controller
+of eq (22) passes every encoder step on at its highest gain.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,18 +30,23 @@ MAX_CONDITION = 1e6
 
 @dataclass(frozen=True)
 class FreeDegree:
-    """A condition `row` . (p_1 p_2 p_3 q_0 q_1 q_2 q_3) = `value` that fixes the seventh unknown, and what it means."""
+    """A condition p (p_1 + p_2 + ..) + `q` . (q_0 q_1 q_2 q_3) = `value` that fixes the last unknown, and what it means."""
 
-    row: tuple[float, ...]
+    p: float
+    q: tuple[float, float, float, float]
     value: float
     meaning: str
 
+    def row(self, order: int) -> Array:
+        """The condition's left side over the unknowns p_1 .. p_order, q_0 .. q_3."""
+        return np.array([self.p] * order + list(self.q))
+
 
 FREE_DEGREES: Mapping[str, FreeDegree] = {
-    "integral": FreeDegree((1, 1, 1, 0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
-    "q3_zero": FreeDegree((0, 0, 0, 0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
-    "q0_zero": FreeDegree((0, 0, 0, 1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
-    "q_nyquist_zero": FreeDegree((0, 0, 0, 1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
+    "integral": FreeDegree(1, (0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
+    "q3_zero": FreeDegree(0, (0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
+    "q0_zero": FreeDegree(0, (1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
+    "q_nyquist_zero": FreeDegree(0, (1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
 }
 
 
@@ -56,30 +64,31 @@ def poles_z(poles_rad_s: Sequence[complex], sample_period_s: float) -> NDArray[n
 
 
 def characteristic(poles: NDArray[np.complex128]) -> Array:
-    """Eq (25) times z^-6: the coefficients (7,) of z^0 .. z^-6 of the product of (1 - z_i z^-1)."""
+    """Eq (25) times z^-n: the coefficients (n + 1,) of z^0 .. z^-n of the product of (1 - z_i z^-1) over poles (n,)."""
     return np.asarray(np.poly(poles).real)
 
 
-def sylvester(b: Array, a: Array) -> Array:
-    """Coefficients of z^-1 .. z^-6 of A (p_1 .. p_3) + B (q_0 .. q_3), shape (6, 7), from b (4,) and a (4,) with b_0 = 0."""
-    columns = [np.convolve(a, np.eye(ORDER + 1)[index]) for index in range(1, ORDER + 1)]
-    columns += [np.convolve(b, np.eye(ORDER + 1)[index]) for index in range(ORDER + 1)]
+def sylvester(b: Array, a: Array, order: int = ORDER) -> Array:
+    """Coefficients of z^-1 .. z^-n of A (p_1 .. p_order) + B (q_0 .. q_3), shape (n, order + 4), n = 3 + order, from b (4,) and a (4,)
+    with b_0 = 0."""
+    columns = [np.convolve(a, np.eye(order + 1)[index]) for index in range(1, order + 1)]
+    columns += [np.convolve(b, np.eye(order + 1)[index]) for index in range(ORDER + 1)]
     return np.stack(columns, axis=1)[1:]
 
 
 def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Placement:
-    """Solve eq (26) for `wanted` (7,); b (4,) with b_0 = 0 and a (4,) with a_0 = 1, ascending powers of z^-1.
+    """Solve eq (26) for `wanted` (7,), or (8,) with a roll-off; b (4,) with b_0 = 0 and a (4,) with a_0 = 1, ascending powers of z^-1.
 
     B is divided by max|b|, which takes the condition number from 1e6 to about 50. Raises BadInput naming `where` (axis and
     operating angle) when the system is ill-conditioned or when the controller has a pole outside the unit circle: both would
     place the poles on paper only.
     """
-    scale = float(np.max(np.abs(b)))
-    unscale = np.array([1.0] * ORDER + [1.0 / scale] * (ORDER + 1))
-    row = np.asarray(free.row) * unscale
+    scale, order = float(np.max(np.abs(b))), len(wanted) - 1 - ORDER
+    unscale = np.array([1.0] * order + [1.0 / scale] * (ORDER + 1))
+    row = free.row(order) * unscale
     size = float(np.max(np.abs(row)))
-    system = np.vstack([sylvester(b / scale, a), row / size])
-    target = np.append(wanted[1:] - np.append(a[1:], np.zeros(ORDER)), free.value / size)
+    system = np.vstack([sylvester(b / scale, a, order), row / size])
+    target = np.append(wanted[1:] - np.append(a[1:], np.zeros(order)), free.value / size)
     condition = float(np.linalg.cond(system))
     if not condition < MAX_CONDITION:
         raise BadInput(
@@ -90,7 +99,7 @@ def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Pl
             "A and B share a root nearly: move the operating range",
         )
     solution = np.linalg.solve(system, target) * unscale
-    controller = DirectForm(q=solution[ORDER:], p=np.append(1.0, solution[:ORDER]))
+    controller = DirectForm(q=solution[order:], p=np.append(1.0, solution[:order]))
     _check_stable(controller, where)
     return Placement(controller, condition)
 

@@ -30,7 +30,7 @@ ANGLES_BETWEEN = 200
 class AxisReport:
     """One axis over the angles psi_rad of the report.
 
-    `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, 6); `margins` and `controller_radius`, the largest |z| of the
+    `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, poles); `margins` and `controller_radius`, the largest |z| of the
     controller's own poles, belong to the table as its arithmetic rounds it, as it flies. `largest_q_V_rad` is that of eq (22).
     `designs` and `operating_V` (points,) are the feedback and the voltage at each operating point, `schedule` and `feedforward_V` the
     polynomials fitted to them.
@@ -171,7 +171,7 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
     rounded = pole_map(plants, controllers)
     return AxisReport(
         axis=axis,
-        poles_rad_s=scheduled.wishes.poles_rad_s,
+        poles_rad_s=scheduled.wishes.placed_rad_s,
         free_degree=scheduled.wishes.free_degree,
         largest_q_V_rad=max(float(np.max(np.abs(design.placement.controller.q))) for design in designs),
         condition=max(design.placement.condition for design in designs),
@@ -183,7 +183,7 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
         feedforward_V=survey.table.axis(axis).feedforward_V,
         poles_fitted_rad_s=fitted,
         poles_flown_rad_s=rounded,
-        designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.poles_rad_s),
+        designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.placed_rad_s),
         after_fit=slowest_of(psi_rad, fitted),
         after_rounding=slowest_of(psi_rad, rounded),
         migrations=migrations(scheduled, psi_rad, plants),

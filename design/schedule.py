@@ -1,6 +1,6 @@
 """The schedule: controller coefficients and feed-forward voltages as polynomials in the elevation.
 
-Every coefficient is fitted over the same points with the same degree and weights. Least squares is linear, so sums of fits are
+All q_i are fitted over the same points with the same degree and weights, and all p_i. Least squares is linear, so sums of fits are
 fits of sums: P(1) = 0 and the small Q(1), which decide the slow poles, survive although single coefficients are off by far more.
 """
 
@@ -27,8 +27,16 @@ DIGITS = 8  # float32 holds 7
 
 
 @dataclass(frozen=True)
+class Degrees:
+    """Degrees of the polynomials in Psi that q and p become."""
+
+    q: int
+    p: int
+
+
+@dataclass(frozen=True)
 class Schedule:
-    """The feedback of one axis in delta form: four polynomials q [V/rad] and three p in Psi [rad], ascending powers."""
+    """The feedback of one axis in delta form: four polynomials q [V/rad], three or four p in Psi [rad], ascending powers."""
 
     q: tuple[Polynomial, ...]
     p: tuple[Polynomial, ...]
@@ -72,13 +80,13 @@ def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
     return tuple(round(c, places) + 0.0 for c in coefficients)
 
 
-def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degree: int, sample_period_s: float) -> Schedule:
-    """Fit all coefficients of the designs (points,) with one degree and equal weights; q_3 is a constant below CONSTANT_Q3_BELOW_S."""
+def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degrees: Degrees, sample_period_s: float) -> Schedule:
+    """Fit the coefficients of the designs (points,) with equal weights; q_3 is a constant below CONSTANT_Q3_BELOW_S."""
     q, p = np.array([design.q for design in designs]), np.array([design.p for design in designs])
-    fitted = [stored_fit(psi_rad, column, degree) for column in q.T]
+    fitted = [stored_fit(psi_rad, column, degrees.q) for column in q.T]
     if sample_period_s < CONSTANT_Q3_BELOW_S:
-        fitted[3] = stored_fit(psi_rad, q[:, 3], 0) + (0.0,) * degree
-    return Schedule(q=tuple(fitted), p=tuple(stored_fit(psi_rad, column, degree) for column in p.T))
+        fitted[3] = stored_fit(psi_rad, q[:, 3], 0) + (0.0,) * degrees.q
+    return Schedule(q=tuple(fitted), p=tuple(stored_fit(psi_rad, column, degrees.p) for column in p.T))
 
 
 def schedule_of(law: AxisLaw) -> Schedule:

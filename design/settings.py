@@ -5,11 +5,14 @@ sample_period_s = 0.01
 psi_min_rad = -0.698                 the schedule's range of elevation, within the hard stops
 psi_max_rad = 0.698
 operating_points = 17                spread evenly over that range
-coefficient_degree = 3               of the fits of q_i and p_i in Psi
+coefficient_degree = 2               of the fits of q_i in Psi
+recursion_degree = 0                 of the fits of p_i in Psi; without it, coefficient_degree
 feedforward_degree = 2               of the fits of u_M0 and u_T0
 
 [design.elevation]                   and [design.azimuth]
 poles_rad_s = [-3.0, [-2.5, 1.5], [-2.5, -1.5], ...]     six, real or [re, im]
+roll_off_pole_rad_s = -20.0          a seventh: the controller then falls towards the Nyquist frequency; 0 = none
+coefficient_degree = 0               of this axis' q_i; without it, that of [design]
 free_degree = "integral"             a name of design.pole_placement.FREE_DEGREES
 prefilter_time_constant_s = 0.4      0 = none
 observer_pole = 0.9                  triple pole in z of the anti-windup observer
@@ -24,10 +27,11 @@ min_delay_margin_s = 0.02
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from design.pole_placement import FREE_DEGREES, ORDER
+from design.schedule import Degrees
 from design.structure import demand_helicopter
 from records.errors import BadInput
 from records.table import AXES, BothAxes
@@ -45,22 +49,28 @@ DEFAULTS: Mapping[str, float] = {
 # STM32G071 fills the period; above, the watchdog's 125 ms leave no room for a missed one, and a rig's poles lie near the Nyquist frequency.
 SAMPLE_PERIODS_S = (0.5e-3, 50e-3)
 
-# Distinct poles, which the fit hardly moves, and integral action on both axes. On the CE150 with dry friction and encoder
-# steps they track within 2 % overshoot and 0.05 deg; plants/ce150.toml states the same.
+# Integral action and a roll-off on both axes, with the poles of plants/ce150.toml, which says how they were found.
 AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "elevation": {
-        "poles_rad_s": (-4.0, -5.0, -8.0, -14.0, -18.0, -24.0),
+        "poles_rad_s": (-3.25, -12.6, -3.4 + 4.7j, -3.4 - 4.7j, -10.1 + 33.8j, -10.1 - 33.8j),
+        "roll_off_pole_rad_s": -21.8,
+        "coefficient_degree": None,
         "free_degree": "integral",
-        "prefilter_time_constant_s": 0.4,
+        "prefilter_time_constant_s": 0.35,
         "observer_pole": 0.9,
     },
     "azimuth": {
-        "poles_rad_s": (-4.0, -5.0, -6.0, -8.0, -10.0, -12.0),
+        "poles_rad_s": (-2.7, -4.6, -3.7 + 3.0j, -3.7 - 3.0j, -6.3 + 23.4j, -6.3 - 23.4j),
+        "roll_off_pole_rad_s": -16.8,
+        "coefficient_degree": 0,
         "free_degree": "integral",
-        "prefilter_time_constant_s": 0.5,
+        "prefilter_time_constant_s": 0.498,
         "observer_pole": 0.9,
     },
 }
+
+# Poles of a plant file's own are placed alone, and scheduled, unless it asks for a roll-off or another degree as well.
+OWN_POLES: Mapping[str, float | None] = {"roll_off_pole_rad_s": 0.0, "coefficient_degree": None}
 
 # The limits refuse tables that do not fly, not tables that fly badly: taste in margins belongs to the plant file.
 # Six times the sensitivity or 10 deg leave no room for the parameters' spread; two samples cover a serial link's delay.
@@ -77,14 +87,25 @@ _AZIMUTH_SHARE = 12.0 / 13.0
 
 @dataclass(frozen=True)
 class AxisSettings:
-    """Wishes for the law of one axis; poles in rad/s of the continuous plane, `observer_pole` in z."""
+    """Wishes for the law of one axis; poles in rad/s of the continuous plane, `observer_pole` in z.
+
+    `coefficient_degree` is that of the fits of its q_i, None where it is the whole table's.
+    """
 
     poles_rad_s: tuple[complex, ...]
+    roll_off_pole_rad_s: float
+    coefficient_degree: int | None
     free_degree: str
     prefilter_time_constant_s: float
     observer_pole: float
     reference_min_rad: float
     reference_max_rad: float
+
+    @property
+    def placed_rad_s(self) -> tuple[complex, ...]:
+        """All poles of the closed loop: `poles_rad_s`, and with a roll-off that one."""
+        roll_off = self.roll_off_pole_rad_s
+        return (*self.poles_rad_s, complex(roll_off)) if roll_off else self.poles_rad_s
 
 
 @dataclass(frozen=True)
@@ -105,25 +126,33 @@ class DesignSettings(BothAxes[AxisSettings]):
     psi_max_rad: float
     operating_points: int
     coefficient_degree: int
+    recursion_degree: int
     feedforward_degree: int
     elevation: AxisSettings
     azimuth: AxisSettings
     margins: MarginLimits
+
+    def degrees(self, axis: str) -> Degrees:
+        """Those of the fits of one axis' feedback."""
+        own = self.axis(axis).coefficient_degree
+        return Degrees(self.coefficient_degree if own is None else own, self.recursion_degree)
 
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
     """The settings in the plant's [design] section; raises BadInput naming key, range or pole that cannot be used."""
     section, where = bound.plant.design, f"plant {bound.plant.name!r}: design"
     demand_helicopter(bound)
-    checks.keys(section, where, (), (*DEFAULTS, "psi_min_rad", "psi_max_rad", *AXES, "margins"))
+    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "psi_min_rad", "psi_max_rad", *AXES, "margins"))
     psi_limit = bound.parameter("Psi_lim")
     psi_min, psi_max = _psi_range(section, where, psi_limit)
+    coefficient_degree = _count(section, "coefficient_degree", where)
     settings = DesignSettings(
         sample_period_s=checks.positive(_entry(section, "sample_period_s", DEFAULTS), f"{where}.sample_period_s"),
         psi_min_rad=psi_min,
         psi_max_rad=psi_max,
         operating_points=_count(section, "operating_points", where),
-        coefficient_degree=_count(section, "coefficient_degree", where),
+        coefficient_degree=coefficient_degree,
+        recursion_degree=_count({"recursion_degree": coefficient_degree, **section}, "recursion_degree", where),
         feedforward_degree=_count(section, "feedforward_degree", where),
         elevation=_axis(section, "elevation", where, (psi_min, psi_max), psi_limit),
         azimuth=_axis(section, "azimuth", where, *_azimuth_range(bound)),
@@ -137,7 +166,7 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
 
 
 def _entry(section: Mapping[str, Any], key: str, defaults: Mapping[str, Any]) -> Any:
-    return section.get(key, defaults[key])
+    return section[key] if key in section else defaults[key]
 
 
 def _count(section: Mapping[str, Any], key: str, where: str) -> int:
@@ -147,6 +176,10 @@ def _count(section: Mapping[str, Any], key: str, where: str) -> int:
             "count", f"{where}.{key}", repr(value), "a whole number of 0 or more", "write it without a point"
         )
     return value
+
+
+def _own_degree(value: Any, where: str) -> int | None:
+    return None if value is None else _count({"coefficient_degree": value}, "coefficient_degree", where)
 
 
 def _psi_range(section: Mapping[str, Any], where: str, limit_rad: float) -> tuple[float, float]:
@@ -177,7 +210,7 @@ def _axis(
     where = f"{design_where}.{axis}"
     section = checks.table(design.get(axis, {}), where)
     checks.keys(section, where, (), tuple(AxisSettings.__dataclass_fields__))
-    defaults = AXIS_DEFAULTS[axis]
+    defaults = {**AXIS_DEFAULTS[axis], **(OWN_POLES if "poles_rad_s" in section else {})}
     filter_s = checks.number(
         _entry(section, "prefilter_time_constant_s", defaults), f"{where}.prefilter_time_constant_s"
     )
@@ -190,6 +223,8 @@ def _axis(
     _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, limit_rad, "reference range")
     return AxisSettings(
         poles_rad_s=read_poles(_entry(section, "poles_rad_s", defaults), f"{where}.poles_rad_s"),
+        roll_off_pole_rad_s=_roll_off(_entry(section, "roll_off_pole_rad_s", defaults), f"{where}.roll_off_pole_rad_s"),
+        coefficient_degree=_own_degree(_entry(section, "coefficient_degree", defaults), where),
         free_degree=_free_degree(_entry(section, "free_degree", defaults), f"{where}.free_degree"),
         prefilter_time_constant_s=filter_s,
         observer_pole=_observer_pole(_entry(section, "observer_pole", defaults), f"{where}.observer_pole"),
@@ -226,6 +261,10 @@ def read_poles(entries: Any, where: str) -> tuple[complex, ...]:
     return poles
 
 
+def _roll_off(value: Any, where: str) -> float:
+    return _pole(value, where).real if checks.number(value, where) else 0.0
+
+
 def _pole(entry: Any, where: str) -> complex:
     if isinstance(entry, list | tuple):
         pole = complex(*checks.numbers(entry, where, 2))
@@ -253,7 +292,8 @@ def _margins(design: Mapping[str, Any], where: str) -> MarginLimits:
 
 
 def _check_degrees(settings: DesignSettings, where: str) -> None:
-    needed = max(settings.coefficient_degree, settings.feedforward_degree) + 1
+    degrees = [degree for axis in AXES for degree in asdict(settings.degrees(axis)).values()]
+    needed = max(*degrees, settings.feedforward_degree) + 1
     if settings.operating_points < max(needed, 2):
         raise BadInput(
             "operating points",
@@ -276,7 +316,7 @@ def _check_period(settings: DesignSettings, where: str) -> None:
 
 def _check_nyquist(settings: DesignSettings, axis: str, where: str) -> None:
     nyquist_rad_s = math.pi / settings.sample_period_s
-    for pole in settings.axis(axis).poles_rad_s:
+    for pole in settings.axis(axis).placed_rad_s:
         if abs(pole.imag) >= nyquist_rad_s:
             raise BadInput(
                 "pole",

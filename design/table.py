@@ -84,7 +84,7 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
 
 def _axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
     designs = [design.delta for design in points.axis(axis)]
-    schedule = fit_schedule(points.psi_rad, designs, settings.coefficient_degree, settings.sample_period_s)
+    schedule = fit_schedule(points.psi_rad, designs, settings.degrees(axis), settings.sample_period_s)
     return AxisLaw(
         q_V_rad=schedule.q,
         p=schedule.p,
@@ -123,6 +123,7 @@ def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -
         "plant_digest": plant_digest(bound.plant),
         "model": bound.model.name,
         "coefficient_degree": settings.coefficient_degree,
+        "recursion_degree": settings.recursion_degree,
         "feedforward_degree": settings.feedforward_degree,
         "operating_points": [
             {"psi_rad": point.psi_rad, "x0": plain(point.x0), "u0_V": plain(point.u0)} for point in points.equilibria
@@ -134,9 +135,9 @@ def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -
 def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> dict[str, Any]:
     wishes, designs = settings.axis(axis), points.axis(axis)
     deltas = [design.delta for design in designs]
-    schedule = fit_schedule(points.psi_rad, deltas, settings.coefficient_degree, settings.sample_period_s)
+    schedule = fit_schedule(points.psi_rad, deltas, settings.degrees(axis), settings.sample_period_s)
     return {
-        "poles_rad_s": [[pole.real, pole.imag] for pole in wishes.poles_rad_s],
+        "poles_rad_s": [[pole.real, pole.imag] for pole in wishes.placed_rad_s],
         "free_degree": wishes.free_degree,
         "observer_pole": wishes.observer_pole,
         "fit_error": {

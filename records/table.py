@@ -3,13 +3,14 @@
 The law of one axis, with delta = 1 - z^-1 and Psi the measured elevation, is (seed 000, eqs (22) and (27), in another basis)
 
     Q(z^-1, Psi) = q_0 + q_1 delta + q_2 delta^2 + q_3 delta^3
-    P(z^-1, Psi) = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2]        so that P(1) = p_0, exactly 0 with integral action
+    P(z^-1, Psi) = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2 + p_3 delta^3]
     A(z^-1)      = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]        the anti-windup observer
 
     A v = Q e + (A - P) s        e = filtered reference - angle, s = u - u_ff after the limits, v = u_fb before them
     u = v + u_ff(filtered reference)
 
-Each q_i and p_i is a polynomial in Psi [rad], each feed-forward one in the filtered elevation reference; ascending powers.
+P(1) = p_0, exactly 0 with integral action; p_3 is there with a roll-off, where Q/P has one pole more than it has zeros. Each q_i and p_i
+is a polynomial in Psi [rad], each feed-forward one in the filtered elevation reference; ascending powers.
 
 What is no number, and a state that is broken, are answered alike by every form of the law (docs/theory.md, section 4).
 """
@@ -57,7 +58,7 @@ class BothAxes(Generic[A]):
 
 @dataclass(frozen=True)
 class AxisLaw:
-    """The law of one axis; `q_V_rad` has 4 polynomials, `p` 3, `a` 3 numbers; voltages in V, angles in rad."""
+    """The law of one axis; `q_V_rad` has 4 polynomials, `p` 3 or with a roll-off 4, `a` 3 numbers; voltages in V, angles in rad."""
 
     q_V_rad: tuple[Polynomial, ...]
     p: tuple[Polynomial, ...]
@@ -165,17 +166,16 @@ def _axis(entry: Any, where: str) -> AxisLaw:
         if name not in ("q_V_rad", "p", "a", "feedforward_V")
     }
     return AxisLaw(
-        q_V_rad=_polynomials(section["q_V_rad"], f"{where}.q_V_rad", 4),
-        p=_polynomials(section["p"], f"{where}.p", 3),
+        q_V_rad=_polynomials(section["q_V_rad"], f"{where}.q_V_rad", (4,)),
+        p=_polynomials(section["p"], f"{where}.p", (3, 4)),
         a=(a[0], a[1], a[2]),
         feedforward_V=checks.numbers(section["feedforward_V"], f"{where}.feedforward_V"),
         **scalars,
     )
 
 
-def _polynomials(entry: Any, where: str, count: int) -> tuple[Polynomial, ...]:
-    if not isinstance(entry, list) or len(entry) != count:
-        raise BadInput(
-            "polynomials", where, repr(entry)[:60], f"{count} lists of coefficients", "design the table again"
-        )
+def _polynomials(entry: Any, where: str, counts: tuple[int, ...]) -> tuple[Polynomial, ...]:
+    if not isinstance(entry, list) or len(entry) not in counts:
+        expected = f"{' or '.join(map(str, counts))} lists of coefficients"
+        raise BadInput("polynomials", where, repr(entry)[:60], expected, "design the table again")
     return tuple(checks.numbers(row, f"{where}[{index}]") for index, row in enumerate(entry))

@@ -31,7 +31,7 @@ typedef struct {
 } polynomial;
 
 typedef struct {
-    polynomial q[4], p[3], a[3], u_ff;
+    polynomial q[4], p[4], a[3], u_ff;
     int32_t prefilter_poles;
     number prefilter_gain;
     number u_min_V, u_max_V, u_safe_V;
@@ -50,7 +50,7 @@ typedef struct {
     number reference_1_rad, reference_2_rad;
     number e_0_rad, e_1_rad, e_2_rad;
     number v_V;
-    number s_V[3], w_V[3];
+    number s_V[4], w_V[3];
 } axis_state;
 
 typedef struct {
@@ -168,7 +168,7 @@ static number move(const axis_law *axis, const axis_state *state, const number e
     for (int32_t i = 0; i < 4; i++) {
         add_term(&sum, &is_empty, &axis->q[i], schedule_rad, e_rad[i], false);
     }
-    for (int32_t i = 0; i < 3; i++) {
+    for (int32_t i = 0; i < 4; i++) {
         add_term(&sum, &is_empty, &axis->p[i], schedule_rad, state->s_V[i], i == 0);
     }
     for (int32_t i = 0; i < 3; i++) {
@@ -190,14 +190,15 @@ static number overflowed(const replay_law *law, int32_t i, number value_V)
     return value_V - span_V * (number)floor((double)((value_V - low_V) / span_V));
 }
 
-/* value, its first and second difference, from the last value and its first */
-static void remember(number differences[3], number value)
+/* value and its differences up to `count` - 1, from the last value's */
+static void remember(number *differences, int32_t count, number value)
 {
-    const number first = value - differences[0];
-    const number second = first - differences[1];
-    differences[0] = value;
-    differences[1] = first;
-    differences[2] = second;
+    number next = value;
+    for (int32_t order = 0; order < count; order++) {
+        const number last = differences[order];
+        differences[order] = next;
+        next = next - last;
+    }
 }
 
 static number drive(const replay_law *law, int32_t i, axis_state *state, const number e_rad[4], number v_V, number u_ff_V)
@@ -224,8 +225,8 @@ static number drive(const replay_law *law, int32_t i, axis_state *state, const n
         v_V = last_v_V;
     }
     const number w_V = (law->windup == WINDUP_OBSERVER) ? u_V - limited_V : (number)0;
-    remember(state->w_V, w_V);
-    remember(state->s_V, v_V - w_V);
+    remember(state->w_V, 3, w_V);
+    remember(state->s_V, 4, v_V - w_V);
     state->e_0_rad = e_rad[0];
     state->e_1_rad = is_plausible ? e_rad[1] : (number)0;
     state->e_2_rad = is_plausible ? e_rad[2] : (number)0;

@@ -37,7 +37,7 @@ _C_NAMES = {FLOAT32: "float", FLOAT64: "double"}
 _DECLARATIONS = f"""
     typedef struct {{ int32_t count; number c[{ROOM}]; }} polynomial;
     typedef struct {{
-        polynomial q[4], p[3], a[3], u_ff;
+        polynomial q[4], p[4], a[3], u_ff;
         int32_t prefilter_poles;
         number prefilter_gain;
         number u_min_V, u_max_V, u_safe_V;
@@ -51,7 +51,7 @@ _DECLARATIONS = f"""
         number overflow_low_V[2], overflow_span_V[2];
     }} replay_law;
     typedef struct {{
-        number reference_1_rad, reference_2_rad, e_0_rad, e_1_rad, e_2_rad, v_V, s_V[3], w_V[3];
+        number reference_1_rad, reference_2_rad, e_0_rad, e_1_rad, e_2_rad, v_V, s_V[4], w_V[3];
     }} axis_state;
     typedef struct {{ axis_state axis[2]; number angle_rad[2], reference_rad[2]; }} replay_state;
     typedef struct {{
@@ -301,7 +301,7 @@ def _axis_fields(axis: AxisConstants[Any], poles: int | None, gain: Any) -> dict
     scalars = ("u_min_V", "u_max_V", "u_safe_V", "reference_min_rad", "reference_max_rad")
     return {
         "q": [_polynomial(row) for row in axis.q_V_rad],
-        "p": [_polynomial(row) for row in axis.p],
+        "p": [_polynomial(row) for row in (*axis.p, ())[:4]],
         "a": [_polynomial(row) for row in axis.a],
         "u_ff": _polynomial(axis.feedforward_V),
         "prefilter_poles": 2 if poles is None else poles,

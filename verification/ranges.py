@@ -41,7 +41,7 @@ def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
     within their limits, filters within the references' range, and saturation by no more than the span of the limits:
 
         e in x_2 - angle                    |delta e| <= rate Ts + step + b span(x)   |delta^2 e| <= 2 |delta e|
-        s = limited u - u_ff                |delta s| <= span(s)                      |delta^2 s| <= 2 |delta s|
+        s = limited u - u_ff                |delta s| <= span(s)                      |delta^2 s| <= 2 |delta s|, and so on
         |w| <= span of the limits           |delta w| <= 2 |w|                        |delta^2 w| <= 2 |delta w|
         v = s + w
 
@@ -87,6 +87,7 @@ def _axis_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_r
         s_0_V=s_V,
         s_1_V=_around_zero(s_span_V),
         s_2_V=_around_zero(2.0 * s_span_V),
+        s_3_V=_around_zero(_SLACK * 4.0 * s_span_V),
         w_0_V=_around_zero(span_V),
         w_1_V=_around_zero(_SLACK * 2.0 * span_V),
         w_2_V=_around_zero(_SLACK * 4.0 * span_V),

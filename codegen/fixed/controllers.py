@@ -14,8 +14,6 @@ from records.table import ControllerTable
 
 Array = NDArray[np.float64]
 
-_SIZES = {"q": 4, "p": 3}
-
 
 def fixed_controllers(table: ControllerTable, axis: str, psi_rad: Array) -> tuple[DeltaForm, ...]:
     """q and p of (D.1) and (D.2) of one axis at the elevations psi_rad (angles,), each what its word stands for.
@@ -27,7 +25,7 @@ def fixed_controllers(table: ControllerTable, axis: str, psi_rad: Array) -> tupl
     own, places = {"elevation": (law.elevation, formats.elevation), "azimuth": (law.azimuth, formats.azimuth)}[axis]
     angles = np.array([word_of(float(psi), formats.angle_places) for psi in psi_rad], dtype=np.int64)
     powers = schedule(law, words, angles)
-    found = {letter: np.zeros((len(psi_rad), size)) for letter, size in _SIZES.items()}
+    found = {letter: np.zeros((len(psi_rad), size)) for letter, size in (("q", 4), ("p", len(table.axis(axis).p)))}
     for term, format_ in zip(own.terms, places.terms, strict=True):
         letter, index = term.coefficient.split("_")[:2]
         if letter in found:

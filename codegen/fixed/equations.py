@@ -2,7 +2,7 @@
 
 Functions, names and order of operations are those of templates/law_fixed.c.j2, and the equations those of law_equations.py:
 
-    v = v(k-1) + Q e + z^-1 [-p_0 s + p_1 delta s + p_2 delta^2 s] + z^-1 [-a_0 w + a_1 delta w + a_2 delta^2 w]
+    v = v(k-1) + Q e + z^-1 [-p_0 s + p_1 delta s + p_2 delta^2 s + p_3 delta^3 s] + z^-1 [-a_0 w + a_1 delta w + a_2 delta^2 w]
 
 with v(k-1) = s + w. All differences are exact; the products are summed exactly, and what the sum has below the last place of v
 is carried to the next sample, so that rounding never adds up. A broken state is taken modulo the range of each word: the law goes
@@ -33,6 +33,7 @@ class AxisState(Generic[N]):
     s_0_V: N
     s_1_V: N
     s_2_V: N
+    s_3_V: N
     w_0_V: N
     w_1_V: N
     w_2_V: N
@@ -156,7 +157,7 @@ def within_ranges(law: FixedLaw[Any], axis: FixedAxis[Any], words: Words[Any], s
     """The state with every word of the feedback in its range: unchanged unless it was broken."""
     bits = {
         **{f"e_{i}_rad": law.error_bits + i for i in range(3)},
-        **{f"s_{i}_V": law.s_bits + i for i in range(3)},
+        **{f"s_{i}_V": law.s_bits + i for i in range(4)},
         **{f"w_{i}_V": law.w_bits + i for i in range(3)},
     }
     wrapped = {name: words.wrapped(getattr(state, name), count) for name, count in bits.items()}
@@ -217,6 +218,7 @@ def drive(
     s_0_V = words.word("s_0_V", limited_V - u_ff_V)  # = v - w
     s_1_V = words.choose(plausible, words.word("s_1_V", s_0_V - state.s_0_V), law.zero)
     s_2_V = words.choose(plausible, words.word("s_2_V", s_1_V - state.s_1_V), law.zero)
+    s_3_V = words.choose(plausible, words.word("s_3_V", s_2_V - state.s_2_V), law.zero)
     after = replace(
         state,
         e_0_rad=e_rad[0],
@@ -225,6 +227,7 @@ def drive(
         s_0_V=s_0_V,
         s_1_V=s_1_V,
         s_2_V=s_2_V,
+        s_3_V=s_3_V,
         w_0_V=w_0_V,
         w_1_V=w_1_V,
         w_2_V=w_2_V,
@@ -238,5 +241,5 @@ def _axis_at_rest(
     reference_rad = words.clamp(angle_rad, axis.reference_min_rad, axis.reference_max_rad)
     filtered_rad = words.word("reference at rest", reference_rad * 2**axis.reference_doublings)
     e_0_rad = words.word("error at rest", reference_rad - angle_rad)
-    zeros = (law.zero,) * 6
+    zeros = (law.zero,) * 7
     return AxisState(filtered_rad, filtered_rad, e_0_rad, law.zero, law.zero, axis.half_residue, *zeros), reference_rad

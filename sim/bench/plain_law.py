@@ -8,7 +8,7 @@ from records.table import AxisLaw, ControllerTable
 from sim.bind import BoundPlant
 from sim.manoeuvres import Manoeuvre
 
-LAW_STATES = 12  # per axis: two prefilter states, v, and three differences each of e, s, w
+LAW_STATES = 13  # per axis: two prefilter states, v, and e, s, w with their differences: 3, 4, 3
 
 
 class PlainNumbers:
@@ -42,14 +42,14 @@ def _prefilter(axis: AxisLaw, period_s: float, own: list[Any], reference: Any) -
 def _axis_step(
     axis: AxisLaw, ops: Any, own: list[Any], psi: Any, error: Any, feedforward: Any
 ) -> tuple[list[Any], Any]:
-    v, e, s, w = own[2], own[3:6], own[6:9], own[9:12]
+    v, e, s, w = own[2], own[3:6], own[6:10], own[10:13]
     q, p = ([_polynomial(row, psi) for row in rows] for rows in (axis.q_V_rad, axis.p))
     e_new = _differences(error, e)
-    v = v - p[0] * s[0] + p[1] * s[1] + p[2] * s[2] + sum(q[i] * e_new[i] for i in range(4))
+    v = v - p[0] * s[0] + sum(p[i] * s[i] for i in range(1, len(p))) + sum(q[i] * e_new[i] for i in range(4))
     v = v - axis.a[0] * w[0] + axis.a[1] * w[1] + axis.a[2] * w[2]
     limited = ops.maximum(ops.minimum(v + feedforward, axis.u_max_V), axis.u_min_V)
     excess = v + feedforward - limited
-    return [v, *e_new[:3], *_differences(v - excess, s)[:3], *_differences(excess, w)[:3]], limited
+    return [v, *e_new[:3], *_differences(v - excess, s)[:4], *_differences(excess, w)[:3]], limited
 
 
 def _differences(value: Any, previous: list[Any]) -> list[Any]:

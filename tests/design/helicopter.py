@@ -45,7 +45,13 @@ def base_settings() -> DesignSettings:
 
 def axis_settings(axis: str, poles: tuple[complex, ...], free_degree: str) -> AxisSettings:
     wishes = base_settings().axis(axis)
-    return replace(wishes, poles_rad_s=tuple(complex(pole) for pole in poles), free_degree=free_degree)
+    return replace(
+        wishes,
+        poles_rad_s=tuple(complex(pole) for pole in poles),
+        roll_off_pole_rad_s=0.0,
+        coefficient_degree=None,
+        free_degree=free_degree,
+    )
 
 
 @cache
@@ -59,6 +65,7 @@ def settings_for(
         elevation=axis_settings("elevation", *elevation),
         azimuth=axis_settings("azimuth", *azimuth),
         coefficient_degree=coefficient_degree,
+        recursion_degree=coefficient_degree,
     )
 
 

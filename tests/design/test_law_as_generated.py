@@ -70,9 +70,9 @@ def test_both_start_alike_also_outside_the_range_of_the_reference(psi_rad, phi_r
     side_by_side(state, [(0.1, -0.2, psi_rad, phi_rad), (math.nan, 9.0, 0.0, 0.0), (0.2, 0.2, 1e-12, -1e-12)])
 
 
-@given(st.lists(NUMBERS, min_size=28, max_size=28), st.lists(st.tuples(*[NUMBERS] * 4), min_size=1, max_size=6))
-@example([math.nan] * 28, [(0.1, 0.2, 0.0, 0.0)] * 2)
-@example([0.1] * 5 + [2 * PLAUSIBLE_V] + [0.1] * 22, [(0.1, 0.2, 0.0, 0.0)] * 2)
+@given(st.lists(NUMBERS, min_size=30, max_size=30), st.lists(st.tuples(*[NUMBERS] * 4), min_size=1, max_size=6))
+@example([math.nan] * 30, [(0.1, 0.2, 0.0, 0.0)] * 2)
+@example([0.1] * 5 + [2 * PLAUSIBLE_V] + [0.1] * 24, [(0.1, 0.2, 0.0, 0.0)] * 2)
 @settings(max_examples=300 if SOAK else 80, deadline=None, derandomize=True)
 def test_both_answer_any_state_and_any_input_alike(numbers, samples):
     side_by_side(from_words(numbers), samples)
@@ -82,12 +82,12 @@ def from_words(numbers: list[float]) -> LawState:
     """Any memory with s_0 = v - w_0: the generated law has no p_0 with integral action and would notice a broken s_0 one sample later."""
 
     def axis(first: int, place: int) -> AxisState:
-        x1, x2, e_0, e_1, e_2, v, _, s_1, s_2, *w = numbers[first : first + 12]
+        x1, x2, e_0, e_1, e_2, v, _, s_1, s_2, s_3, *w = numbers[first : first + 13]
         return AxisState(
-            numbers[26 + place], numbers[24 + place], x1, x2, v, (e_0, e_1, e_2), (v - w[0], s_1, s_2), tuple(w)
+            numbers[28 + place], numbers[26 + place], x1, x2, v, (e_0, e_1, e_2), (v - w[0], s_1, s_2, s_3), tuple(w)
         )
 
-    return LawState(axis(0, 0), axis(12, 1))
+    return LawState(axis(0, 0), axis(13, 1))
 
 
 def test_a_restart_keeps_the_present_error_so_that_the_next_sample_sees_no_jump():

@@ -112,7 +112,7 @@ def test_the_same_seed_gives_the_same_stimuli_and_sequences_set_no_state() -> No
 def test_a_broken_state_comes_to_rest(table: ControllerTable) -> None:
     """Any words as state: after six seconds without an error the outputs move by less than a tick a sample."""
     twin, rng = FixedTwin(table), np.random.default_rng(11)
-    broken = rng.integers(0, 2**32, (100, 28), dtype=np.uint32)
+    broken = rng.integers(0, 2**32, (100, 30), dtype=np.uint32)
     outputs = twin.run(broken, np.zeros((600, 100, 4), dtype=np.uint32))[1].view(np.int32)
     assert np.abs(np.diff(outputs[:3], axis=0)).max() > 2**twin.formats.voltage_places
     moves_V = np.abs(np.diff(outputs[-10:], axis=0)) * 2.0**-twin.formats.voltage_places

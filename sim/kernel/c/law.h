@@ -1,7 +1,7 @@
 /* The scheduled two-axis law in double precision, as records/table.py states it and design/law.py writes it out.
  *
  * Per axis, with e_0 = filtered reference - angle and e_1, e_2, e_3 its backward differences (s and w alike, of the last sample):
- *   v = v(k-1) - p_0 s_0 + p_1 s_1 + p_2 s_2 + q_0 e_0 + q_1 e_1 + q_2 e_2 + q_3 e_3 - a_0 w_0 + a_1 w_1 + a_2 w_2
+ *   v = v(k-1) - p_0 s_0 + p_1 s_1 + p_2 s_2 + p_3 s_3 + q_0 e_0 + q_1 e_1 + q_2 e_2 + q_3 e_3 - a_0 w_0 + a_1 w_1 + a_2 w_2
  *   u = v + u_ff(filtered elevation reference), limited;  w = u - limited u,  s = v - w
  * q and p are polynomials of the measured elevation within the scheduling range.
  */
@@ -12,7 +12,7 @@
 #include "law_table.h"
 
 typedef struct {
-    num reference_rad, angle_rad, x1_rad, x2_rad, v_V, e[3], s[3], w[3];
+    num reference_rad, angle_rad, x1_rad, x2_rad, v_V, e[3], s[4], w[3];
 } law_axis_state;
 
 typedef struct {
@@ -42,6 +42,7 @@ static inline void law_reset(law_state *self, const law_table *table, const num 
         self->axis[i] = (law_axis_state){.reference_rad = start, .angle_rad = angle, .x1_rad = start, .x2_rad = start, .v_V = zero};
         for (int order = 0; order < 3; order++)
             self->axis[i].e[order] = self->axis[i].s[order] = self->axis[i].w[order] = zero;
+        self->axis[i].s[3] = zero;
         self->axis[i].e[0] = start - angle;
     }
 }
@@ -58,15 +59,15 @@ static inline void law_accept(law_axis_state *state, const law_axis *law, num re
 
 static inline num law_control(law_axis_state *state, const law_axis *law, const num *k, num feedforward_V)
 {
-    num e[4], s[3], w[3];
+    num e[4], s[4], w[3];
     law_differences(state->x2_rad - state->angle_rad, state->e, e, 4);
-    num v = state->v_V - k[LAW_P0] * state->s[0] + k[LAW_P1] * state->s[1] + k[LAW_P2] * state->s[2];
+    num v = state->v_V - k[LAW_P0] * state->s[0] + k[LAW_P1] * state->s[1] + k[LAW_P2] * state->s[2] + k[LAW_P3] * state->s[3];
     v = v + k[LAW_Q0] * e[0] + k[LAW_Q1] * e[1] + k[LAW_Q2] * e[2] + k[LAW_Q3] * e[3];
     v = v - NUM(law->a[0]) * state->w[0] + NUM(law->a[1]) * state->w[1] + NUM(law->a[2]) * state->w[2];
     const num u = v + feedforward_V;
     const num limited = select(is_equal(u, u), lane_clamp(u, NUM(law->u_min_V), NUM(law->u_max_V)), NUM(law->u_safe_V));
     const num excess = u - limited;
-    law_differences(v - excess, state->s, s, 3);
+    law_differences(v - excess, state->s, s, 4);
     law_differences(excess, state->w, w, 3);
     state->v_V = v;
     for (int order = 0; order < 3; order++) {
@@ -74,6 +75,7 @@ static inline num law_control(law_axis_state *state, const law_axis *law, const 
         state->s[order] = s[order];
         state->w[order] = w[order];
     }
+    state->s[3] = s[3];
     return limited;
 }
 

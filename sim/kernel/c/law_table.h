@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 enum { LAW_MAX_COEFFICIENTS = 12 };
-enum { LAW_Q0, LAW_Q1, LAW_Q2, LAW_Q3, LAW_P0, LAW_P1, LAW_P2, LAW_ROWS = 8 }; /* the eighth is spare: whole vectors */
+enum { LAW_Q0, LAW_Q1, LAW_Q2, LAW_Q3, LAW_P0, LAW_P1, LAW_P2, LAW_P3, LAW_ROWS };
 
 typedef struct {
     double a[3], prefilter_gain, u_min_V, u_max_V, u_safe_V, reference_min_rad, reference_max_rad;
