@@ -30,23 +30,23 @@ MAX_CONDITION = 1e6
 
 @dataclass(frozen=True)
 class FreeDegree:
-    """A condition p (p_1 + p_2 + ..) + `q` . (q_0 q_1 q_2 q_3) = `value` that fixes the last unknown, and what it means."""
+    """A condition `p` . (p_1 p_2 p_3 p_4) + `q` . (q_0 q_1 q_2 q_3) = `value` that fixes the last unknown, and what it means."""
 
-    p: float
+    p: tuple[float, float, float, float]
     q: tuple[float, float, float, float]
     value: float
     meaning: str
 
     def row(self, order: int) -> Array:
         """The condition's left side over the unknowns p_1 .. p_order, q_0 .. q_3."""
-        return np.array([self.p] * order + list(self.q))
+        return np.array([*self.p[:order], *self.q])
 
 
 FREE_DEGREES: Mapping[str, FreeDegree] = {
-    "integral": FreeDegree(1, (0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
-    "q3_zero": FreeDegree(0, (0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
-    "q0_zero": FreeDegree(0, (1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
-    "q_nyquist_zero": FreeDegree(0, (1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
+    "integral": FreeDegree((1, 1, 1, 1), (0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
+    "q3_zero": FreeDegree((0, 0, 0, 0), (0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
+    "q0_zero": FreeDegree((0, 0, 0, 0), (1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
+    "q_nyquist_zero": FreeDegree((0, 0, 0, 0), (1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
 }
 
 

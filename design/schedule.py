@@ -14,7 +14,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from design.direct_form import DeltaForm, to_direct
-from records.table import AxisLaw, Polynomial
+from records.table import AxisLaw, Polynomial, short
 
 Array = NDArray[np.float64]
 
@@ -83,10 +83,16 @@ def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
 def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degrees: Degrees, sample_period_s: float) -> Schedule:
     """Fit the coefficients of the designs (points,) with equal weights; q_3 is a constant below CONSTANT_Q3_BELOW_S."""
     q, p = np.array([design.q for design in designs]), np.array([design.p for design in designs])
-    fitted = [stored_fit(psi_rad, column, degrees.q) for column in q.T]
+    fitted = [_kept(psi_rad, column, degrees.q) for column in q.T]
     if sample_period_s < CONSTANT_Q3_BELOW_S:
-        fitted[3] = stored_fit(psi_rad, q[:, 3], 0) + (0.0,) * degrees.q
-    return Schedule(q=tuple(fitted), p=tuple(stored_fit(psi_rad, column, degrees.p) for column in p.T))
+        fitted[3] = _kept(psi_rad, q[:, 3], 0) + (0.0,) * degrees.q
+    return Schedule(q=tuple(fitted), p=tuple(_kept(psi_rad, column, degrees.p) for column in p.T))
+
+
+def _kept(psi_rad: Array, values: Array, degree: int) -> Polynomial:
+    """The stored fit, a constant as a short number."""
+    fitted = stored_fit(psi_rad, values, degree)
+    return fitted if degree else (short(fitted[0]),)
 
 
 def schedule_of(law: AxisLaw) -> Schedule:

@@ -52,7 +52,7 @@ SAMPLE_PERIODS_S = (0.5e-3, 50e-3)
 # Integral action and a roll-off on both axes, with the poles of plants/ce150.toml, which says how they were found.
 AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "elevation": {
-        "poles_rad_s": (-3.25, -12.6, -3.4 + 4.7j, -3.4 - 4.7j, -10.1 + 33.8j, -10.1 - 33.8j),
+        "poles_rad_s": (-3.25, -12.6, (-3.4, 4.7), (-3.4, -4.7), (-10.1, 33.8), (-10.1, -33.8)),
         "roll_off_pole_rad_s": -21.8,
         "coefficient_degree": None,
         "free_degree": "integral",
@@ -60,7 +60,7 @@ AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
         "observer_pole": 0.9,
     },
     "azimuth": {
-        "poles_rad_s": (-2.7, -4.6, -3.7 + 3.0j, -3.7 - 3.0j, -6.3 + 23.4j, -6.3 - 23.4j),
+        "poles_rad_s": (-2.7, -4.6, (-3.7, 3.0), (-3.7, -3.0), (-6.3, 23.4), (-6.3, -23.4)),
         "roll_off_pole_rad_s": -16.8,
         "coefficient_degree": 0,
         "free_degree": "integral",

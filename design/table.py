@@ -16,7 +16,7 @@ from design.settings import DesignSettings
 from records.errors import BadInput
 from records.loops import LOOPS
 from records.plant import plant_digest
-from records.table import AXES, AxisLaw, ControllerTable
+from records.table import AXES, AxisLaw, ControllerTable, short
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
@@ -113,8 +113,8 @@ def frame_entries(
 
 
 def observer(pole: float) -> tuple[float, float, float]:
-    """a_0, a_1, a_2 of A = (1 - pole z^-1)^3 = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]."""
-    return (1.0 - pole) ** 3, 3.0 * pole**2 - 2.0 * pole**3, pole**3
+    """a_0, a_1, a_2 of A = (1 - pole z^-1)^3 = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2], each the nearest short number."""
+    return short((1.0 - pole) ** 3), short(3.0 * pole**2 - 2.0 * pole**3), short(pole**3)
 
 
 def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -> dict[str, Any]:

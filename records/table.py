@@ -38,11 +38,20 @@ A = TypeVar("A")
 PLAUSIBLE_V = 2.0**20
 # A scheduling angle below this counts as zero in the generated law: it moves no coefficient, and its products would be subnormal: slower.
 LEAST_SCHEDULE_RAD = 2.0**-30
+# Magnitude bits of a coefficient that is the same at every elevation: its product then takes a core that multiplies 32 bits to 32 two half
+# products, not four. It moves such a coefficient by 2^-16 of itself at most, and the loop's poles by less than their last printed digit.
+SHORT_BITS = 15
 
 
 def lag_gain(T_s: float, sample_period_s: float) -> float:
     """b = 1 - exp(-Ts/T) of x <- x + b (r - x), the sampled 1/(T s + 1); 1, which passes r on, for T = 0."""
     return 1.0 if T_s == 0.0 else -math.expm1(-sample_period_s / T_s)
+
+
+def short(value: float) -> float:
+    """The number of SHORT_BITS magnitude bits that is nearest to `value`."""
+    fraction, exponent = math.frexp(value)
+    return math.ldexp(round(math.ldexp(fraction, SHORT_BITS)), exponent - SHORT_BITS)
 
 
 class BothAxes(Generic[A]):

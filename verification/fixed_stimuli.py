@@ -112,7 +112,7 @@ def at_the_edges(table: ControllerTable) -> Stimulus:
 def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str, int]]:
     """States from which v moves to -2^bits or 2^bits and its neighbours: w far out, its difference takes it there."""
     gains = {
-        term.factor: term.sign * term.polynomial.constant / 2.0 ** (term.excess + axis.residue_places)
+        term.factor: term.sign * term.polynomial.constant / 2.0 ** (term.excess - term.doublings + axis.residue_places)
         for term in axis.terms
     }
     if not gains.get("w_1_V"):

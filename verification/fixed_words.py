@@ -144,6 +144,9 @@ class TrackedWords:
     def narrow_product(self, value: TrackedWord, x: TrackedWord) -> TrackedWord:
         return value * x
 
+    def short_product(self, value: TrackedWord, x: TrackedWord) -> TrackedWord:
+        return value * x
+
     def scaled(self, value: TrackedWord, x: TrackedWord) -> TrackedWord:
         return (value * x).times(arb(2) ** -32).lost(3 * _HALF, 3 * _HALF)
 

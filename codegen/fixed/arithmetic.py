@@ -59,6 +59,9 @@ class Words(Protocol[N]):
     def narrow_product(self, value: N, x: N) -> N:
         """value x, where the sum of the middle half products fits one word."""
 
+    def short_product(self, value: N, x: N) -> N:
+        """value x of a value of 16 bits."""
+
     def scaled_short(self, value: N, x: N) -> N:
         """floor(value x / 2^16) of a value of 16 bits."""
 
@@ -111,6 +114,9 @@ class Scalars:
     def narrow_product(self, value: int, x: int) -> int:
         return value * x
 
+    def short_product(self, value: int, x: int) -> int:
+        return value * x
+
     def scaled_short(self, value: int, x: int) -> int:
         return (value * x) >> 16
 
@@ -161,6 +167,9 @@ class LaneWords:
         return _scaled(value, x)
 
     def narrow_product(self, value: Any, x: Any) -> Any:
+        return value * x
+
+    def short_product(self, value: Any, x: Any) -> Any:
         return value * x
 
     def scaled_short(self, value: Any, x: Any) -> Any:

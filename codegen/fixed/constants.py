@@ -38,14 +38,16 @@ class FixedPolynomial(Generic[N]):
 
 @dataclass(frozen=True)
 class FixedTerm(Generic[N]):
-    """One product of the move of v; `excess` is the shift to the places of the sum."""
+    """One product of the move of v; `excess` and `doublings` are the shifts to the places of the sum."""
 
     coefficient: str
     factor: str
     sign: int
     polynomial: FixedPolynomial[N]
     excess: int
+    doublings: int
     is_narrow: bool
+    is_short: bool
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,9 @@ def _axis(table: ControllerTable, name: str, formats: LawFormats, number: MakeNu
             term.sign,
             _polynomial(term.polynomial, number),
             term.excess,
+            term.doublings,
             term.is_narrow,
+            term.is_short,
         )
         for term in own.terms
     )

@@ -87,6 +87,7 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
         "filters": {axis.filter for axis in axes},
         "multiplies_short": any(part.products == 2 for p in _all_polynomials(law) for part in p.powers),
         "multiplies_narrow": any(term.is_narrow for axis in (law.elevation, law.azimuth) for term in axis.terms),
+        "multiplies_short_words": any(term.is_short for axis in (law.elevation, law.azimuth) for term in axis.terms),
         "shifts_products": any(term.excess for axis in (law.elevation, law.azimuth) for term in axis.terms),
         "places": {
             "schedule": formats.angle_places + law.schedule_doublings,
@@ -140,8 +141,10 @@ def _axis(law: AxisLaw, axis: FixedAxis[int], formats: LawFormats, own: AxisForm
 def _product(axis: str, term: FixedTerm[int]) -> str:
     places = {"e_3_rad": "e_3_rad", **{f"e_{i}_rad": f"self->e_{i}_rad" for i in range(3)}}
     factor = places.get(term.factor, f"past->{term.factor}")
-    function = "narrow_product" if term.is_narrow else "product"
+    function = "short_product" if term.is_short else "narrow_product" if term.is_narrow else "product"
     product = f"{function}({axis}_{term.coefficient}(psi), {factor})"
+    if term.doublings:
+        return f"({product} << {term.doublings}u)"
     return f"floored_product({product}, {term.excess}u)" if term.excess else product
 
 

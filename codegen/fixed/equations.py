@@ -185,8 +185,11 @@ def move(
     for term in axis.terms:
         coefficient = polynomial(term.polynomial, words, psi, f"{axis.name}.{term.coefficient}")
         factor = errors[term.factor] if term.factor in errors else getattr(state, term.factor)
-        product = words.narrow_product(coefficient, factor) if term.is_narrow else coefficient * factor
-        product = words.floored(product, term.excess)
+        if term.is_short:
+            product = words.short_product(coefficient, factor) * 2**term.doublings
+        else:
+            product = words.narrow_product(coefficient, factor) if term.is_narrow else coefficient * factor
+            product = words.floored(product, term.excess)
         total = total + product if term.sign > 0 else total - product
     return total
 

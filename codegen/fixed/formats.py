@@ -14,6 +14,7 @@ from codegen.fixed.polynomials import (
     bits_of,
     polynomial_format,
     room_for,
+    short_places,
 )
 from codegen.law_frame import polynomial_bound, without_vanishing_powers
 from codegen.law_terms import Coefficient, coefficients
@@ -31,9 +32,9 @@ SUM_BITS = 62  # of the exact sum of products
 
 @dataclass(frozen=True)
 class TermFormat:
-    """One product of the move of v: coefficient times factor, shifted right by `excess` to the sum's places.
+    """One product of the move of v: coefficient times factor, shifted right by `excess` or left by `doublings` to the sum's places.
 
-    `is_narrow`: both are small enough that the two middle half products fit one word together.
+    `is_narrow`: both are small enough that the two middle half products fit one word together; `is_short`: the coefficient has 16 bits.
     """
 
     coefficient: str
@@ -41,7 +42,9 @@ class TermFormat:
     sign: int
     polynomial: PolynomialFormat
     excess: int
+    doublings: int
     is_narrow: bool
+    is_short: bool
 
 
 @dataclass(frozen=True)
@@ -192,6 +195,18 @@ def _term(shared: _Shared, coefficient: Coefficient, sum_places: int) -> TermFor
     letter = coefficient.letter
     places = sum_places - _factor_places(shared, letter)
     bound = _bound(coefficient.polynomial, shared)
+    few = short_places(without_vanishing_powers(coefficient.polynomial))
+    if few is not None and few <= places:
+        return TermFormat(
+            coefficient=coefficient.name,
+            factor=coefficient.factor,
+            sign=coefficient.sign,
+            polynomial=polynomial_format(coefficient.polynomial, shared.psi_rad, shared.schedule_bits, few),
+            excess=0,
+            doublings=places - few,
+            is_narrow=False,
+            is_short=True,
+        )
     wanted = COEFFICIENT_BITS - bits_of(bound) if letter != "a" else places
     excess = max(0, min(wanted, room_for(bound), places + WORD_BITS) - places)
     widest = bound * 2.0 ** (places + excess) + 2.0 ** (_factor_word_bits(shared, letter) + coefficient.index)
@@ -201,6 +216,8 @@ def _term(shared: _Shared, coefficient: Coefficient, sum_places: int) -> TermFor
         sign=coefficient.sign,
         polynomial=polynomial_format(coefficient.polynomial, shared.psi_rad, shared.schedule_bits, places + excess),
         excess=excess,
+        doublings=0,
+        is_short=False,
         is_narrow=widest < 2.0**WORD_BITS - 2.0**18,
     )
 

@@ -3,10 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from records.table import Polynomial
+from records.table import SHORT_BITS, Polynomial
 
 WORD_BITS = 31  # of magnitude
-SHORT_BITS = 15  # of magnitude, of a coefficient that takes part in one-word products only
 TERM_BITS = 20  # a power's coefficient may be short where that moves the polynomial by at most 2^-20 of its size
 # What a product of a polynomial loses on average by flooring, in its last place.
 SHORT_LOSS, FULL_LOSS = 0.5, 1.25
@@ -70,6 +69,14 @@ def _power_format(
     wanted = places + 32 - power_places
     full = min(wanted, room_for(abs(coefficient)))
     return PowerFormat(power, coefficient, full, products=3, shift=wanted - full)
+
+
+def short_places(polynomial: Polynomial) -> int | None:
+    """Places with which a constant polynomial is a word of SHORT_BITS exactly; None for any other."""
+    if not polynomial or any(polynomial[1:]) or not polynomial[0]:
+        return None
+    places = SHORT_BITS - bits_of(polynomial[0])
+    return places if (polynomial[0] * 2.0**places).is_integer() else None
 
 
 def bits_of(value: float) -> int:

@@ -114,10 +114,17 @@ class Intervals:
         return value * x
 
     def scaled_short(self, value: Interval, x: Interval) -> Interval:
-        """Its half products fit one word as `value` has 16 bits; raises BadInput where it has more."""
+        self._demand_short(value)
+        return self.word("a short product", self.floored(value * x, 16))
+
+    def short_product(self, value: Interval, x: Interval) -> Interval:
+        self._demand_short(value)
+        return value * x
+
+    def _demand_short(self, value: Interval) -> None:
+        """Half products of a number of 16 bits fit one word; raises BadInput where it has more."""
         if not -(2**15) < value.low <= value.high < 2**15:
             raise _too_wide("a short coefficient", value)
-        return self.word("a short product", self.floored(value * x, 16))
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ def plain(settings: DesignSettings, axis: str) -> Solver:
         scale = np.max(np.abs(b))
         rows = [
             *sylvester((b / scale).astype(float), a.astype(float)),
-            np.array(free.row),
+            free.row(ORDER),
         ]  # exact: only single numbers are moved
         system = _single(np.array(rows))
         target = _single(np.append(wanted[1:] - np.append(a[1:], np.zeros(ORDER)), free.value))

@@ -82,6 +82,9 @@ class GappaWords(GappaBook):
     def narrow_product(self, value: Pair, x: Pair) -> Pair:
         return value * x
 
+    def short_product(self, value: Pair, x: Pair) -> Pair:
+        return value * x
+
     def scaled_short(self, value: Pair, x: Pair) -> Pair:
         return self.floored(value * x, 16)
 

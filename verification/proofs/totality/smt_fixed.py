@@ -153,7 +153,12 @@ def _decisions(law: FixedLaw[int]) -> Iterator[Question]:
         "accepted is the last word for LAW_MISSING alone", _refute(f"(= (accepted a b) (ite (= a {missing}) b a))")
     )
     bits = sorted(
-        {FILTERED_BITS, *(n + i for n in (law.error_bits, law.s_bits, law.w_bits) for i in range(3)), law.w_bits - 1}
+        {
+            FILTERED_BITS,
+            *(n + i for n in (law.error_bits, law.s_bits, law.w_bits) for i in range(3)),
+            law.s_bits + 3,
+            law.w_bits - 1,
+        }
     )
     for count in bits:
         low, high = _word(-(2**count)), _word(2**count - 1)
