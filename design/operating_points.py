@@ -23,8 +23,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PointDesign:
-    """The controller of one axis at one elevation, with the transfer function that it was made for."""
+    """The controller of one axis at one elevation, with the sampled plant that it was made for."""
 
+    plant: PlantPolynomials
     transfer: TransferFunction
     placement: Placement
     delta: DeltaForm
@@ -75,7 +76,7 @@ def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSett
     """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma; raises BadInput naming `where` (see place)."""
     wanted = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s))
     placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
-    return PointDesign(transfer, placement, exact_delta(plant, placement, wishes))
+    return PointDesign(plant, transfer, placement, exact_delta(plant, placement, wishes))
 
 
 def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSettings) -> DeltaForm:

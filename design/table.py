@@ -76,13 +76,14 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
         sample_period_s=settings.sample_period_s,
         psi_min_rad=settings.psi_min_rad,
         psi_max_rad=settings.psi_max_rad,
-        elevation=_axis_law(bound, settings, points, "elevation"),
-        azimuth=_axis_law(bound, settings, points, "azimuth"),
+        elevation=axis_law(bound, settings, points, "elevation"),
+        azimuth=axis_law(bound, settings, points, "azimuth"),
         origin=_origin(bound, settings, points),
     )
 
 
-def _axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
+def axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
+    """The law of one axis, fitted over the designs at `points`."""
     designs = [design.delta for design in points.axis(axis)]
     schedule = fit_schedule(points.psi_rad, designs, settings.degrees(axis), settings.sample_period_s)
     return AxisLaw(

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from design.operating_points import design_points
-from design.settings import AXIS_DEFAULTS, DEFAULTS, MARGIN_DEFAULTS, read_settings
+from design.settings import DEFAULTS, MARGIN_DEFAULTS, read_settings
 from design.table import make_table
 from records.errors import BadInput
 from records.plant import load_plant

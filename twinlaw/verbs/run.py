@@ -18,7 +18,7 @@ from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
 from twinlaw.workflows.chain.building import build_image, generate_sources
-from twinlaw.workflows.chain.designing import design_controller, poles_of
+from twinlaw.workflows.chain.designing import design_controller, poles_of, roll_off_trade
 from twinlaw.workflows.chain.verifying import demand, verify_table
 
 
@@ -48,7 +48,14 @@ def run(chosen: argparse.Namespace) -> int:
         flight = fly_board(designed.bound, designed.table, client)
     save_log(out / "run.csv", flight.log)
     page = run_page(
-        chosen.plant.stem, designed.report, verification, image.sizes, flight.log, flight.tracking, flight.counters
+        chosen.plant.stem,
+        designed.report,
+        verification,
+        image.sizes,
+        flight.log,
+        flight.tracking,
+        flight.counters,
+        roll_off_trade(designed),
     )
     write_atomic(out / "report.html", page_text(page))
     if chosen.json:

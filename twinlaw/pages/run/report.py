@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.report import DesignReport
+from design.trade_off import TradePoint
 from records.log import RunLog
 from records.quality import Colour, flag
 from records.verification import Verification
@@ -16,6 +17,7 @@ from twinlaw.pages.plots import BLUE, GREEN, ORANGE, RED, Curve, Panel, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
 from twinlaw.pages.run.checks import size_rows, verification_rows
 from twinlaw.pages.run.design_page import design_sections
+from twinlaw.pages.run.roll_off import roll_off_section
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_rows
 
 Array = NDArray[np.float64]
@@ -29,6 +31,7 @@ def run_page(
     log: RunLog,
     tracking: Sequence[Tracking],
     counters: Mapping[str, int],
+    trade: Sequence[TradePoint],
 ) -> Page:
     """The whole page."""
     failures = verification.failures
@@ -44,6 +47,7 @@ def run_page(
             _flight(log, tracking, counters),
             _verified(verification, sizes),
             *design_sections(report),
+            *roll_off_section(trade),
             quality_section(quality),
         ),
     )

@@ -14,6 +14,7 @@ from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
 from design.table import design, report_on
+from design.trade_off import TradePoint, trade_off
 from records.errors import BadInput, VerificationFailed
 from records.law_table import LawTable
 from records.table import ControllerTable
@@ -45,6 +46,12 @@ def design_plant(bound: BoundPlant, arithmetic: str = "float32", where: str = ""
     with stage("designing at the operating points, fitting, judging"), _computable(where or bound.plant.name):
         table, report = design(bound, read_settings(bound), ARITHMETICS[arithmetic].rounding)
     return Designed(bound, table, report)
+
+
+def roll_off_trade(designed: Designed) -> tuple[TradePoint, ...]:
+    """What other roll-off poles would make of the same design, see design.trade_off."""
+    with stage("moving the roll-off"):
+        return trade_off(designed.bound, read_settings(designed.bound), designed.table)
 
 
 def design_other(plant: Path, name: str, arithmetic: str = "float32") -> LawTable[Any]:
