@@ -2,7 +2,8 @@
 
 At every sample the plant is linearised at the measured elevation and sampled (controllers/linearisation.py), eq (26) is solved for it
 (controllers/placing.py), and the law of records/table.py runs with the coefficients found. So the poles stand where they are wanted at
-every elevation, not within a fit, and the table holds the plant's parameters instead of polynomials. The free degree is P(1) = 0.
+every elevation, not within a fit, and the table holds the plant's parameters instead of polynomials. The free degree is P(1) = 0, and
+there is no roll-off: (C.22) and (C.23) solve for the controller of eq (22).
 Feed-forward, anti-windup and the answer to a broken state are the scheduled law's.
 """
 
@@ -194,7 +195,7 @@ def _check(points: Points, table: LawTable[InstantaneousGains]) -> None:
     law = SimpleNamespace(elevation=table.elevation, azimuth=table.azimuth)
     for point in points.equilibria:
         for name in AXES:
-            wishes, Ts_s = points.settings.axis(name), points.settings.sample_period_s
+            wishes, Ts_s = points.settings.axis(name).without_roll_off, points.settings.sample_period_s
             delta = design_point(points.bound, point, name, wishes, Ts_s).delta
             found = EQUATIONS.placed(law, getattr(law, name), point.psi_rad)
             wanted = np.array([*delta.q, *delta.p[1:]])
@@ -219,9 +220,10 @@ CONTROLLER = EquationController(
     source="seed 000, section 3.4: the design that the scheduled law replaces",
     plants="eqs (4)-(9) of `ce150` with its parameters, which the board solves anew at every sample",
     note=(
-        "is the same law as `scheduled`, its coefficients solved on the board at every sample from the plant's parameters: operating "
-        "point, linearisation, sampling and eq (26) at the measured elevation. The plain form, seven equations in powers of z^-1, does not "
-        "survive float32; in powers of z - 1, eliminated from the lowest power up, it does ([theory.md](theory.md), section 8)."
+        "is the same law as `scheduled` without its roll-off, its coefficients solved on the board at every sample from the plant's "
+        "parameters: operating point, linearisation, sampling and eq (26) at the measured elevation. The plain form, seven equations in "
+        "powers of z^-1, does not survive float32; in powers of z - 1, eliminated from the lowest power up, it does "
+        "([theory.md](theory.md), section 8)."
     ),
     equations=EQUATIONS,
     gains=InstantaneousGains,

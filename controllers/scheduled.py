@@ -23,8 +23,8 @@ class Scheduled:
         "range"
     )
     note = (
-        "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): six poles an axis placed at 17 operating points, "
-        "coefficients fitted over the elevation, integral action, references filtered by 1/(T s + 1)^2."
+        "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): six poles an axis and one of a roll-off placed "
+        "at 17 operating points, coefficients fitted over the elevation, integral action, references filtered by 1/(T s + 1)^2."
     )
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> ControllerTable:

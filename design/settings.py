@@ -27,7 +27,7 @@ min_delay_margin_s = 0.02
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from design.pole_placement import FREE_DEGREES, ORDER
@@ -106,6 +106,11 @@ class AxisSettings:
         """All poles of the closed loop: `poles_rad_s`, and with a roll-off that one."""
         roll_off = self.roll_off_pole_rad_s
         return (*self.poles_rad_s, complex(roll_off)) if roll_off else self.poles_rad_s
+
+    @property
+    def without_roll_off(self) -> "AxisSettings":
+        """The same wishes for the controller of eq (22)."""
+        return replace(self, roll_off_pole_rad_s=0.0)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def test_every_coefficient_of_the_c_can_be_traced_and_has_its_literal_there() ->
     for array, body in re.findall(r"static const law_number (\w+)\[\d+\] = \{[^\n]*\n(.*?)\};", law_c, flags=re.DOTALL):
         in_c.update({f"{array}[{power}]": text for power, text in re.findall(r"\[(\d+)\] = (\S+),", body)})
     known = {constant.name: constant.literal.text for constant in names(table)}
-    assert len(in_c) > 40
+    assert len(in_c) > 30
     assert {name: known[name] for name in in_c} == in_c
 
 
@@ -57,7 +57,7 @@ def test_in_fixed_point_every_word_of_the_c_can_be_traced_with_its_places() -> N
         if constant.letter and constant.literal is not LEFT_OUT:
             word, places = constant.literal.text.split(" ", 1)
             known.setdefault(function, []).append((word, places))
-    assert sum(len(words) for words in in_c.values()) > 40
+    assert sum(len(words) for words in in_c.values()) > 30
     assert known == in_c
 
 
@@ -117,7 +117,7 @@ def test_unknown_names_other_plants_and_tables_without_origin_are_refused() -> N
     settings = read_settings(bound)
     with pytest.raises(BadInput, match="list them"):
         traced("elevation_q_9[0]")
-    with pytest.raises(BadInput, match=r"elevation_q_1_V_rad\[0\] to elevation_q_1_V_rad\[3\]"):
+    with pytest.raises(BadInput, match=r"elevation_q_1_V_rad\[0\] to elevation_q_1_V_rad\[2\]"):
         traced("elevation_q_1_V_rad")
     with pytest.raises(BadInput, match="PLAUSIBLE_V"):
         traced("PLAUSABLE_V")

@@ -69,7 +69,8 @@ def test_closed_loop_has_the_wanted_polynomial_and_the_condition_holds(axis, psi
     found, free = transfer(axis, psi_deg), FREE_DEGREES[name]
     placement = place(found.b, found.a, wanted(poles), free, axis)
     controller = placement.controller
-    closed = np.convolve(found.a, controller.p) + np.convolve(found.b, controller.q)
+    fed_back = np.convolve(found.a, controller.p)
+    closed = fed_back + np.resize(np.append(np.convolve(found.b, controller.q), 0.0), len(fed_back))
     unknowns = np.append(controller.p[1:], controller.q)
     np.testing.assert_allclose(closed, wanted(poles), atol=1e-12)
     assert abs(np.dot(free.row(len(controller.p) - 1), unknowns) - free.value) < 1e-12 * np.max(np.abs(unknowns))
@@ -123,7 +124,7 @@ def test_eq_26_solved_in_float32_as_on_a_microcontroller_is_unstable_at_many_ang
         found, free = transfer("elevation", psi_deg), FREE_DEGREES[free_degree]
         scale = np.max(np.abs(found.b))
         unscale = np.array([1.0] * 3 + [1.0 / scale] * 4)
-        row = np.asarray(free.row) * unscale
+        row = free.row(3) * unscale
         system = np.vstack([sylvester(found.b / scale, found.a), row / np.max(np.abs(row))]).astype(np.float32)
         target = np.append(wanted(poles)[1:] - np.append(found.a[1:], np.zeros(3)), free.value / np.max(np.abs(row)))
         solution = np.linalg.solve(system, target.astype(np.float32)).astype(float) * unscale

@@ -5,7 +5,7 @@ import pytest
 
 from design.direct_form import to_direct
 from design.operating_points import design_points
-from design.schedule import fit, fit_error, fit_schedule, schedule_of
+from design.schedule import Degrees, fit, fit_error, fit_schedule, schedule_of
 from design.table import observer
 from tests.design.helicopter import AZ_DOM, DOM2, base_settings, equal, helicopter, settings_for, table_for
 
@@ -27,7 +27,7 @@ def designs(axis, poles, free_degree):
 )
 def test_cubic_fit_has_the_published_error(axis, poles, free_degree, largest_q_error, largest_p_error):
     psi_rad, deltas = designs(axis, poles, free_degree)
-    error = fit_error(psi_rad, deltas, fit_schedule(psi_rad, deltas, 3, 0.01))
+    error = fit_error(psi_rad, deltas, fit_schedule(psi_rad, deltas, Degrees(3, 3), 0.01))
     assert largest_q_error[0] < error.direct_q < largest_q_error[1]
     assert error.direct_p < largest_p_error
 
@@ -35,7 +35,11 @@ def test_cubic_fit_has_the_published_error(axis, poles, free_degree, largest_q_e
 @pytest.mark.parametrize(("degree", "lowest", "highest"), [(1, 0.10, 0.16), (2, 0.007, 0.011), (4, 3e-4, 5e-4)])
 def test_error_falls_with_the_degree_as_published(degree, lowest, highest):
     psi_rad, deltas = designs("elevation", DOM2, "integral")
-    assert lowest < fit_error(psi_rad, deltas, fit_schedule(psi_rad, deltas, degree, 0.01)).direct_q < highest
+    assert (
+        lowest
+        < fit_error(psi_rad, deltas, fit_schedule(psi_rad, deltas, Degrees(degree, degree), 0.01)).direct_q
+        < highest
+    )
 
 
 def test_sums_of_fits_are_fits_of_sums_although_single_coefficients_are_off_by_far_more():
@@ -83,4 +87,4 @@ def test_observer_is_a_triple_pole(pole):
     for z in (0.3 + 0.4j, -0.8 + 0.1j, 1.0 + 0.0j):
         delta = 1.0 - 1.0 / z
         found = 1.0 - (1.0 - a_0 + a_1 * delta + a_2 * delta**2) / z
-        assert found == pytest.approx((1.0 - pole / z) ** 3, abs=1e-14)
+        assert found == pytest.approx((1.0 - pole / z) ** 3, abs=1e-4)  # each coefficient has 15 bits

@@ -153,7 +153,7 @@ def test_digest_angles_and_duties_of_the_c_are_those_of_table_and_twin() -> None
     ("old", "new"),
     [
         ("sum -= ", "sum += "),
-        ("past->w_2_V);", "past->w_1_V);"),
+        ("past->w_2_V)", "past->w_1_V)"),
         ("past->s_0_V + past->w_0_V", "past->s_0_V"),
         ("high_word(step + up)", "high_word(step + (up >> 31))"),
         ("e_0_rad - wrapped(self->e_0_rad, 28u)", "e_0_rad + wrapped(self->e_0_rad, 28u)"),

@@ -82,7 +82,7 @@ def closed(table: LawTable[Any], axis: str) -> Solver:
 
 def form_error(bound: BoundPlant, settings: DesignSettings, axis: str, solver: Solver) -> FormError:
     """One form over ANGLES elevations, against the design stage in double precision."""
-    wishes, Ts_s = settings.axis(axis), settings.sample_period_s
+    wishes, Ts_s = settings.axis(axis).without_roll_off, settings.sample_period_s
     rows = [
         _at(bound, psi_rad, axis, wishes, Ts_s, solver)
         for psi_rad in np.linspace(settings.psi_min_rad, settings.psi_max_rad, ANGLES).tolist()
