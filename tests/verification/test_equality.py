@@ -191,7 +191,7 @@ def _states(twin: Float32Twin, stimulus: Stimulus) -> np.ndarray:
 def _mismatches(table: ControllerTable, texts: dict[str, str]) -> int:
     """Against the C that equals the twin: a Python run for each change would cost the most."""
     changed = HostLaw(texts, flags=UNOPTIMISED_FLAGS)
-    result: EqualityResult = compare(host_law(table), changed, standard_stimuli(table, 3_000))
+    result: EqualityResult = compare(host_law(table), changed, standard_stimuli(table, 6_000))
     assert table.digest in texts["law.c"]
     assert STATE_WORDS == 30
     return result.equality.mismatches
