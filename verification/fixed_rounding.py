@@ -96,7 +96,8 @@ def _state(
 ) -> AxisState[Any]:
     places = {"reference_1_rad": reference_places, "reference_2_rad": reference_places}
     places |= {f"e_{i}_rad": formats.angle_places for i in range(3)}
-    places |= {f"{letter}_{i}_V": formats.voltage_places for letter in "sw" for i in range(3)}
+    places |= {f"s_{i}_V": formats.voltage_places for i in range(4)}
+    places |= {f"w_{i}_V": formats.voltage_places for i in range(3)}
     numbers = {name: _words(words, getattr(declared, name), count) for name, count in places.items()}
     return AxisState(v_residue=words.within(0.0, 0.0), **numbers)
 
