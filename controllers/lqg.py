@@ -192,8 +192,8 @@ CONTROLLER = EquationController(
         "polynomials in the elevation. That estimate is the integral action, and as the filter is told the limited voltage "
         "nothing winds up, so its references need no filter. Its weights are, of some twenty sets an axis, those of least IAE "
         "that overshot by less than 1 % on a hundred spread plants of seed 101, which are not those below, with no more travel of the "
-        "voltage than the scheduled law's, begun there as if its rotors stood still. In the air it begins at the operating point: its "
-        "rotors turn as fast as holds the arm where it is."
+        "voltage than the scheduled law's without a roll-off (13.9 V/s), begun there as if its rotors stood still. In the air it "
+        "begins at the operating point: its rotors turn as fast as holds the arm where it is."
     ),
     equations=Lqg(),
     gains=LqgGains,

@@ -29,7 +29,7 @@ class Weights:
 
 
 # Of some twenty sets an axis those with the least IAE that, on a hundred spread plants of seed 101 (Fig. 23), overshot by less than 1 %
-# with no more travel of the voltage than the scheduled law's.
+# with no more travel of the voltage than the scheduled law's without a roll-off (13.9 V/s).
 WEIGHTS = {
     "elevation": Weights(0.015, 0.06, 0.7, 0.15, 1.0),
     "azimuth": Weights(0.03, 0.09, 1.5, 0.15, 2.0),
