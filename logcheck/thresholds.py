@@ -94,6 +94,8 @@ SEAM_FASTER = Limit(
 )
 LEAST_SEAM_STEPS = Limit(20.0, "encoder steps", "a quiet log usually moves by one")
 SEAM_ROWS = Count(5, "rows", "a mass that is thrown is fast in the next rows too; a reading that fails comes back")
+BESIDE_FIRST_STEPS = Limit(4.0, "encoder steps", "rigs come to rest so near to where they rested before")
+BESIDE_FIRST_SHARE = Limit(0.02, "share of a column's range", "a run begins so near to where the one before began")
 LONGEST_HELD_S = Limit(
     0.2, "s", "readings repeated so long move on by all that they missed; longer ones are dead stretches"
 )
