@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from logcheck import thresholds
-from logcheck.dead import amount
+from logcheck.dead import amount, runs
 from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
 from sim.columns import reference_name
@@ -34,13 +34,24 @@ def seam_findings(
     rows: Rows = np.zeros(len(log.t_s) - 1, bool)
     if len(moving) > 1:
         rows |= np.all(list(leaps.values()), axis=0)
-    alone = np.any([leaps[column] for column in moving if column in positions] or [rows], axis=0)
+    alone = np.any(
+        [_not_back(leaps[column], log.column(column)) for column in moving if column in positions] or [rows], axis=0
+    )
     rows |= alone & (_new_references(log, steps) | _new_inputs(log) | _as_at_first(log, steps))
     rows &= ~read_again[1:]
     if rows.any():
         first = int(np.argmax(rows))
         leaping = [column for column in moving if leaps[column][first]]
         yield _found(log, name, leaping, len(leaping) == len(moving) > 1, steps, np.flatnonzero(rows) + 1)
+
+
+def _not_back(leaps: Rows, values: Array) -> Rows:
+    """The leaps (n - 1,) of a column but for those into and out of a stand: there it was not read."""
+    kept = leaps.copy()
+    for first, last in runs(values):
+        if first and last < len(leaps) and leaps[first - 1] and leaps[last]:
+            kept[[first - 1, last]] = False
+    return kept
 
 
 def _new_references(log: RunLog, steps: Mapping[str, float]) -> Rows:

@@ -49,6 +49,17 @@ BROKEN_OFF_STEPS = Limit(4.0, "least moves", "the same stands: 3 at most", "publ
 DRIVEN_SHARE = Limit(
     0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis"
 )
+EVEN = Limit(
+    0.7,
+    "share",
+    "of the way before, in the rows next to a stand: 1/3 for an even brake, 1 for an axis that goes on unseen; 0.6 at most",
+    "9 700 stands in the published recordings and simulated flights",
+)
+CUT_OFF_STEPS = Limit(
+    14.0, "least moves", "next to a stand on both sides, in as many rows as it lasts at most", "the same stands"
+)
+CUT_OFF_ROWS = Count(128, "rows", "next to a stand at most", "the same stands")
+CUT_OFF_ALONE_STEPS = Limit(20.0, "least moves", "before a stand alone, in half as many rows", "the same stands")
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
 # held
