@@ -9,6 +9,7 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
+from recordings.joined import from_the_inputs, on_one_clock
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -56,17 +57,20 @@ def log_of_contents(
     facts = _facts(contents, where, columns)
     of = source(contents, where, mapping.group, mapping.per_turn, mapping.columns.get(TIME))
     found, left_out = _columns(of, mapping, columns)
-    channels, shift = _from_the_first({name: entry.channel for name, entry in found.items()})
+    channels, counted = on_one_clock({name: entry.channel for name, entry in found.items()})
+    channels, shift = _from_the_first(channels)
+    part, before = from_the_inputs(channels, columns, span or Span())
     stated = mapping.loop or facts.get("loop")
     if stated not in (None, *LOOPS):
         raise BadInput("text 'loop'", where, repr(stated), " or ".join(LOOPS), "say it with --loop")
-    log = log_of_channels(channels, columns, where, span=span, loop=stated)
+    log = log_of_channels(channels, columns, where, span=part, loop=stated)
     log = replace(log, locked=tuple(facts.get("locked", ())), table_digest=facts.get("table_digest"))
     used = replace(
         mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
+    told += [*counted, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log)))
 
 

@@ -29,7 +29,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
         name: replace(
             signal,
             unit=_beside(name, _UNITS, texts),
-            heading=_of_series(name, found.signals) or _beside(name, _LABELS, texts),
+            heading=_beside(name, _LABELS, texts) or _of_series(name, found.signals),
         )
         for name, signal in found.signals.items()
     }

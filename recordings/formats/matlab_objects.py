@@ -21,6 +21,7 @@ UNITS_S = {
     "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9,
 }  # fmt: skip
 NAMELESS = "(object)"
+UNNAMED = "unnamed"  # MATLAB's name of a timeseries that was given none
 DEEPEST = 12  # objects within objects; MATLAB's own are three deep, and one may hold itself
 
 
@@ -83,7 +84,8 @@ def _plain(value: Any, depth: int) -> Any:
 def _series(held: Mapping[str, Any]) -> dict[str, Any]:
     """A timeseries as MATLAB shows it; times of rows at one rate are stored as their start, step and number."""
     about = held["TimeInfo"] if isinstance(held["TimeInfo"], Mapping) else {}
-    times = next((t for t in (held.get("Time_"), about.get("Time_"), held.get("Time")) if np.size(t) > 1), None)
+    stored: list[Any] = [held.get("Time_"), about.get("Time_"), held.get("Time")]
+    times = next((t for t in stored if np.size(t) > 1), None)
     if times is None:
         start, step, length = (
             float(np.ravel(about.get(name, np.nan))[0]) for name in ("Start_", "Increment_", "Length")
@@ -95,7 +97,8 @@ def _series(held: Mapping[str, Any]) -> dict[str, Any]:
     data = np.asarray(held.get("Data_", held.get("Data")))
     told = held.get("DataInfo")
     unit = told.get("Units", "") if isinstance(told, Mapping) else ""
-    return {"Time": times, "Data": np.squeeze(data), "Name": held.get("Name", ""), "Units": unit}
+    name = held.get("Name", "")
+    return {"Time": times, "Data": np.squeeze(data), "Name": "" if name == UNNAMED else name, "Units": unit}
 
 
 def _table(frame: Any) -> Iterator[tuple[str, Any]]:
