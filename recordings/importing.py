@@ -27,6 +27,11 @@ from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
 SLOW_S = 1.0  # between rows: a rig that moves within seconds is sampled faster
+FINER = (
+    (1e5, "ns", "1e-9"),
+    (200.0, "us", "1e-6"),
+    (SLOW_S, "ms", "0.001"),
+)  # as such rows would be 0.1 ms to 1 s apart
 MOST_TURNS = 3  # of an angle that nothing is said of: no axis here turns more in a log, degrees and counts do at once
 EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
 
@@ -185,7 +190,8 @@ def _doubtful(log: RunLog) -> list[str]:
     """Times that look like milliseconds, and angles like degrees or counts, which nothing said to be such."""
     told = []
     if log.sample_period_s >= SLOW_S:
-        told.append(f"rows are {log.sample_period_s:g} s apart: if times are in ms, say --column t_s=...*0.001")
+        unit, factor = next((u, f) for least, u, f in FINER if log.sample_period_s >= least)
+        told.append(f"rows are {log.sample_period_s:g} s apart: if times are in {unit}, say --column t_s=...*{factor}")
     for name in log.columns.outputs:
         reached = float(np.nanmax(np.abs(log.column(name)), initial=0.0))
         if unit_of(name) == "rad" and reached > MOST_TURNS * 2.0 * np.pi:
