@@ -11,6 +11,7 @@ import pytest
 from scipy.io import savemat
 
 from recordings.channels import Channel, Span, log_of_channels
+from recordings.importing import import_file
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from records.log import load_log
