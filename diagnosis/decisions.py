@@ -401,7 +401,7 @@ WIRING_GAIN = Limit(
 WIRING_STRAINED_GAIN = Limit(
     250.0,
     "nats",
-    "where the plant is far from its rig even so, and less far than before",
+    "the same where the plant is far from its rig even so",
     "24 published recordings of five rigs: 14 at most as they are, 266 to 32600 for a turned sign that is seen at all",
 )
 WIRING_ALIKE = Limit(

@@ -49,7 +49,7 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
     """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its parameters where
-    they are stated; or, of a plant that is far from its rig whatever the reading, by far better and with less strain."""
+    they are stated; or, of a plant that is far from its rig whatever the reading, by far better."""
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
@@ -61,19 +61,10 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = fit.log_posterior - usual.log_posterior
-    if gain > (decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN) and not _is_worse(
-        case, fit, usual
-    ):
+    if gain > (decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN):
         alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
         return _either(best, alike), gain
     return None
-
-
-def _is_worse(case: Case, fit: Fit, usual: Fit) -> bool:
-    """Whether a strained fit strains the plant no less than the usual one does, in a parameter or in what the process noise must do."""
-    if not is_strained(case, fit):
-        return False
-    return any(after >= before for after, before in zip(_strains(fit), _strains(usual), strict=True))
 
 
 def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
@@ -88,15 +79,12 @@ def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
 
 def is_strained(case: Case, fit: Fit) -> bool:
     """Whether the plant as stated is far off the logs: in a parameter, or in what the noise must do."""
-    deviations, noise = _strains(fit)
-    far = deviations > decisions.WIRING_DEVIATIONS or noise > decisions.WIRING_NOISE
-    return bool(far or beyond_noise(case, fit.hypothesis))
-
-
-def _strains(fit: Fit) -> tuple[float, float]:
-    """How far a parameter is from where it is stated, in sd, and what the process noise must do."""
-    theta, noise = fit.hypothesis.theta, fit.hypothesis.process_noise
-    return float(np.max(np.abs(theta), initial=0.0)), float(np.max(noise, initial=-np.inf))
+    hypothesis = fit.hypothesis
+    return bool(
+        np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
+        or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.WIRING_NOISE
+        or beyond_noise(case, hypothesis)
+    )
 
 
 def fitted_or_none(case: Case, fitted: Callable[[Case], Fit]) -> Fit | None:
