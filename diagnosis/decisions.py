@@ -402,7 +402,8 @@ WIRING_STRAINED_GAIN = Limit(
     250.0,
     "nats",
     "the same where the plant is far from its rig even so",
-    "24 published recordings as they are: 14 at most; inputs of other runs, rows backwards, another rig's: 138; a turned sign: 266 to 32600",
+    "24 published recordings as they are: 14 at most; inputs of other runs, rows backwards, another rig's: 138; "
+    "a turned sign: 266 to 32600",
 )
 WIRING_ALIKE = Limit(
     2.0, "nats", "readings of the columns that no log tells apart, such as either sign of a plant alike both ways round"
