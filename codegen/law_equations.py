@@ -100,7 +100,9 @@ class Scheduled:
 
     AxisState = AxisState
 
-    def axis_rest(self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any) -> Any:
+    def axis_rest(
+        self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any, schedule_rad: Any
+    ) -> Any:
         """The error as it is, everything else at zero."""
         at_zero = self.AxisState(*(law.zero for _ in AXIS_STATE_FIELDS))
         return replace(

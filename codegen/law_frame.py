@@ -116,7 +116,9 @@ class AxisEquations(Protocol):
     def AxisState(self) -> Callable[..., Any]:
         """The record of what one axis remembers."""
 
-    def axis_rest(self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any) -> Any:
+    def axis_rest(
+        self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any, schedule_rad: Any
+    ) -> Any:
         """The axis' state at rest at this angle; `reference_rad` is the angle within the reference's range."""
 
     def axis_step(self, law: Any, axis: Any, arithmetic: Any, state: Any, sample: Any) -> tuple[Any, Any]:
@@ -182,8 +184,9 @@ def law_reset(
     """The state at rest at these angles: the reference filters start there, the feedback at zero."""
     psi_rad = arithmetic.finite_or(psi_rad, law.zero)
     phi_rad = arithmetic.finite_or(phi_rad, law.zero)
-    elevation = _at_rest(equations, law, law.elevation, arithmetic, psi_rad)
-    azimuth = _at_rest(equations, law, law.azimuth, arithmetic, phi_rad)
+    schedule_rad = scheduled(law, arithmetic, psi_rad)
+    elevation = _at_rest(equations, law, law.elevation, arithmetic, psi_rad, schedule_rad)
+    azimuth = _at_rest(equations, law, law.azimuth, arithmetic, phi_rad, schedule_rad)
     return LawState(elevation, azimuth, psi_rad, phi_rad, elevation.reference_2_rad, azimuth.reference_2_rad)
 
 
@@ -195,9 +198,7 @@ def law_step(
     phi_rad = arithmetic.finite_or(given.phi_rad, state.phi_rad)
     psi_ref_rad = arithmetic.finite_or(given.psi_ref_rad, state.psi_ref_rad)
     phi_ref_rad = arithmetic.finite_or(given.phi_ref_rad, state.phi_ref_rad)
-    schedule_rad = arithmetic.settle(
-        arithmetic.clamp(psi_rad, law.psi_min_rad, law.psi_max_rad), law.least_schedule_rad
-    )
+    schedule_rad = scheduled(law, arithmetic, psi_rad)
 
     elevation = prefilter(law.elevation, arithmetic, state.elevation, psi_ref_rad)
     azimuth = prefilter(law.azimuth, arithmetic, state.azimuth, phi_ref_rad)
@@ -211,6 +212,11 @@ def law_step(
     elevation, u_M_V = step(law, law.elevation, arithmetic, elevation, psi)
     azimuth, u_T_V = step(law, law.azimuth, arithmetic, azimuth, phi)
     return LawState(elevation, azimuth, psi_rad, phi_rad, psi_ref_rad, phi_ref_rad), LawOutput(u_M_V, u_T_V)
+
+
+def scheduled(law: LawNumbers[N], arithmetic: Arithmetic[N], psi_rad: N) -> N:
+    """The elevation that the coefficients are of: within the schedule's range, zero where next to it."""
+    return arithmetic.settle(arithmetic.clamp(psi_rad, law.psi_min_rad, law.psi_max_rad), law.least_schedule_rad)
 
 
 def prefilter(axis: AxisFrame[N], arithmetic: Arithmetic[N], state: Any, reference_rad: N) -> Any:
@@ -239,7 +245,12 @@ def polynomial(coefficients: tuple[N, ...], x: N, zero: N) -> Any:
 
 
 def _at_rest(
-    equations: AxisEquations, law: LawNumbers[N], axis: AxisFrame[N], arithmetic: Arithmetic[N], angle_rad: N
+    equations: AxisEquations,
+    law: LawNumbers[N],
+    axis: AxisFrame[N],
+    arithmetic: Arithmetic[N],
+    angle_rad: N,
+    schedule_rad: N,
 ) -> Any:
     reference_rad = arithmetic.clamp(angle_rad, axis.reference_min_rad, axis.reference_max_rad)
-    return equations.axis_rest(law, axis, arithmetic, reference_rad, angle_rad)
+    return equations.axis_rest(law, axis, arithmetic, reference_rad, angle_rad, schedule_rad)

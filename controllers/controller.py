@@ -29,6 +29,10 @@ class Controller(Protocol):
         """The paper and the place in it."""
 
     @property
+    def plants(self) -> str:
+        """For which plants it can be designed; it refuses all others."""
+
+    @property
     def note(self) -> str:
         """A paragraph of docs/controllers.md: how it is designed, and which of the paper's slips are mended."""
 

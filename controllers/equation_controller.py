@@ -26,6 +26,7 @@ class EquationController:
     name: str
     title: str
     source: str
+    plants: str
     note: str
     equations: AxisEquations
     gains: type

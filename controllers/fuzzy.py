@@ -85,7 +85,13 @@ class Fuzzy:
     AxisState = FuzzyState
 
     def axis_rest(
-        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        reference_rad: N,
+        angle_rad: N,
+        schedule_rad: N,
     ) -> FuzzyState[N]:
         """The filters at the angle."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
@@ -225,6 +231,7 @@ CONTROLLER = EquationController(
     name="fuzzy",
     title="Mamdani fuzzy, 90 and 18 rules",
     source="seed 001, section 4, Figs. 7-11 and Tables I-VI",
+    plants="a helicopter of two axes, as `ce150`, on which it settles: its rules know no model, so it is flown there first",
     note=(
         "has the rules of Tables I-VI, max-min inference and the centroid. The paper's stored text has the figures' labels and "
         "axes, not their curves: universes, output peaks, regions and rules are read from it. Open are the widths of the error's sets, the "

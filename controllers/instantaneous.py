@@ -85,9 +85,11 @@ class Instantaneous:
 
     AxisState = AxisState
 
-    def axis_rest(self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any) -> Any:
+    def axis_rest(
+        self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any, schedule_rad: Any
+    ) -> Any:
         """As the scheduled law's."""
-        return SCHEDULED.axis_rest(law, axis, arithmetic, reference_rad, angle_rad)
+        return SCHEDULED.axis_rest(law, axis, arithmetic, reference_rad, angle_rad, schedule_rad)
 
     def axis_step(self, law: Any, axis: Any, arithmetic: Any, state: Any, sample: Sample[Any]) -> tuple[Any, Any]:
         """Design at the measured elevation, then differences of the error, v, the limits."""
@@ -215,6 +217,7 @@ CONTROLLER = EquationController(
     name="instantaneous",
     title="pole placement by instantaneous linearisation",
     source="seed 000, section 3.4: the design that the scheduled law replaces",
+    plants="eqs (4)-(9) of `ce150` with its parameters, which the board solves anew at every sample",
     note=(
         "is the same law as `scheduled`, its coefficients solved on the board at every sample from the plant's parameters: operating "
         "point, linearisation, sampling and eq (26) at the measured elevation. The plain form, seven equations in powers of z^-1, does not "

@@ -56,7 +56,13 @@ class Pid:
     AxisState = PidState
 
     def axis_rest(
-        self, law: LawNumbers[N], axis: AxisNumbers[N], arithmetic: Decisions[N], reference_rad: N, angle_rad: N
+        self,
+        law: LawNumbers[N],
+        axis: AxisNumbers[N],
+        arithmetic: Decisions[N],
+        reference_rad: N,
+        angle_rad: N,
+        schedule_rad: N,
     ) -> PidState[N]:
         """The filters at the angle, nothing integrated."""
         filtered_rad = arithmetic.clamp(angle_rad, -axis.gains.angle_max_rad, axis.gains.angle_max_rad)
@@ -116,6 +122,10 @@ CONTROLLER = EquationController(
     name="pid",
     title="PID",
     source="seed 001, section 5.2.2, which prints no gains",
+    plants=(
+        "a helicopter of two axes, each behind one rotor lag, as `ce150`, on which one set of gains an axis is robust at every elevation "
+        "of its range, and settles"
+    ),
     note=(
         "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 3 (elevation) and 2 (azimuth) at "
         "every operating point, with Ti >= 4 Td and Tf = Td/10; the elevation's bound is 3 because one set of gains reaches no less than "

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.loops import LOOPS
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
 from sim.kernel.reference import reference
@@ -33,8 +34,7 @@ class Subsystem:
 
 
 SUBSYSTEMS: Mapping[str, Subsystem] = {
-    "elevation": Subsystem(("omega_M_rad_s", "psi_rad", "psi_dot_rad_s"), "u_M_V", "psi_rad"),
-    "azimuth": Subsystem(("omega_T_rad_s", "phi_rad", "phi_dot_rad_s"), "u_T_V", "phi_rad"),
+    loop.axis: Subsystem((loop.rotor_speed, loop.output, loop.rate), loop.input, loop.output) for loop in LOOPS
 }
 
 

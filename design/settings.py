@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from design.pole_placement import FREE_DEGREES, ORDER
+from design.structure import demand_helicopter
 from records.errors import BadInput
 from records.table import AXES, BothAxes
 from records.text import checks
@@ -113,14 +114,7 @@ class DesignSettings(BothAxes[AxisSettings]):
 def read_settings(bound: BoundPlant) -> DesignSettings:
     """The settings in the plant's [design] section; raises BadInput naming key, range or pole that cannot be used."""
     section, where = bound.plant.design, f"plant {bound.plant.name!r}: design"
-    if "Psi_lim" not in bound.plant.parameters:
-        raise BadInput(
-            "plant to design for",
-            f"plant {bound.plant.name!r}",
-            f"the equations of {bound.plant.model}",
-            "a helicopter with an elevation (model ce150)",
-            "pass a CE150 plant file; the others are for identify, diagnose and watch of a log",
-        )
+    demand_helicopter(bound)
     checks.keys(section, where, (), (*DEFAULTS, "psi_min_rad", "psi_max_rad", *AXES, "margins"))
     psi_limit = bound.parameter("Psi_lim")
     psi_min, psi_max = _psi_range(section, where, psi_limit)

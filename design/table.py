@@ -1,6 +1,5 @@
 """From a plant and wishes to a controller table and the report on it: the entry of the design stage."""
 
-import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -15,7 +14,8 @@ from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import DesignSettings
 from records.errors import BadInput
-from records.plant import plant_text
+from records.loops import LOOPS
+from records.plant import plant_digest
 from records.table import AXES, AxisLaw, ControllerTable
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
@@ -24,7 +24,7 @@ from sim.equilibrium import OperatingPoint
 Array = NDArray[np.float64]
 
 LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
-SENSORS = {"elevation": "psi_rad", "azimuth": "phi_rad"}
+SENSORS = {loop.axis: loop.output for loop in LOOPS}
 
 
 def design(
@@ -120,7 +120,7 @@ def observer(pole: float) -> tuple[float, float, float]:
 def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -> dict[str, Any]:
     """Plain lists and numbers from which each coefficient of the table can be traced to its operating point."""
     return {
-        "plant_digest": hashlib.sha256(plant_text(bound.plant).encode()).hexdigest(),
+        "plant_digest": plant_digest(bound.plant),
         "model": bound.model.name,
         "coefficient_degree": settings.coefficient_degree,
         "feedforward_degree": settings.feedforward_degree,

@@ -77,6 +77,8 @@ def _found(kind: str, log: RunLog, name: str, rows: Rows, sentence: str, severit
 
 def plant_pair_findings(logs: Sequence[RunLog], names: Sequence[str]) -> Iterator[tuple[int, Found]]:
     """Logs that need another input to hold the same angle, on the first axis, than the first log does."""
+    if not logs[0].columns.inputs:
+        return
     for index in range(1, len(logs)):
         ratio = holding_ratio(logs[0], logs[index])
         if ratio is None or 1.0 / thresholds.NOTE_RATIO < ratio < thresholds.NOTE_RATIO:

@@ -133,6 +133,9 @@ def _input_unit(log: RunLog, name: str, facts: PlantFacts) -> Iterator[Found]:
 
 def _machine_unit(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """Machine units, 1 at full scale: an input within -1..1 that holds the plant with a tenth of what it needs."""
+    arm = next((axis for axis in bound.model.axes if axis.position is not None), None)
+    if not log.columns.inputs or arm is None or str(arm.position) != log.columns.outputs[0]:
+        return
     column = log.columns.inputs[0]
     low, high = facts.limits.get(column, (-np.inf, np.inf))
     widest = max(abs(low), abs(high))

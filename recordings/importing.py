@@ -23,6 +23,7 @@ from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
 from records.plant import load_plant
 from records.text.units import unit_of
 from sim.columns import log_columns
+from sim.equations import nominal_model
 from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
@@ -81,12 +82,13 @@ def log_of_contents(
 
 def columns_of(plant: str) -> LogColumns:
     """The columns of a plant by its name or its file; raises BadInput."""
-    name = load_plant(Path(plant)).model if plant.endswith(".toml") else plant
-    if name not in MODELS:
+    if plant.endswith(".toml"):
+        return log_columns(nominal_model(load_plant(Path(plant))))
+    if plant not in MODELS:
         raise BadInput(
             "plant", "--plant", repr(plant), f"one of {', '.join(MODELS)}", "name a known plant, or its file"
         )
-    return log_columns(MODELS[name]())
+    return log_columns(MODELS[plant]())
 
 
 def _check_columns(mapping: ColumnMapping, columns: LogColumns) -> None:

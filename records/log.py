@@ -148,7 +148,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         sample_period_s=float(sidecar["sample_period_s"]),
         loop=sidecar["loop"],
         t_s=data["t_s"].copy(),
-        u=np.column_stack([data[name] for name in columns.inputs]),
+        u=np.stack([data[name] for name in columns.inputs], axis=1) if columns.inputs else np.zeros((len(rows), 0)),
         y=np.column_stack([data[name] for name in columns.outputs]),
         extra={name: data[name].copy() for name in names if name in columns.optional},
         seq=counted_on(data["seq"].astype(np.int64), begins) if "seq" in data else None,

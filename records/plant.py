@@ -1,5 +1,7 @@
 """The plant file: which equations, with which parameters, known how well, seen by which sensors."""
 
+import hashlib
+import keyword
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,12 +11,14 @@ import tomlkit
 
 from records.correlation import Correlation, parse_correlation
 from records.errors import BadInput
+from records.files import write_atomic
 from records.text import checks
-from records.text.reading import read_toml
+from records.text.reading import read_text, read_toml
 from records.text.units import dimensions, unit_suffix
 
 SCHEMA = "plant/1"
 PLANTS = Path(__file__).resolve().parent.parent / "plants"  # what the project comes with
+OWN_NAME = "plant.toml"  # of every plant in a folder of its own: it is called by its equations
 Value = float | tuple[float, ...]
 
 
@@ -42,9 +46,24 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class Equations:
+    """Equations of one's own: a file beside the plant file, by its name and its text; `folder` tells where it was read."""
+
+    file: str
+    text: str
+    folder: str = field(default=".", compare=False)
+
+    @property
+    def path(self) -> str:
+        """Where whoever mends it finds it."""
+        return str(Path(self.folder) / self.file)
+
+
+@dataclass(frozen=True)
 class Plant:
     """A plant as its file states it.
 
+    `model` names its equations, those of the project's table or, where there are `equations` of its own, these by their file's stem.
     `sensors` maps an output name ("psi_rad") to the step of its encoder and `sensor_noise` to the standard deviation of the white
     noise before it, where there is any; `design` holds the file's wishes for the controller
     (section [design], read by the design stage) and `effects` the added effects (sections [effects.PLACE.NAME]) as plain tables.
@@ -59,6 +78,7 @@ class Plant:
     effects: Mapping[str, Any] = field(default_factory=dict)
     sensor_noise: Mapping[str, float] = field(default_factory=dict)
     correlation: Correlation | None = None
+    equations: Equations | None = None
 
 
 def load_plant(path: Path) -> Plant:
@@ -67,13 +87,17 @@ def load_plant(path: Path) -> Plant:
     Names, shapes and signs that a model demands are checked where the model is known (sim.bind), not here.
     """
     missing = f"name yours with --plant, or one of {PLANTS}"
-    return parse_plant(read_toml(path, "plant file", missing), path.stem, str(path))
+    content = read_toml(path, "plant file", missing)
+    own = str(content.get("equations", "")).removesuffix(".py")
+    return parse_plant(content, own if own and path.name == OWN_NAME else path.stem, str(path), path.parent)
 
 
-def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
-    """A plant from the content of its file; raises BadInput naming `where`, the file, and the key."""
+def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path = Path()) -> Plant:
+    """A plant from the content of its file in `folder`; raises BadInput naming `where`, the file, and the key."""
     checks.schema(content, f"{where}: schema", SCHEMA)
-    checks.keys(content, where, ("schema", "model", "parameters", "sensors"), ("design", "effects", "correlation"))
+    source = "equations" if "equations" in content else "model"
+    checks.keys(content, where, ("schema", source, "parameters", "sensors"), ("design", "effects", "correlation"))
+    equations = read_equations(content, where, folder)
     parameters = checks.table(content["parameters"], f"{where}: parameters")
     sensors = checks.table(content["sensors"], f"{where}: sensors")
     steps = {key: _sensor(key, value, f"{where}: sensors.{key}") for key, value in sensors.items()}
@@ -81,7 +105,7 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
     correlation = content.get("correlation")
     return Plant(
         name=name,
-        model=checks.text(content["model"], f"{where}: model"),
+        model=checks.text(content["model"], f"{where}: model") if equations is None else Path(equations.file).stem,
         parameters=numbers,
         sensors={key: resolution for key, (resolution, _) in steps.items()},
         design=checks.table(content.get("design", {}), f"{where}: design"),
@@ -90,7 +114,40 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str) -> Plant:
         correlation=None
         if correlation is None
         else parse_correlation(correlation, f"{where}: correlation", coefficient_names(numbers)),
+        equations=equations,
     )
+
+
+def read_equations(content: Mapping[str, Any], where: str, folder: Path) -> Equations | None:
+    """The file of `equations = "NAME.py"` in `folder`; None where the plant names a model. Raises BadInput."""
+    if "equations" not in content:
+        return None
+    file = checks.text(content["equations"], f"{where}: equations")
+    stem = file.removesuffix(".py")
+    if stem == file or not stem.isidentifier() or not stem.isascii() or keyword.iskeyword(stem):
+        expected = "the name of a Python file beside the plant file, of letters, digits and _"
+        raise BadInput("equations", f"{where}: equations", repr(file), expected, 'write equations = "my_arm.py", say')
+    beside = f"the equations of {where} stand beside it; `twinlaw new-plant NAME --out DIR` writes both"
+    return Equations(file, read_text(folder / file, "equations", beside), str(folder))
+
+
+def plant_files(plant: Plant, name: str = OWN_NAME) -> Mapping[str, str]:
+    """The plant's file, called `name`, and that of its own equations beside it where it has them: name -> text."""
+    own = {} if plant.equations is None else {plant.equations.file: plant.equations.text}
+    return {**own, name: plant_text(plant)}
+
+
+def save_plant(path: Path, plant: Plant) -> None:
+    """Write the plant to `path`, with its own equations beside it; raises BadInput where that cannot be written."""
+    for name, text in plant_files(plant, path.name).items():
+        write_atomic(path.with_name(name), text)
+
+
+def plant_digest(plant: Plant) -> str:
+    """SHA-256 of all that makes the plant: its file's text, and the text of its own equations."""
+    return hashlib.sha256(
+        "".join([plant_text(plant), *([plant.equations.text] if plant.equations else [])]).encode()
+    ).hexdigest()
 
 
 def coefficient_names(parameters: Mapping[str, Parameter]) -> tuple[str, ...]:
@@ -106,7 +163,7 @@ def plant_text(plant: Plant) -> str:
     """The plant as TOML text; reading it back gives an equal plant."""
     document = tomlkit.document()
     document["schema"] = SCHEMA
-    document["model"] = plant.model
+    document.update({"model": plant.model} if plant.equations is None else {"equations": plant.equations.file})
     document["parameters"] = {
         key: {"value": _plain(entry.value), "sd": _plain(entry.sd), "unit": entry.unit, "source": entry.source}
         for key, entry in plant.parameters.items()

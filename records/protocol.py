@@ -3,6 +3,7 @@
 Frame on the line: COBS(version | type | sequence (2) | payload | CRC-32 over all before (4)) 0x00, little-endian.
 """
 
+from records.loops import LOOPS
 from records.wire import I16, I32, U8, U16, U32, Choice, Constant, Enumeration, Field, Message, Protocol
 
 
@@ -19,21 +20,13 @@ _HEAD = (
     Field("device_time_us", U32, "us", "the board's own clock, modulo 2^32"),
     Field("state", U8, "state", "state of the supervisor"),
 )
-_REFERENCES = (
-    _number("psi_ref_rad", "rad", "elevation reference"),
-    _number("phi_ref_rad", "rad", "azimuth reference"),
+_REFERENCES = tuple(_number(loop.reference, "rad", f"{loop.axis} reference") for loop in LOOPS)
+_ANGLES = tuple(_number(loop.output, "rad", loop.axis) for loop in LOOPS)
+_INPUTS = tuple(
+    _number(loop.input, "V", f"{loop.motor} motor voltage out of the law, after its limits") for loop in LOOPS
 )
-_ANGLES = (
-    _number("psi_rad", "rad", "elevation"),
-    _number("phi_rad", "rad", "azimuth"),
-)
-_INPUTS = (
-    _number("u_M_V", "V", "main motor voltage out of the law, after its limits"),
-    _number("u_T_V", "V", "tail motor voltage out of the law, after its limits"),
-)
-_DUTIES = (
-    Field("duty_main_ticks", I16, "PWM ticks", "signed duty written to the main motor's PWM"),
-    Field("duty_tail_ticks", I16, "PWM ticks", "signed duty written to the tail motor's PWM"),
+_DUTIES = tuple(
+    Field(loop.duty, I16, "PWM ticks", f"signed duty written to the {loop.motor} motor's PWM") for loop in LOOPS
 )
 _LAW_CYCLES = Field("law_cycles", U32, "core cycles", "duration of the last step of the law")
 
@@ -125,10 +118,7 @@ _TO_BOARD = (
         0x08,
         True,
         "Declare what the encoders read now; refused while armed.",
-        (
-            Field("psi_counts", I32, "encoder counts", "elevation at this moment"),
-            Field("phi_counts", I32, "encoder counts", "azimuth at this moment"),
-        ),
+        tuple(Field(loop.counts, I32, "encoder counts", f"{loop.axis} at this moment") for loop in LOOPS),
     ),
     Message("RESET_LAW", 0x09, True, "In host-in-the-loop mode: start the law anew, at rest at these angles.", _ANGLES),
 )
@@ -171,8 +161,7 @@ _FROM_BOARD = (
         (
             *_HEAD,
             Field("tick", U32, "1", "control ticks since the start"),
-            Field("psi_counts", I32, "encoder counts", "elevation encoder"),
-            Field("phi_counts", I32, "encoder counts", "azimuth encoder"),
+            *(Field(loop.counts, I32, "encoder counts", f"{loop.axis} encoder") for loop in LOOPS),
             *_ANGLES,
             *_REFERENCES,
             *_INPUTS,

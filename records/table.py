@@ -23,11 +23,12 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from records.errors import BadInput
+from records.loops import LOOPS
 from records.text import checks
 from records.text.reading import read_json
 
 SCHEMA = "controller-table/1"
-AXES = ("elevation", "azimuth")
+AXES = tuple(loop.axis for loop in LOOPS)
 Polynomial = tuple[float, ...]
 A = TypeVar("A")
 

@@ -19,7 +19,7 @@ Sizes = Mapping[str, Values]  # by effect and symbol
 
 def library(bound: BoundPlant) -> Mapping[str, Effect]:
     """Every effect that the plant can have, by name."""
-    return effects_for(MODELS[bound.plant.model]())
+    return effects_for(bound.nominal)
 
 
 def every_effect() -> Iterator[Effect]:
@@ -41,7 +41,7 @@ def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, s
     and for a value beyond its bounds.
     """
     where = f"plant {bound.plant.name!r}: effects"
-    nominal = MODELS[bound.plant.model]()
+    nominal = bound.nominal
     entries = {
         name: _entries(find_effect(nominal, name, where), given, (sd or {}).get(name, {}), source, f"{where}.{name}")
         for name, given in values.items()
@@ -51,7 +51,7 @@ def with_effects(bound: BoundPlant, values: Sizes, *, sd: Sizes | None = None, s
 
 def without_effects(bound: BoundPlant) -> BoundPlant:
     """The nominal plant: its parameters come first."""
-    nominal = MODELS[bound.plant.model]()
+    nominal = bound.nominal
     count = len(nominal.parameter_symbols)
     return BoundPlant(replace(bound.plant, effects={}), nominal, bound.p[:count], bound.sd[:count])
 
@@ -63,7 +63,7 @@ def linear_part(bound: BoundPlant) -> BoundPlant:
     """
     if not bound.effects:
         return bound
-    nominal = MODELS[bound.plant.model]()
+    nominal = bound.nominal
     kept = {name: entries for name, entries in bound.effects.items() if _is_plain(nominal, name)}
     return bind(replace(bound.plant, effects=effects_section(kept)))
 
@@ -76,7 +76,7 @@ def combined(bound: BoundPlant, names: Iterable[str]) -> BoundPlant:
     """
     known = library(bound)
     where = f"plant {bound.plant.name!r}: effects"
-    nominal = MODELS[bound.plant.model]()
+    nominal = bound.nominal
     chosen = [known.get(name) or find_effect(nominal, name, where) for name in names]
     return with_effects(bound, {effect.name: {p.symbol: p.touched for p in effect.parameters} for effect in chosen})
 
@@ -87,7 +87,7 @@ def with_values(bound: BoundPlant, values: Sizes) -> BoundPlant:
     Raises BadInput for an effect or symbol that it does not have, and for a value beyond its bounds.
     """
     where = f"plant {bound.plant.name!r}: effects"
-    nominal = MODELS[bound.plant.model]()
+    nominal = bound.nominal
     changed = {name: dict(entries) for name, entries in bound.effects.items()}
     on_equations = carried(nominal, changed)
     p = bound.p.copy()
@@ -119,7 +119,7 @@ def coefficient_index(bound: BoundPlant, effect: str, symbol: str) -> int:
 
 def _is_plain(nominal: Model, name: str) -> bool:
     on_sensor = name.split(".")[0] in nominal.places.sensors
-    return not on_sensor and bool(carried(nominal, (name,))) and not model_with(nominal.name, (name,)).starts
+    return not on_sensor and bool(carried(nominal, (name,))) and not model_with(nominal, (name,)).starts
 
 
 def _entries(effect: Effect, given: Values, sd: Values, source: str, where: str) -> Mapping[str, Parameter]:

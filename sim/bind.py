@@ -13,9 +13,9 @@ from records.text.units import dimensions
 from sim.composition.build import model_with, paths_with
 from sim.composition.table import Entries, plain_values, read_effects
 from sim.effect import coefficient
+from sim.equations import nominal_model
 from sim.model import Model, ParameterSpec
 from sim.paths.path import InputStage, OutputStage
-from sim.plants import MODELS
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,11 @@ class BoundPlant:
     output_path: tuple[OutputStage, ...] = ()
 
     @property
+    def nominal(self) -> Model:
+        """The equations without the plant's effects: the same object wherever the same plant asks."""
+        return nominal_model(self.plant)
+
+    @property
     def encoder_steps(self) -> tuple[float, ...]:
         """The sensors' resolutions (outputs,) in the order of the model's outputs, each in its output's unit; 0 where there is none."""
         return tuple(self.plant.sensors[output] for output in self.model.outputs)
@@ -49,8 +54,16 @@ class BoundPlant:
 
     def limits(self, variable: sympy.Symbol) -> tuple[float, float]:
         """The least and the largest value of an input."""
-        low, high = self.model.input_limits[variable]
+        low, high = self.model.limits(variable)
         return self.number(low), self.number(high)
+
+    def commands(self, variable: sympy.Symbol) -> tuple[float, float]:
+        """The limits of an input, and on a side without one the largest command that is usual at its place."""
+        usual = max(
+            (place.size for place in self.model.places.inputs.values() if place.variable == variable), default=1.0
+        )
+        low, high = self.limits(variable)
+        return (low if low > -np.inf else -usual), (high if high < np.inf else usual)
 
 
 def bind(plant: Plant) -> BoundPlant:
@@ -60,16 +73,14 @@ def bind(plant: Plant) -> BoundPlant:
     effect that the model cannot have.
     """
     where = f"plant {plant.name!r}"
-    if plant.model not in MODELS:
-        raise BadInput("model", where, repr(plant.model), f"one of {', '.join(MODELS)}", "name a model that exists")
-    model = MODELS[plant.model]()
+    model = nominal_model(plant)
     _check_names(plant, model, where)
     for spec in model.parameters:
         _check_parameter(spec, plant.parameters[spec.name], f"{where}: parameters.{spec.name}")
     effects = read_effects(plant.effects, model, f"{where}: effects")
     paths = paths_with(model, plain_values(effects))
     known = {**plant.parameters, **_named(effects)}
-    model = model_with(plant.model, tuple(effects))
+    model = model_with(model, tuple(effects))
     ordered = [known[spec.name] for spec in model.parameters]
     p = np.array([value for entry in ordered for value in entry.values])
     sd = np.array([value for entry in ordered for value in entry.sds])

@@ -40,7 +40,7 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     for axis in arms:
         _check_stops(bound, axis, positions.get(axis.position, 0.0))
     x = np.array([positions.get(state, 0.0) for state in model.states])
-    u = np.array([sum(bound.limits(variable)) / 2.0 for variable in model.inputs])
+    u = np.array([sum(bound.commands(variable)) / 2.0 for variable in model.inputs])
     found = _solve(bound, *_begin(bound, x, u, positions_rad))
     if found is None:
         raise BadInput(

@@ -112,3 +112,60 @@ def at_rest(bound: BoundPlant) -> Array:
     if first.lower is not None and first.position is not None:
         x0[model.states.index(first.position)] = bound.number(first.lower)
     return x0
+
+
+# What stirs a plant without a loop: each input changes at once between levels about its rest, as shares of what it may command, so that
+# slow and fast parts answer. It is long enough for a rig's slowest axis to settle once, and each input begins later than the one before.
+STIR_S = 20.0
+STIR_AT_S = (1.0, 3.0, 5.0, 6.0, 7.0, 8.5, 9.5, 10.0, 10.5, 11.25, 12.0, 12.5, 13.0, 13.25, 13.5, 14.0, 15.0, 17.0)
+STIR_LEVEL = (0.2, -0.2, 0.1, -0.1, 0.2, 0.0, -0.2, 0.2, -0.1, 0.2, -0.2, 0.1, -0.2, 0.2, 0.0, -0.1, 0.1, 0.0)
+STIR_LATER_S = 0.4
+DISPLACED = 0.3  # of an output's usual range: where a plant without inputs begins
+
+
+@dataclass(frozen=True, eq=False)
+class Stir:
+    """A run without a loop: sample times t_s (n,), inputs u (n, inputs), and the plant's state x0 (states,) at t_s[0]."""
+
+    t_s: Array
+    u: Array
+    x0: Array
+
+
+def stir(bound: BoundPlant, sample_period_s: float = 0.01) -> Stir:
+    """Steps of every input about where the plant rests, or, where nothing drives it, a start away from there."""
+    t_s = np.asarray(np.arange(round(STIR_S / sample_period_s) + 1) * sample_period_s, dtype=float)
+    x0, u0 = _rest(bound)
+    u = np.tile(u0, (t_s.size, 1))
+    for column, variable in enumerate(bound.model.inputs):
+        low, high = bound.commands(variable)
+        after = np.searchsorted(np.array(STIR_AT_S) + column * STIR_LATER_S, t_s, side="right")
+        level = np.concatenate([[0.0], STIR_LEVEL])[after]
+        u[:, column] = np.clip(u0[column] + level * (high - low) / 2.0, low, high)
+    return Stir(t_s, u, x0 if bound.model.inputs else x0 + _displaced(bound))
+
+
+def _rest(bound: BoundPlant) -> tuple[Array, Array]:
+    """State and inputs where the plant rests in the middle of its stops; where it rests nowhere, all at 0 and the inputs' least effort."""
+    model = bound.model
+    arms = [axis for axis in model.axes if axis.position is not None]
+    middle = [
+        0.0 if a.lower is None or a.upper is None else (bound.number(a.lower) + bound.number(a.upper)) / 2.0
+        for a in arms
+    ]
+    try:
+        point = equilibrium(bound, *middle)
+        return point.x0, point.u0
+    except BadInput:
+        x0 = np.zeros(len(model.states))
+        for axis, position in zip(arms, middle, strict=True):
+            x0[model.states.index(axis.position)] = position
+        return x0, np.array([min(max(0.0, low), high) for low, high in map(bound.commands, model.inputs)])
+
+
+def _displaced(bound: BoundPlant) -> Array:
+    """How far each state that is an output or an axis' position lies off its rest, in its unit."""
+    model = bound.model
+    usual = {model.outputs[sensor.output]: sensor.size for sensor in model.places.sensors.values()}
+    usual = {**{axis.position: 1.0 for axis in model.axes if axis.position is not None}, **usual}
+    return np.array([DISPLACED * usual.get(state, 0.0) for state in model.states])

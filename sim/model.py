@@ -93,6 +93,10 @@ class Model:
         """All coefficients in the order of the parameter vector p."""
         return tuple(symbol for spec in self.parameters for symbol in spec.symbols)
 
+    def limits(self, variable: sympy.Symbol) -> tuple[sympy.Expr, sympy.Expr]:
+        """The least and the largest value of an input: without end where the model states none."""
+        return self.input_limits.get(variable, (-sympy.oo, sympy.oo))
+
     @property
     def friction_signs(self) -> tuple[sympy.Symbol, ...]:
         """One symbol per axis for the direction of its dry friction: sgn(velocity), or 0 where it is left out."""

@@ -104,6 +104,20 @@ class Places:
         """The rotor that is there to turn an axis; "" where none is declared."""
         return next((rotor for rotor in self.rotors if self.pushed_by(rotor) == axis), "")
 
+    @property
+    def lifting(self) -> str:
+        """The rotor that is there to turn the tilting axis, a helicopter's main rotor; "" where none is declared."""
+        return self.rotor_of(self.tilting)
+
+    @property
+    def turning(self) -> str:
+        """The rotor that is there to turn the level axis, a helicopter's tail rotor; "" where none is declared."""
+        return self.rotor_of(self.level)
+
+    def input_of(self, rotor: str) -> str:
+        """The input that drives a rotor; "" where none is declared."""
+        return next((name for name, entry in self.inputs.items() if entry.variable == self.rotors[rotor].variable), "")
+
     def pushed_by(self, rotor: str) -> str:
         """The axis that a rotor is there to turn: the first that it pushes, the level one for a tail rotor."""
         return self.level if rotor == "tail_rotor" else next(iter(self.rotors[rotor].thrusts))

@@ -1,5 +1,7 @@
 """How well a flight followed its references, read from its log alone."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +44,21 @@ class _Hold:
     begin: int
     end: int
     change: float
+
+
+# A flight has left its references where an axis rests farther off, or overshoots by more. On the CE150 the papers' controllers rest within
+# 1.1 deg and overshoot by a quarter at most; the fuzzy ones on ce150_velagic rest 14 and 31 deg off and overshoot by half again.
+LEFT_RAD = 0.087
+LEFT_OVERSHOOT = 1.0
+
+
+def left(found: Sequence[Tracking]) -> tuple[str, ...]:
+    """The outputs that did not stay with their references, each with how far it went, in words; nothing of a flight that did."""
+    return tuple(
+        f"{entry.output} by {math.degrees(max(entry.steady_error_rad, entry.push_rad)):.1f} deg"
+        for entry in found
+        if not (entry.steady_error_rad <= LEFT_RAD and entry.overshoot <= LEFT_OVERSHOOT)
+    )
 
 
 def tracking(log: RunLog, output: str) -> Tracking:

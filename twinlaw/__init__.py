@@ -1,6 +1,21 @@
-"""The command line and the reports: a person's words go in, files, tables and pages come out; nothing computes here."""
+"""The command line and the reports, and the same stages as functions (twinlaw.api); nothing computes here."""
 
 import os
+from typing import TYPE_CHECKING, Any
 
 # The matrices here are small, and threads of the linear algebra only stand in the way of the work's own.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+if TYPE_CHECKING:
+    from twinlaw.api import design, design_other, diagnose, fly, generate, identify, load, verify
+
+__all__ = ["design", "design_other", "diagnose", "fly", "generate", "identify", "load", "verify"]
+
+
+def __getattr__(name: str) -> Any:
+    """A function of twinlaw.api, which is read when it is first asked for: most verbs do without most of it."""
+    if name not in __all__:
+        raise AttributeError(f"module 'twinlaw' has no attribute {name!r}")
+    from twinlaw import api
+
+    return getattr(api, name)

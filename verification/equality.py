@@ -7,11 +7,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from records.loops import LOOPS
 from records.verification import Equality, FirstMismatch
 from verification.stimuli import Stimulus
 
 Bits = NDArray[np.uint32]
-OUTPUTS = ("u_M_V", "u_T_V")
+OUTPUTS = tuple(loop.input for loop in LOOPS)
 
 
 class BatchStepper(Protocol):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from codegen.fixed.formats import law_formats
 from records.errors import BadInput
 from records.log import RunLog
+from records.loops import LOOPS
 from records.table import ControllerTable
 from records.verification import Equality
 from verification.equality import BatchStepper, first_output
@@ -47,8 +48,9 @@ def replay_of(log: RunLog, table: ControllerTable, path: Path, arithmetic: str =
             "give the table that flew with --table, or a log of this table",
         )
     psi, phi = _angles(log, path)
-    references = [log.extra.get(name, np.zeros(len(log.t_s))) for name in ("psi_ref_rad", "phi_ref_rad")]
-    is_own = log.table_digest is not None and {"psi_ref_rad", "phi_ref_rad"} <= log.extra.keys()
+    names = [loop.reference for loop in LOOPS]
+    references = [log.extra.get(name, np.zeros(len(log.t_s))) for name in names]
+    is_own = log.table_digest is not None and set(names) <= log.extra.keys()
     inputs, sent = _as_words(np.stack([*references, psi, phi], axis=-1), log.u, table, arithmetic)
     stimulus = Stimulus(path.name, inputs[:1, 2:].copy(), inputs[:, np.newaxis].copy())
     return Replay(stimulus, sent if is_own else None)

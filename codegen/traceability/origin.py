@@ -4,7 +4,6 @@ The sensitivity of a designed coefficient to a parameter is d ln(coefficient) / 
 level, by central differences of the whole design: the parameters that it names are those that the coefficient rests on.
 """
 
-import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +15,7 @@ from codegen.traceability.names import Constant, constants, find_constant, ident
 from design.operating_points import design_point
 from design.settings import DesignSettings
 from records.errors import BadInput
-from records.plant import Parameter, plant_text
+from records.plant import Parameter, plant_digest
 from records.table import AXES, ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
@@ -177,7 +176,7 @@ def _told(parameter: Parameter, name: str, sensitivity: float | None, element: i
 
 def _refuse_another_plant(bound: BoundPlant, table: ControllerTable) -> None:
     """A table that was designed on other numbers has other reasons than these."""
-    digest = hashlib.sha256(plant_text(bound.plant).encode()).hexdigest()
+    digest = plant_digest(bound.plant)
     known = str(table.origin["plant_digest"])
     if digest != known:
         raise BadInput(

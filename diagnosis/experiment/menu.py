@@ -129,7 +129,7 @@ class _Maker:
         self._middle = np.array([entry.middle for entry in room])
         self._reach = np.array([entry.reach for entry in room])
         model = case.library.bound.model
-        self._span = np.array([np.ptp(case.library.bound.limits(variable)) for variable in model.inputs])
+        self._span = np.array([np.ptp(case.library.bound.commands(variable)) for variable in model.inputs])
 
     def lively(self, name: str, text: str, effort: float, locked: tuple[str, ...] = (), speeds: bool = False) -> Plan:
         """Steps of every axis that is free, at times that do not coincide."""

@@ -180,7 +180,7 @@ def _floors(case: Case) -> dict[str, float]:
     model, bound = case.library.bound.model, case.library.bound
     found = {name: OUTPUT_FLOOR * max(bound.plant.sensors[name], 1e-4) for name in model.outputs}
     for variable in model.inputs:
-        low, high = bound.limits(variable)
+        low, high = bound.commands(variable)
         found[str(variable)] = INPUT_FLOOR * (high - low)
     return found
 

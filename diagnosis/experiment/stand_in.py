@@ -70,7 +70,7 @@ def stand_in(
     tracked = [model.states.index(axis.position) for axis, _ in free]
     if not free or len(tracked) > len(model.inputs):
         return None
-    limits = np.array([bound.limits(variable) for variable in model.inputs])
+    limits = np.array([bound.commands(variable) for variable in model.inputs])
     own = np.array([s for _, s in free])
     gains = _gains(bound, rest, kept, tracked, own, INPUT_SHARE * np.ptp(limits, axis=1), period_s)
     if gains is None:

@@ -238,7 +238,7 @@ def _build(bound: BoundPlant, names: tuple[str, ...]) -> dict[str, Any]:
         coefficient(name, p.symbol): p.reference for name in (*behind, *noises) for p in effects[name].parameters
     }
     with EQUATIONS:
-        model = switched_model(bound.plant.model, tuple(switched))
+        model = switched_model(bound.nominal, tuple(switched))
         for name in behind:
             model = with_filter_state(model, effects[name])
         brought = model.states[len(bound.model.states) :]
@@ -272,6 +272,8 @@ def _noted(bound: BoundPlant, what: str, make: Any) -> dict[str, Any]:
     """What was noted on disk under this content, or what `make` gives, noted."""
     digest = hashlib.sha256(MADE_FROM)
     digest.update(bound.plant.model.encode())
+    if bound.plant.equations is not None:
+        digest.update(bound.plant.equations.text.encode())
     note = CACHE_DIR / "effect_libraries" / f"{bound.plant.model}-{digest.hexdigest()[:16]}-{what}.json"
     try:
         known: dict[str, Any] = json.loads(read_text(note, "note of an effect library"))

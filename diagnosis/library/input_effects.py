@@ -16,7 +16,6 @@ from sim.composition.build import paths_with
 from sim.effect import Values
 from sim.paths.input_stages import DroppedFrames, Lag, SlewLimit
 from sim.paths.path import InputStage
-from sim.plants import MODELS
 from toolchain.host import build_shared, load_shared
 
 Array = NDArray[np.float64]
@@ -41,7 +40,7 @@ def commanded(library: EffectLibrary, filter_input: FilterInput, effects: Mappin
             filter_input = _arrived(filter_input, stage.p)
     further = {name: effects[name] for name in effects if not isinstance(stages.get(name), AVERAGED)}
     if further:
-        others, _ = paths_with(MODELS[library.bound.plant.model](), further)
+        others, _ = paths_with(library.bound.nominal, further)
         filter_input = with_inputs(filter_input, others)
     for stage in stages.values():
         if isinstance(stage, SlewLimit):

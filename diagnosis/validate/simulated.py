@@ -15,7 +15,6 @@ from diagnosis.validate.prediction import UNSEEN_VARIANCE
 from sim.composition.build import paths_with
 from sim.effect import Effect, Role, Values
 from sim.paths.path import Held, OutputStage, Trace, passed
-from sim.plants import MODELS
 
 Array = NDArray[np.float64]
 
@@ -43,7 +42,7 @@ class Flown:
         further = {name: values for name, values in hypothesis.effects.items() if name not in compiled.names}
         if seed is None:
             further = {name: without_scatter(library.effects[name], values) for name, values in further.items()}
-        on_input, on_output = paths_with(MODELS[library.bound.plant.model](), further)
+        on_input, on_output = paths_with(library.bound.nominal, further)
         self._case, self._filter, self.t_s, self.lost = case, compiled.filter, t_s, False
         self._outputs = len(library.bound.model.outputs)
         self._steps = np.array([library.bound.plant.sensors[name] for name in library.bound.model.outputs])

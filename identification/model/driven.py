@@ -5,6 +5,7 @@ from functools import lru_cache
 import sympy
 
 from sim.model import TIME, Model
+from sim.places import Places
 
 
 @lru_cache(maxsize=64)
@@ -41,7 +42,7 @@ def driven_model(model: Model) -> Model | None:
     rates = {state: model.rates[state] for state in states}
     used = set().union(*(sympy.sympify(rate).free_symbols for rate in rates.values()))
     inputs = tuple(variable for variable in model.inputs if variable in used)
-    limits = {variable: model.input_limits[variable] for variable in inputs}
+    limits = {variable: model.limits(variable) for variable in inputs}
     used |= {symbol for pair in limits.values() for limit in pair for symbol in sympy.sympify(limit).free_symbols}
     return Model(
         name="driven",  # not by its model: models that are driven alike share the compiled equations
@@ -52,4 +53,5 @@ def driven_model(model: Model) -> Model | None:
         rates=rates,
         axes=(),
         input_limits=limits,
+        places=Places(inputs=model.places.inputs),
     )

@@ -72,4 +72,4 @@ def _run_on(driven: BoundPlant, t_s: Array, u: Array, x0: Array) -> Array:
 
 
 def _largest_inputs(bound: BoundPlant) -> Array:
-    return np.array([max(bound.limits(variable), key=abs) for variable in bound.model.inputs])
+    return np.array([max(bound.commands(variable), key=abs) for variable in bound.model.inputs])

@@ -14,27 +14,24 @@ from sim.effects import effects_for
 from sim.model import Model
 from sim.paths.input_stages import Memoryless
 from sim.paths.path import Array, InputStage, OutputStage
-from sim.plants import MODELS
 
 
 @lru_cache(maxsize=256)
-def model_with(name: str, effects: tuple[str, ...]) -> Model:
-    """The model `name` with the equations of `effects`, one object for each set: kernels and Jacobians are derived once.
+def model_with(nominal: Model, effects: tuple[str, ...]) -> Model:
+    """The `nominal` model with the equations of `effects`, one object for each set: kernels and Jacobians are derived once.
 
     The order of the names does not matter. Effects that act on the way of a signal are left out.
     """
-    nominal = MODELS[name]()
     library = effects_for(nominal)
     ordered = tuple(effect for effect in library if effect in carried(nominal, effects))
     if ordered != effects:
-        return model_with(name, ordered)
+        return model_with(nominal, ordered)
     return reduce(_added, (library[effect] for effect in ordered), nominal)
 
 
 @lru_cache(maxsize=16)
-def switched_model(name: str, effects: tuple[str, ...]) -> Model:
+def switched_model(nominal: Model, effects: tuple[str, ...]) -> Model:
     """The same with a switch for each effect, so that those that are off take no time (switch.py)."""
-    nominal = MODELS[name]()
     chosen = carried(nominal, effects)
     return switched(nominal, (effect for effect in effects_for(nominal).values() if effect.name in chosen))
 

@@ -16,7 +16,8 @@ from sim.prior import COMMON, RARE
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each encoder, (2) on each input."""
-    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+    for place, sensor in model.places.sensors.items():
+        output = [*model.outputs].index(sensor.output)
         if place not in model.places.encoders:
             continue
         size = sensor.size
@@ -33,7 +34,8 @@ def effects(model: Model) -> Iterator[Effect]:
             smooth=False,
             twins={f"{place}.quantization": "both hold the reading still near a reversal"},
         )
-    for column, (place, entry) in enumerate(model.places.inputs.items()):
+    for place, entry in model.places.inputs.items():
+        column = model.inputs.index(entry.variable)
         size = entry.size
         grid = tuple(share * size for share in (0.01, 0.03, 0.1))
         yield Effect(

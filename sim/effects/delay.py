@@ -32,7 +32,8 @@ def effects(model: Model) -> Iterator[Effect]:
         yield _input_delay(
             "loop", f"delay of {names}", tuple(range(len(inputs))), {f"{place}.delay": story for place in inputs}
         )
-    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+    for place, sensor in model.places.sensors.items():
+        output = [*model.outputs].index(sensor.output)
         yield Effect(
             name=f"{place}.delay",
             depends=f"delay of {short(sensor.output)}",

@@ -16,8 +16,10 @@ from sim.prior import COMMON
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each axis."""
+    """Eq (1) on each axis whose angle is measured."""
     for axis, entry in model.places.axes.items():
+        if entry.angle not in model.outputs:
+            continue
         yield Effect(
             name=f"{axis}.flexible_mode",
             depends="mode(torque)",

@@ -24,22 +24,25 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
+    main = model.places.lifting
     over, base = model.places.axes[tilting], model.places.axes[level]
     psi, phi, size = short(over.angle), short(base.angle), base.torque_size
     spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
-    yield Effect(
-        name=f"{level}.gyroscopic",
-        depends=f"torque({psi}_dot, omega_M, {psi})",
-        parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
-        equation=f"- K {psi}' omega_M sin({psi})",
-        story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
-        source="reciprocal of a term in seed 000 eq (8)",
-        prior=COMMON,
-        edit=lambda model, K: with_torque(
-            model, level, -K * _rate(model, tilting) * _speed(model, "main_rotor") * sympy.sin(_angle(model, tilting))
-        ),
-        twins={f"{level}.coriolis": "both show when both axes move"},
-    )
+    letter = model.places.rotors[main].letter if main else ""
+    if main:
+        yield Effect(
+            name=f"{level}.gyroscopic",
+            depends=f"torque({psi}_dot, omega_{letter}, {psi})",
+            parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
+            equation=f"- K {psi}' omega_{letter} sin({psi})",
+            story="Tipping the fast main rotor kicks the arm sideways, as a spinning top would.",
+            source="reciprocal of a term in seed 000 eq (8)",
+            prior=COMMON,
+            edit=lambda model, K: with_torque(
+                model, level, -K * _rate(model, tilting) * _speed(model, main) * sympy.sin(_angle(model, tilting))
+            ),
+            twins={f"{level}.coriolis": "both show when both axes move"},
+        )
     yield Effect(
         name=f"{level}.coriolis",
         depends=f"torque({psi}, {psi}_dot, {phi}_dot)",
@@ -56,6 +59,7 @@ def _on_level_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
 
 
 def _on_tilting_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]:
+    tail = model.places.turning
     over, base = model.places.axes[tilting], model.places.axes[level]
     psi, phi, size = short(over.angle), short(base.angle), base.torque_size
     spin, unit = 0.3 * size / 600.0, f"{base.torque_unit} s^2"
@@ -70,16 +74,18 @@ def _on_tilting_axis(model: Model, level: str, tilting: str) -> Iterator[Effect]
             model, tilting, c * _rate(model, level) ** 2 * sympy.sin(2 * _angle(model, tilting))
         ),
     )
-    yield Effect(
-        name=f"{tilting}.tail_gyroscopic",
-        depends=f"torque(omega_T, {phi}_dot)",
-        parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
-        equation=f"+ K omega_T {phi}'",
-        story="Turning the arm with the tail rotor spinning tips it up or down.",
-        source="Euler's equations",
-        edit=lambda model, K: with_torque(model, tilting, K * _speed(model, "tail_rotor") * _rate(model, level)),
-        twins={f"{tilting}.tail_coupling": "both carry the tail rotor's speed to the elevation"},
-    )
+    if tail:
+        letter = model.places.rotors[tail].letter
+        yield Effect(
+            name=f"{tilting}.tail_gyroscopic",
+            depends=f"torque(omega_{letter}, {phi}_dot)",
+            parameters=(EffectParameter("K", unit, -50.0 * spin, 50.0 * spin, spin, 0.0),),
+            equation=f"+ K omega_{letter} {phi}'",
+            story="Turning the arm with the tail rotor spinning tips it up or down.",
+            source="Euler's equations",
+            edit=lambda model, K: with_torque(model, tilting, K * _speed(model, tail) * _rate(model, level)),
+            twins={f"{tilting}.tail_coupling": "both carry the tail rotor's speed to the elevation"},
+        )
 
 
 def _angle(model: Model, axis: str) -> sympy.Expr:

@@ -18,12 +18,14 @@ from sim.model import Model, symbol
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (2) on each rotor whose speed is a state."""
+    """Eq (2) on each rotor whose speed is a state, where the angle of its axis is measured."""
     for place, rotor in model.places.rotors.items():
         if rotor.drive is None:
             continue
         axis = model.places.pushed_by(place)
         entry = model.places.axes[axis]
+        if entry.angle not in model.outputs:
+            continue
         length = 1.0 if entry.length_unit == "rad" else entry.speed_size
         yield Effect(
             name=f"{place}.imbalance",

@@ -20,7 +20,8 @@ LATE = "slow motion shows only the mean time by which both are late"
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each input, on each rotor without a lag of its own, and on each sensor."""
-    for column, (place, entry) in enumerate(model.places.inputs.items()):
+    for place, entry in model.places.inputs.items():
+        column = model.inputs.index(entry.variable)
         rotor_place = model.places.driven_by(entry.variable)
         immediate = bool(rotor_place) and model.places.rotors[rotor_place].drive is None
         yield _lag(
@@ -43,7 +44,8 @@ def effects(model: Model) -> Iterator[Effect]:
                 "inertia of the rotor",
                 {f"{place}.lag": SAME, f"{place}.delay": LATE},
             )
-    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+    for place, sensor in model.places.sensors.items():
+        output = [*model.outputs].index(sensor.output)
         state = f"{sensor.output}_read"
         yield Effect(
             name=f"{place}.lag",

@@ -15,7 +15,8 @@ from sim.prior import COMMON
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each input and each sensor."""
-    for column, (place, entry) in enumerate(model.places.inputs.items()):
+    for place, entry in model.places.inputs.items():
+        column = model.inputs.index(entry.variable)
         size = entry.size
         yield Effect(
             name=f"{place}.quantization",
@@ -40,7 +41,8 @@ def effects(model: Model) -> Iterator[Effect]:
             on_input=lambda values, column=column: Quantised(column, values["q"]),
             smooth=False,
         )
-    for output, (place, sensor) in enumerate(model.places.sensors.items()):
+    for place, sensor in model.places.sensors.items():
+        output = [*model.outputs].index(sensor.output)
         size = sensor.size
         yield Effect(
             name=f"{place}.quantization",

@@ -25,6 +25,8 @@ def effects(model: Model) -> Iterator[Effect]:
         if not entry.spun_by:
             continue
         rotor = model.places.rotors[entry.spun_by]
+        if rotor.speed not in model.states:
+            continue
         size = 0.3 * entry.torque_size / 600.0
         yield Effect(
             name=f"{axis}.rotor_acceleration",
@@ -40,8 +42,10 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 def _coupling(model: Model, level: str, tilting: str) -> Iterator[Effect]:
-    entry = model.places.axes[tilting]
-    for axis, place, sign, twin in ((tilting, "tail_rotor", 1, "tail_gyroscopic"), (level, "main_rotor", -1, "")):
+    entry, main, tail = model.places.axes[tilting], model.places.lifting, model.places.turning
+    for axis, place, sign, twin in ((tilting, tail, 1, "tail_gyroscopic"), (level, main, -1, "")):
+        if not (main and tail):
+            continue
         rotor = model.places.rotors[place]
         size = 0.1 * entry.torque_size / rotor.speed_size**2
         yield Effect(
@@ -61,7 +65,7 @@ def _coupling(model: Model, level: str, tilting: str) -> Iterator[Effect]:
             twins={f"{axis}.{twin}": "both carry the tail rotor's speed to the elevation"}
             if twin
             else {
-                "tail_rotor.downwash": "at a constant tail speed both are a torque that grows with the main rotor's speed"
+                f"{tail}.downwash": "at a constant tail speed both are a torque that grows with the main rotor's speed"
             },
         )
 

@@ -13,7 +13,8 @@ from sim.prior import COMMON
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each input."""
-    for column, (place, entry) in enumerate(model.places.inputs.items()):
+    for place, entry in model.places.inputs.items():
+        column = model.inputs.index(entry.variable)
         size = entry.size
         grid = tuple(share * size for share in (0.3, 0.7, 1.5, 3.0, 7.0, 20.0))
         never = 1.0e7 * size  # faster than any command changes in a sample

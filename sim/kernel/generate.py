@@ -63,7 +63,7 @@ def model_header(model: Model) -> str:
 
 def _limits(model: Model) -> dict[str, list[sympy.Expr]]:
     """The limits, which take the first places of the constants."""
-    bounds = [model.input_limits[variable] for variable in model.inputs]
+    bounds = [model.limits(variable) for variable in model.inputs]
     return {
         "AXIS_LOWER": [_bound(axis.lower, -sympy.oo) for axis in model.axes],
         "AXIS_UPPER": [_bound(axis.upper, sympy.oo) for axis in model.axes],

@@ -106,5 +106,5 @@ def test_an_operating_point_that_the_rotor_cannot_hold_is_named():
 def test_a_plant_without_an_elevation_is_told_what_the_design_is_for():
     """The other plants have no schedule over Psi; a reader of the message learns which plants do."""
     bound = bind(load_plant(Path("plants/emps.toml")))
-    with pytest.raises(BadInput, match=r"plant 'emps'.*a helicopter with an elevation"):
+    with pytest.raises(BadInput, match=r"plant 'emps'.*a helicopter with elevation and azimuth"):
         read_settings(bound)

@@ -18,6 +18,7 @@ from sim.kernel.kernel import C_DIR
 from sim.kernel.reference import reference
 from sim.kernel.sincos import sincos_header
 from sim.model import Model
+from sim.plants import MODELS
 from sim.symbolic.switches import Line, levels, vanishing
 from tests.plants import bound
 from tests.soak import SOAK, sampled
@@ -67,7 +68,7 @@ def plant(request: pytest.FixtureRequest) -> BoundPlant:
 
 @pytest.fixture(scope="module")
 def model(plant: BoundPlant) -> Model:
-    return switched_model(plant.plant.model, carried(plant.plant.name))
+    return switched_model(plant.nominal, carried(plant.plant.name))
 
 
 def compiled(model: Model):
@@ -133,7 +134,7 @@ def test_a_switched_effect_is_the_effect() -> None:
     # moves an input by as much: rates within 1e-9 of the largest.
     plant = bound("aeroshield")
     names, effects = carried(plant.plant.name), library(plant)
-    model = switched_model("aeroshield", names)
+    model = switched_model(MODELS["aeroshield"](), names)
     symbols = [str(symbol) for symbol in model.parameter_symbols]
     random, truth = np.random.default_rng(6), reference(model)
     for name in names:

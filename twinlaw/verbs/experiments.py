@@ -17,8 +17,7 @@ from identification.experiments.table import kinds_of, perform
 from identification.proof.monte_carlo import Repetition, RigOrder, coverage, other_rig, repeat
 from jobs.job import Job
 from records.experiment import save_experiment
-from records.files import write_atomic
-from records.plant import plant_text
+from records.plant import save_plant
 from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
@@ -52,7 +51,7 @@ def run(chosen: argparse.Namespace) -> int:
             files.append(chosen.out / f"{entry.number:02d}-{kind}.toml")
             save_experiment(files[-1], perform(kind, truth, chosen.seed))
     files.append(chosen.out / "truth.toml")
-    write_atomic(files[-1], plant_text(truth.plant))
+    save_plant(files[-1], truth.plant)
     print(json.dumps([str(path) for path in files]) if chosen.json else "\n".join(map(str, files)))
     return 0
 

@@ -16,13 +16,11 @@ the helicopter of seed 002, plants/raptor50.toml. It takes --free, --bounds, --b
 import argparse
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from identification.results.facts import facts
 from identification.results.quality import identification_quality
 from identification.results.result import Identification
-from identification.runs.rows import trimmed
 from identification.runs.run import coefficient_names
 from identification.search.methods import METHODS, Search
 from records.errors import BadInput
@@ -43,8 +41,8 @@ from twinlaw.pages.identify.truth import true_values
 from twinlaw.pages.page import page_text
 from twinlaw.pages.quality import quality_sentence
 from twinlaw.workflows.identify.by_time import Wishes, identify
-from twinlaw.workflows.identify.columns import demand_columns
-from twinlaw.workflows.identify.inputs import free_names, looked_at, read_inputs, read_limits
+from twinlaw.workflows.identify.columns import usable_inputs
+from twinlaw.workflows.identify.inputs import free_names, read_limits
 from twinlaw.workflows.identify.proof import proven
 from twinlaw.workflows.reading import load_bound
 
@@ -117,13 +115,8 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
     truth = None if chosen.truth is None else load_bound(chosen.truth)
-    inputs = read_inputs(chosen.files, holdout, bound)
+    inputs = usable_inputs(chosen.files, holdout, bound, chosen.trim)
     wishes = _wishes(chosen, bound, len(inputs.experiments) + bool(inputs.logs))
-    if chosen.trim is not None:
-        inputs = replace(inputs, logs={name: trimmed(log, *chosen.trim) for name, log in inputs.logs.items()})
-    inputs = looked_at(inputs, bound)
-    with console.stage("asking whether the columns are what they are called"):
-        demand_columns(bound, inputs.logs)
     result = identify(bound, inputs, wishes, chosen.out)
     known = None if truth is None else true_values(truth)
     sections, pictures = proven(result, truth)

@@ -1,7 +1,7 @@
-"""Begin a plant of your own: its equations in sim/plants/NAME.py, its parameters in plants/NAME.toml.
+"""Begin a plant of your own in a folder anywhere: its equations NAME.py, and beside them plant.toml with its parameters.
 
-Both are an arm on a hinge that works as it is, with comments that say what to change; docs/new-plant.md goes on from there. Files that are
-there already are not touched.
+Both are an arm on a hinge that works as it is, with comments that say what to change; every verb takes DIR/plant.toml as its --plant.
+docs/new-plant.md goes on from there. Files that are there already are not touched.
 """
 
 import argparse
@@ -12,18 +12,13 @@ from pathlib import Path
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw.cli import options
-from twinlaw.workflows.new_plant import plant_files, rows_to_add
-
-PROJECT = Path(__file__).resolve().parent.parent.parent
-REGISTER = "sim/plants/__init__.py"
+from twinlaw.workflows.new_plant import plant_texts
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """NAME, --project, --json."""
+    """NAME, --out, --json."""
     parser.add_argument("name", metavar="NAME", help="small letters, digits and _, as in my_arm")
-    parser.add_argument(
-        "--project", type=Path, default=PROJECT, metavar="DIR", help="where sim/ and plants/ are; default: this project"
-    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where both files go; default: a folder NAME here")
     options.as_json(parser)
 
 
@@ -41,33 +36,18 @@ def _write_all(files: Mapping[Path, str]) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Write both files unless either is there, and say which row is missing."""
-    files = {chosen.project / path: text for path, text in plant_files(chosen.name).items()}
-    if not (chosen.project / REGISTER).is_file():
-        raise BadInput(
-            what="project",
-            where=str(chosen.project),
-            got=f"no {REGISTER} there",
-            expected="a checkout of twinlaw",
-            remedy="give its folder as --project",
-        )
+    """Write both files unless either is there."""
+    texts = plant_texts(chosen.name)
+    folder = chosen.out or Path(chosen.name)
+    files = {folder / name: text for name, text in texts.items()}
     there = next((path for path in files if path.exists()), None)
     if there is not None:
-        raise BadInput(
-            what="plant",
-            where=str(there),
-            got="a file that is there already",
-            expected="a name that no plant has",
-            remedy="take another name, or remove the file yourself",
-        )
+        got, expected = "a file that is there already", "a folder without it"
+        raise BadInput("plant", str(there), got, expected, "take another folder, or remove the file yourself")
     _write_all(files)
-    rows = rows_to_add(chosen.name)
     if chosen.json:
-        print(json.dumps({"files": [str(path) for path in files], "register": REGISTER, "rows": list(rows)}))
+        print(json.dumps({"files": [str(path) for path in files]}))
         return 0
     for path in files:
         print(f"{path}: change what it says")
-    print(f"{REGISTER}: add to its import and to its table")
-    for row in rows:
-        print(row)
     return 0

@@ -1,23 +1,29 @@
 """Simulate a flight of the nonlinear plant under a controller table's law, in double precision or as generated, without any board.
 
-Writes DIR/simulation.csv and .toml. Without --table the controller is designed from the plant file. The error of the integration is
-told by the same flight with steps of half the length.
+Writes DIR/simulation.csv and .toml. Without --table the controller is designed from the plant file; a plant that none is designed for
+runs without a loop, its inputs changed in steps. The error of the integration is told by the same run with steps of half the length.
 """
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from controllers import loading
+from design.structure import demand_helicopter, missing
 from records.law_table import FlownTable
 from records.log import save_log
 from records.quality import STEP_ERROR, quality_facts
+from records.text.units import unit_of
+from sim.bind import BoundPlant
+from sim.halving import StepError
+from sim.tracking import left
 from twinlaw.cli import console, options
 from twinlaw.pages.quality import quality_sentence
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_facts, tracking_rows
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller
-from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step
+from twinlaw.workflows.chain.flying import fly_double, fly_host, halved_step, stirred
 from twinlaw.workflows.reading import load_bound
 
 
@@ -32,24 +38,62 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Fly, write the log, and tell how well the references were followed and how exactly the equations were solved."""
+    bound = load_bound(chosen.plant)
+    lacking = missing(bound)
+    if lacking and chosen.table is None:
+        return _without_loop(chosen, bound, lacking)
+    demand_helicopter(bound)
     table: FlownTable
     if chosen.table is None:
-        designed = design_controller(chosen.plant)
-        bound, table = designed.bound, designed.table
+        table = design_controller(chosen.plant).table
     else:
-        bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
+        table = loading.load(chosen.table)[1]
     generated = chosen.arithmetic in ARITHMETICS
     flight = fly_host(bound, table, chosen.arithmetic) if generated else fly_double(bound, table)
-    error_rad = dict(zip(bound.model.outputs, halved_step(bound, table).estimate.tolist(), strict=True))
-    exact = [STEP_ERROR.look(name, error / bound.plant.sensors[name]) for name, error in error_rad.items()]
+    error = halved_step(bound, table)
+    by_output = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
+    exact = [STEP_ERROR.look(name, value / bound.plant.sensors[name]) for name, value in by_output]
     quality = flight_quality(flight.tracking, exact)
     path = chosen.out / "simulation.csv"
     save_log(path, flight.log)
+    gone = left(flight.tracking)
     if chosen.json:
-        facts = {"log": str(path), "table_digest": table.digest, "step_error_rad": error_rad}
+        facts = {"log": str(path), "table_digest": table.digest, "left": list(gone), **_error_facts(bound, error)}
         print(json.dumps(facts | tracking_facts(flight.tracking) | {"quality": quality_facts(quality)}))
     else:
+        if gone:
+            print(f"the flight left its references, {' and '.join(gone)}: this controller does not hold this plant\n")
         print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
-        told = ", ".join(f"{output} {error:.1e} rad" for output, error in error_rad.items())
-        print(f"\nerror of one integration step a sample, by halving it: {told}\n{quality_sentence(quality)}\n{path}")
+        print(f"\n{_error_told(bound, error)}\n{quality_sentence(quality)}\n{path}")
     return 0
+
+
+def _without_loop(chosen: argparse.Namespace, bound: BoundPlant, lacking: Sequence[str]) -> int:
+    """A run of a plant for which no controller is designed: every input changed in steps."""
+    log, error = stirred(bound)
+    path = chosen.out / "simulation.csv"
+    save_log(path, log)
+    told = f"no controller: the equations of {bound.plant.model} are no helicopter's, without {', '.join(lacking[:3])}"
+    moved = (
+        "its inputs change in steps" if bound.model.inputs else "it has no input, and swings from a start off its rest"
+    )
+    if chosen.json:
+        print(
+            json.dumps(
+                {"log": str(path), "table_digest": None, "loop": "open", "note": told, **_error_facts(bound, error)}
+            )
+        )
+    else:
+        print(f"{told}; {moved}\n\n{_error_told(bound, error)}\n{path}")
+    return 0
+
+
+def _error_facts(bound: BoundPlant, error: StepError) -> dict[str, dict[str, float]]:
+    by_output = dict(zip(bound.model.outputs, error.estimate.tolist(), strict=True))
+    return {"step_error_rad" if all(name.endswith("_rad") for name in by_output) else "step_error": by_output}
+
+
+def _error_told(bound: BoundPlant, error: StepError) -> str:
+    each = zip(bound.model.outputs, error.estimate.tolist(), strict=True)
+    told = ", ".join(f"{output} {value:.1e} {unit_of(output)}".rstrip() for output, value in each)
+    return f"error of one integration step a sample, by halving it: {told}"

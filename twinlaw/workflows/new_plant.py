@@ -3,31 +3,27 @@
 import builtins
 import keyword
 import re
-from collections.abc import Mapping
 from importlib.util import find_spec
-from pathlib import Path
 
 from records.errors import BadInput
+from sim.plants import MODELS
 from toolchain.templates import text_templates
 from twinlaw.templates import TEMPLATES
 
 WINDOWS_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
-FILES: Mapping[str, str] = {"sim/plants/{}.py": "plant.py.j2", "plants/{}.toml": "plant.toml.j2"}
 
 
-def plant_files(name: str) -> dict[Path, str]:
-    """Path inside the project -> text of a new plant's files; raises BadInput where `name` cannot be a plant's."""
+def plant_texts(name: str) -> dict[str, str]:
+    """File name -> text of a new plant's folder; raises BadInput where `name` cannot be a plant's."""
     _check(name)
     templates = text_templates(TEMPLATES)
     title = name.replace("_", " ").capitalize()
-    return {
-        Path(path.format(name)): templates.get_template(file).render(name=name, title=title)
-        for path, file in FILES.items()
-    }
+    files = {f"{name}.py": "plant.py.j2", "plant.toml": "plant.toml.j2"}
+    return {file: templates.get_template(text).render(name=name, title=title) for file, text in files.items()}
 
 
 def _check(name: str) -> None:
-    """Raise BadInput unless a module of this name is possible and hides nothing else, in its folder as little as in the register."""
+    """Raise BadInput unless a module of this name is possible and hides nothing else in its folder."""
     if not re.fullmatch(r"[a-z][a-z0-9_]{,63}", name) or keyword.iskeyword(name):
         got = repr(name) if len(name) <= 40 else f"{name[:40]!r} and so on, {len(name)} characters"
         expected = "a Python module's name: small letters, digits and _, a letter first, 64 at most"
@@ -38,8 +34,6 @@ def _check(name: str) -> None:
     if keyword.issoftkeyword(name) or hasattr(builtins, name) or find_spec(name) is not None:
         got, remedy = f"{name!r}, which means something else in Python here", f"write my_{name}, say"
         raise BadInput("name of a plant", "new-plant", got, "a name of its own", remedy)
-
-
-def rows_to_add(name: str) -> tuple[str, str]:
-    """The import and the row that make sim/plants/__init__.py know a plant."""
-    return f"    {name},", f'    "{name}": {name}.model,'
+    if name in MODELS:
+        got, remedy = f"{name!r}, a plant that twinlaw comes with", f"write my_{name}, say"
+        raise BadInput("name of a plant", "new-plant", got, "a name of its own", remedy)

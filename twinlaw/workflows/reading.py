@@ -15,10 +15,18 @@ def load_bound(path: Path) -> BoundPlant:
     return bind(load_plant(path))
 
 
-def load_known_log(path: Path) -> RunLog:
-    """Read a run log of any plant that the table of models has; raises BadInput."""
+def load_known_log(path: Path, bound: BoundPlant | None = None) -> RunLog:
+    """Read a run log of `bound`, or of any plant that the table of models has; raises BadInput."""
     plant = plant_of_log(path)
+    if bound is not None and plant == bound.nominal.name:
+        return load_log(path, log_columns(bound.nominal))
     if plant not in MODELS:
         where = f"{path.with_suffix('.toml')}: plant"
-        raise BadInput("plant", where, repr(plant), f"one of {', '.join(MODELS)}", "name a known plant")
+        raise BadInput(
+            "plant",
+            where,
+            repr(plant),
+            f"one of {', '.join(MODELS)}",
+            "name a known plant, or give the plant file of your own with --plant",
+        )
     return load_log(path, log_columns(MODELS[plant]()))

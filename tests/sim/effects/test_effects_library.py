@@ -118,7 +118,7 @@ def test_an_effect_that_needs_a_grid_has_one_or_acts_at_a_time(model: Model) -> 
 
 
 def test_coefficients_of_all_effects_together_have_names_of_their_own(model: Model) -> None:
-    together = model_with(model.name, tuple(effects_for(model)))
+    together = model_with(model, tuple(effects_for(model)))
     names = [str(symbol) for symbol in (*together.parameter_symbols, *together.states, *together.inputs)]
     assert len(set(names)) == len(names)
     assert all(name.isidentifier() for name in names)
@@ -152,9 +152,9 @@ def test_a_nominal_parameter_that_does_the_same_is_one_of_the_plant(model: Model
 
 
 def test_the_same_set_in_any_order_is_the_same_object() -> None:
-    one = model_with("ce150", ("azimuth.tilt", "elevation.coulomb", "loop.delay"))
-    assert one is model_with("ce150", ("elevation.coulomb", "azimuth.tilt"))
-    assert model_with("ce150", ()) is MODELS["ce150"]()
+    one = model_with(MODELS["ce150"](), ("azimuth.tilt", "elevation.coulomb", "loop.delay"))
+    assert one is model_with(MODELS["ce150"](), ("elevation.coulomb", "azimuth.tilt"))
+    assert model_with(MODELS["ce150"](), ()) is MODELS["ce150"]()
 
 
 def test_what_arrives_of_an_input_is_known_to_be_real(model: Model) -> None:

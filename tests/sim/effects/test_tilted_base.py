@@ -12,7 +12,7 @@ M, PHI_0, E = effects_for(MODELS["ce150"]())["azimuth.tilt"].symbols
 
 def torques() -> tuple[sympy.Expr, sympy.Expr]:
     """What the tilt adds to the elevation and to the azimuth."""
-    nominal, tilted = MODELS["ce150"](), model_with("ce150", ("azimuth.tilt",))
+    nominal, tilted = MODELS["ce150"](), model_with(MODELS["ce150"](), ("azimuth.tilt",))
     more = [sympy.expand(b.torque - a.torque) for a, b in zip(nominal.axes, tilted.axes, strict=True)]
     return more[0], more[1]
 

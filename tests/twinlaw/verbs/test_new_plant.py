@@ -1,8 +1,6 @@
-"""`twinlaw new-plant`: what it writes is a plant that works as it is."""
+"""`twinlaw new-plant`: what it writes is a plant that works as it is, in a folder anywhere."""
 
-import importlib.util
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,34 +9,15 @@ import pytest
 from records.plant import load_plant
 from sim.added_effects import library
 from sim.bind import BoundPlant, bind
-from sim.plants import MODELS
 from sim.simulate import simulate
 from twinlaw.command import main
 
-REGISTER = "sim/plants/__init__.py"
-
 
 @pytest.fixture
-def project(tmp_path: Path) -> Path:
-    """A folder that looks like a checkout."""
-    (tmp_path / "sim" / "plants").mkdir(parents=True)
-    (tmp_path / "plants").mkdir()
-    (tmp_path / REGISTER).write_text("MODELS = {}\n", encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def arm(project: Path, monkeypatch: pytest.MonkeyPatch) -> BoundPlant:
-    """The plant that the two files make once the register knows it."""
-    assert main(["new-plant", "my_arm", "--project", str(project)]) == 0
-    spec = importlib.util.spec_from_file_location("my_arm", project / "sim" / "plants" / "my_arm.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "my_arm", module)
-    spec.loader.exec_module(module)
-    monkeypatch.setitem(MODELS, "my_arm", module.model)  # type: ignore[arg-type]
-    return bind(load_plant(project / "plants" / "my_arm.toml"))
+def arm(tmp_path: Path) -> BoundPlant:
+    """The plant that the two files make."""
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "arm")]) == 0
+    return bind(load_plant(tmp_path / "arm" / "plant.toml"))
 
 
 def test_the_arm_swings_as_its_equation_says(arm: BoundPlant) -> None:
@@ -57,59 +36,54 @@ def test_the_library_has_effects_for_it(arm: BoundPlant) -> None:
     assert {"arm.coulomb", "input.deadzone", "theta_sensor.backlash"} <= set(library(arm))
 
 
-def test_a_program_is_told_files_and_rows(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["new-plant", "crane", "--project", str(project), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [Path(path).is_file() for path in told["files"]] == [True, True]
-    assert told["rows"] == ["    crane,", '    "crane": crane.model,']
+def test_a_program_is_told_the_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # without --out: a folder of the plant's name
+    assert main(["new-plant", "crane", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"files": ["crane/crane.py", "crane/plant.toml"]}
+    assert sorted(path.name for path in (tmp_path / "crane").iterdir()) == ["crane.py", "plant.toml"]
+
+
+def refused(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """The line of the error; nothing is left behind."""
+    assert main(["new-plant", name, "--out", str(folder / "out")]) == 2
+    assert list(folder.iterdir()) == []
+    return capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["My arm", "2arm", "class", "", "..", "../x", "arm\n", "a" * 65, "a" * 300 + "!"])
 def test_a_name_that_no_module_can_have_is_refused(
-    name: str, project: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["new-plant", name, "--project", str(project)]) == 2
-    assert "name of a plant" in capsys.readouterr().err
-    assert list((project / "plants").iterdir()) == []
+    assert "name of a plant" in refused(name, tmp_path, capsys)
 
 
-@pytest.mark.parametrize("name", ["numpy", "sympy", "sim", "records", "test", "math", "list", "match"])
-def test_a_name_that_hides_a_module_or_a_word_of_python_is_refused(
-    name: str, project: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("name", ["numpy", "sympy", "sim", "records", "test", "math", "list", "match", "ce150"])
+def test_a_name_that_hides_a_module_a_word_or_a_plant_is_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    # A file begun in its own folder, as editors do, would import sim/plants/numpy.py where it asks for NumPy.
-    assert main(["new-plant", name, "--project", str(project)]) == 2
-    assert f"write my_{name}" in capsys.readouterr().err
-    assert list((project / "plants").iterdir()) == []
+    # A file begun in its own folder, as editors do, would import numpy.py where it asks for NumPy.
+    assert f"write my_{name}" in refused(name, tmp_path, capsys)
 
 
 @pytest.mark.parametrize("name", ["con", "nul", "aux", "prn", "com1", "lpt9"])
 def test_a_name_that_no_file_can_have_on_windows_is_refused(
-    name: str, project: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     # con.toml is the console there, whatever its ending: a checkout with such a file cannot be cloned.
-    assert main(["new-plant", name, "--project", str(project)]) == 2
-    assert f"write my_{name}" in capsys.readouterr().err
-    assert list((project / "plants").iterdir()) == []
+    assert f"write my_{name}" in refused(name, tmp_path, capsys)
 
 
-def test_a_second_file_that_cannot_be_written_leaves_none(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (project / "plants").rmdir()
-    (project / "plants").write_text("a file where the folder should be", encoding="utf-8")
-    assert main(["new-plant", "crane", "--project", str(project)]) == 2
-    assert "crane.toml" in capsys.readouterr().err
-    assert not (project / "sim" / "plants" / "crane.py").exists()
+@pytest.mark.parametrize("mine", ["crane.py", "plant.toml"])
+def test_what_is_there_is_not_touched(mine: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / mine).write_text("mine", encoding="utf-8")
+    assert main(["new-plant", "crane", "--out", str(tmp_path)]) == 2
+    assert mine in capsys.readouterr().err
+    assert [path.read_text(encoding="utf-8") for path in tmp_path.iterdir()] == ["mine"]
 
 
-def test_what_is_there_is_not_touched(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    mine = project / "plants" / "crane.toml"
-    mine.write_text("mine", encoding="utf-8")
-    assert main(["new-plant", "crane", "--project", str(project)]) == 2
-    assert mine.read_text(encoding="utf-8") == "mine"
-    assert not (project / "sim" / "plants" / "crane.py").exists()
-
-
-def test_a_folder_that_is_no_checkout_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["new-plant", "crane", "--project", str(tmp_path)]) == 2
-    assert "checkout" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
+def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "out").write_text("a file where the folder should be", encoding="utf-8")
+    assert main(["new-plant", "crane", "--out", str(tmp_path / "out")]) == 2
+    assert "crane.py" in capsys.readouterr().err

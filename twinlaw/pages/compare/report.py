@@ -27,7 +27,10 @@ def page_text(
             command=command,
             out=out,
             rows=[
-                {"name": row.row.name, "title": row.row.title, "source": row.row.source, "digest": row.digest}
+                {
+                    **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
+                    "digest": row.digest,
+                }
                 for row in rows
             ],
             notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],

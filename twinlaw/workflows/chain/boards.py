@@ -4,6 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from controllers import loading
+from design.structure import demand_helicopter
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.validation import Validation
@@ -72,7 +73,11 @@ def validate_board(client: BoardClient, table: FlownTable, port: str, steps: int
 
 
 def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> ChainFlight:
-    """Fly the plant with the board in the loop, angles to the board and voltages back, one frame each per sample."""
+    """Fly the plant with the board in the loop, angles to the board and voltages back, one frame each per sample.
+
+    Raises BadInput for a plant without a helicopter's columns.
+    """
+    demand_helicopter(bound)
     whole = flight(bound, table.sample_period_s)
     with tally("flying the firmware through its serial line", whole.t_s.size) as tell:
         controller = BoardController(client, lambda: tell(False, False))

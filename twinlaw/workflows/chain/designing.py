@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from controllers import loading
+from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
@@ -34,24 +35,38 @@ class Designed:
 
 def design_controller(plant: Path, arithmetic: str = "float32") -> Designed:
     """Design at all operating points, fit, and judge as flown in `arithmetic`; raises BadInput for an unusable plant or table."""
-    with stage("designing at the operating points, fitting, judging"), _computable(plant):
+    with _computable(str(plant)):
         bound = load_bound(plant)
+    return design_plant(bound, arithmetic, str(plant))
+
+
+def design_plant(bound: BoundPlant, arithmetic: str = "float32", where: str = "") -> Designed:
+    """The same for a plant that is loaded, told as `where`."""
+    with stage("designing at the operating points, fitting, judging"), _computable(where or bound.plant.name):
         table, report = design(bound, read_settings(bound), ARITHMETICS[arithmetic].rounding)
     return Designed(bound, table, report)
 
 
 def design_other(plant: Path, name: str, arithmetic: str = "float32") -> LawTable[Any]:
     """The table of a controller that is not the scheduled law; raises BadInput for a plant that it cannot be designed for."""
-    row = CONTROLLERS[name]
     loading.demand_arithmetic(name, arithmetic)
-    with stage(f"designing {row.title}"), _computable(plant):
+    with _computable(str(plant)):
         bound = load_bound(plant)
+    return design_other_on(bound, name, str(plant))
+
+
+def design_other_on(bound: BoundPlant, name: str, where: str = "") -> LawTable[Any]:
+    """The same for a plant that is loaded, told as `where`."""
+    row = CONTROLLERS[name]
+    with stage(f"designing {row.title}"), _computable(where or bound.plant.name):
         table: LawTable[Any] = row.design(bound, read_settings(bound))
+        if isinstance(table, LawTable):  # the scheduled law's margins are judged where it is designed
+            demand_settling(bound, table, row.float_law(table), row.plants)
     return table
 
 
 @contextlib.contextmanager
-def _computable(plant: Path) -> Iterator[None]:
+def _computable(where: str) -> Iterator[None]:
     """Raise BadInput naming the plant where its numbers overflow, or leave nothing to solve."""
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
@@ -59,7 +74,7 @@ def _computable(plant: Path) -> Iterator[None]:
     except (ArithmeticError, np.linalg.LinAlgError, VerificationFailed) as error:
         got = f"numbers that cannot be computed with ({error})"
         remedy = "look for a wrong power of ten among the parameters"
-        raise BadInput("plant", str(plant), got, "magnitudes of a rig, in SI units", remedy) from error
+        raise BadInput("plant", where, got, "magnitudes of a rig, in SI units", remedy) from error
 
 
 def poles_of(report: DesignReport) -> tuple[PoleMigration, ...]:

@@ -4,13 +4,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from controllers import loading
+from design.structure import demand_helicopter
 from records.law_table import FlownTable
 from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
+from sim.columns import log_columns
 from sim.halving import StepError, step_error
 from sim.loop import fly, fly_law
-from sim.manoeuvres import flight
+from sim.manoeuvres import flight, stir
+from sim.simulate import simulate
 from sim.tracking import Tracking, tracking
 from twinlaw.cli.console import stage
 from verification.flown_law import FlownLaw
@@ -27,7 +30,8 @@ class ChainFlight:
 
 
 def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
-    """Fly the plant under the table's law in double precision."""
+    """Fly the plant under the table's law in double precision; raises BadInput for a plant without a helicopter's columns."""
+    demand_helicopter(bound)
     whole = flight(bound, table.sample_period_s)
     with stage("flying the law in double precision"):
         if isinstance(table, ControllerTable):
@@ -37,8 +41,19 @@ def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
     return ChainFlight(log, tracked(log), {})
 
 
+def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
+    """A run of the plant without a loop, every input changed in steps, and the error of its integration."""
+    moved = stir(bound)
+    with stage("stirring the plant without a loop"):
+        run = simulate(bound, moved.t_s, moved.x0, moved.u, keep="y")
+        error = step_error(bound, moved.t_s, moved.x0, moved.u)
+    assert run.y is not None
+    return RunLog(log_columns(bound.model), float(moved.t_s[1]), "open", moved.t_s, moved.u, run.y), error
+
+
 def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlight:
-    """Fly the plant under the table's generated law, compiled for this computer."""
+    """Fly the plant under the table's generated law, compiled for this computer; raises BadInput as `fly_double` does."""
+    demand_helicopter(bound)
     law = HostLaw(loading.generate(table, arithmetic), arithmetic)
     with stage(f"flying the generated law in {arithmetic}"):
         log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)

@@ -132,7 +132,7 @@ def recorded_replay(
 
     What the log lacks, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not compared.
     """
-    log = load_known_log(path)
+    log = load_known_log(path, bound)
     replay = replay_of(log, table, path, arithmetic)
     if replay.sent is None or not has_replayable_columns(log):
         return replay, None

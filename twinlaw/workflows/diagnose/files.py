@@ -12,7 +12,7 @@ from diagnosis.validate.closed_loop import MODEL_VARIANTS
 from diagnosis.validate.shrinkage import Predicted
 from records.diagnosis import diagnosis_text
 from records.files import demand_writable
-from records.plant import plant_text
+from records.plant import plant_files
 from records.text.log_csv import rows_text
 from records.text.units import unit_suffix
 from sim.added_effects import library
@@ -28,7 +28,7 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
     predictions = {f"prediction-{log.name}.csv": prediction_text(log, outputs) for log in _by_log(result.predicted)}
     return {
         **predictions,
-        "plant.toml": plant_text(result.plant),
+        **plant_files(result.plant),
         ANSWER: diagnosis_text(result.diagnosis),
         "report.html": page_text(_page(result, logs)),
     }

@@ -27,8 +27,12 @@ def read_material(plant: Path, logs: Sequence[Path], holdout: Sequence[Path]) ->
     """What a diagnosis begins with; raises BadInput where plant or logs cannot be used."""
     keep_freed_memory()
     bound = bind(load_plant(plant))
-    nominal = without_effects(bound) if bound.effects else bound
-    return bound, _material(nominal, logs, holdout)
+    return bound, material_of(bound, logs, holdout)
+
+
+def material_of(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:
+    """The same of a plant that is loaded; raises BadInput where the logs cannot be used."""
+    return _material(without_effects(bound) if bound.effects else bound, logs, holdout)
 
 
 def _material(bound: BoundPlant, logs: Sequence[Path], holdout: Sequence[Path]) -> Material:

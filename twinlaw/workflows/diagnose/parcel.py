@@ -3,11 +3,12 @@
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from records.errors import BadInput
+from records.text.reading import read_toml
 from replay.table import TABLE_NAME
 from twinlaw.workflows.diagnose.questions import Question
 
@@ -25,7 +26,7 @@ class Parcel:
 def parcel(asked: Question) -> Parcel:
     """Read all files of a question; one that cannot be read is left to be missed by who needs it. Raises BadInput without its plant."""
     try:
-        files = {f"plant/{asked.plant.name}": asked.plant.read_bytes()}
+        files = {f"plant/{path.name}": path.read_bytes() for path in _plant_paths(asked.plant)}
     except OSError as error:
         got = error.strerror or str(error)
         raise BadInput("plant file", str(asked.plant), got, "a readable file", "check the path") from error
@@ -37,6 +38,15 @@ def parcel(asked: Question) -> Parcel:
                 files[f"{place}/{part.name}"] = part.read_bytes()
     split = len(asked.logs)
     return Parcel(f"plant/{asked.plant.name}", tuple(names[:split]), tuple(names[split:]), files)
+
+
+def _plant_paths(plant: Path) -> list[Path]:
+    """The plant file and, where it is there, that of its own equations; what is wrong with either is told by who reads it."""
+    with suppress(BadInput):
+        stated = read_toml(plant, "plant file").get("equations")
+        if isinstance(stated, str) and Path(stated).name == stated and (plant.parent / stated).is_file():
+            return [plant, plant.parent / stated]
+    return [plant]
 
 
 @contextmanager

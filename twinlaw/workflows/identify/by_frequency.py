@@ -26,7 +26,7 @@ from identification.runs.run import coefficient_names
 from records.errors import BadInput
 from records.files import write_atomic
 from records.log import LogColumns, RunLog, load_log
-from records.plant import Plant, load_plant, plant_text
+from records.plant import Plant, load_plant, save_plant
 from records.quality import Quality, quality_facts
 from sim.bind import BoundPlant, bind
 from sim.columns import log_columns as plant_columns
@@ -69,7 +69,7 @@ def identify_by_frequency(chosen: argparse.Namespace, holdout: Sequence[Path]) -
             else _operating_point(chosen, holdout, bind(plant), true, so_far.told)
         )
     found = done.found
-    write_atomic(chosen.out / "plant.toml", plant_text(found.result.plant))
+    save_plant(chosen.out / "plant.toml", found.result.plant)
     content = frequency_facts(found) | quality_of(frequency_quality(found, done.truth), done.truth)
     write_atomic(chosen.out / "identification.json", json.dumps(content, indent=1) + "\n")
     plots = pictures(found, done.truth, done.flown)

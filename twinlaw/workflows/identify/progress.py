@@ -11,7 +11,7 @@ from identification.results.facts import facts
 from identification.results.result import Identification, identification, interrupted
 from identification.stages.estimate import Estimate
 from records.files import write_atomic
-from records.plant import Plant, plant_text
+from records.plant import Plant, save_plant
 from twinlaw.cli import console
 
 Save = Callable[[Identification], None]
@@ -80,5 +80,5 @@ def told_files(folder: Path) -> str:
 
 def save_result(folder: Path, result: Identification) -> None:
     """DIR/plant.toml and DIR/identification.json."""
-    write_atomic(folder / "plant.toml", plant_text(result.plant))
+    save_plant(folder / "plant.toml", result.plant)
     write_atomic(folder / "identification.json", json.dumps(facts(result), indent=1) + "\n")

@@ -1,0 +1,75 @@
+"""A controller holds the plant that it is designed for, from its operating point on; what does not is refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from controllers.settling import demand_settling
+from controllers.table import CONTROLLERS
+from design.settings import read_settings
+from records.errors import BadInput
+from records.plant import load_plant
+from sim.bind import bind
+from sim.equilibrium import equilibrium
+from sim.loop import fly
+from sim.manoeuvres import Leg, manoeuvre
+from sim.tracking import Tracking, left
+from tests.controllers.rows import designed
+from twinlaw.command import main
+
+CE150 = bind(load_plant(Path("plants/ce150.toml")))
+
+
+@pytest.mark.parametrize("angle_deg", [-30.0, 20.0])
+def test_lqg_starts_from_the_operating_point(angle_deg: float) -> None:
+    # Truth: at rest the input is the feed-forward; its fit over the elevation is right to 0.05 V, which moves the arm by less than 0.1 deg.
+    row, table = designed("lqg")
+    point = equilibrium(CE150, float(np.radians(angle_deg)))
+    legs = ((Leg(0.0, angle_deg),), (Leg(0.0, 0.0),))
+    log = fly(CE150, row.float_law(table), manoeuvre("hold", point.x0, 2.0, table.sample_period_s, legs))
+    assert log.u[0] == pytest.approx(point.u0, abs=0.05)
+    assert np.degrees(np.abs(log.y - log.y[0])).max() < 0.1
+
+
+@pytest.mark.parametrize("name", ["pid", "lqg"])
+def test_what_holds_its_plant_is_given_out(name: str) -> None:
+    row, table = designed(name)
+    demand_settling(CE150, table, row.float_law(table), row.plants)
+
+
+def test_what_does_not_hold_its_plant_is_refused() -> None:
+    # Truth: with its gains' sign turned, every controller pushes the arm away from its reference.
+    row, table = designed("pid")
+    gains = table.elevation.gains
+    turned = replace(gains, k_p_V_rad=-gains.k_p_V_rad, k_i_Ts_V_rad=0.0, k_d_Tf_V_rad=-gains.k_d_Tf_V_rad)
+    wrong = replace(table, elevation=replace(table.elevation, gains=turned))
+    with pytest.raises(BadInput, match="elevation that is"):
+        demand_settling(CE150, wrong, row.float_law(wrong), row.plants)
+
+
+def test_the_fuzzy_controllers_are_refused_where_they_do_not_hold(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ["design", "--plant", "plants/ce150_velagic.toml", "--controller", "fuzzy", "--out", str(tmp_path)]
+    assert main(asked) == 2
+    assert "stability" in capsys.readouterr().err
+    assert not (tmp_path / "controller.json").exists()
+
+
+def test_every_controller_says_for_which_plants_it_is() -> None:
+    for row in CONTROLLERS.values():
+        assert "ce150" in row.plants
+    aeroshield = bind(load_plant(Path("plants/aeroshield.toml")))
+    with pytest.raises(BadInput, match="without the input u_M_V"):
+        read_settings(aeroshield)
+
+
+def test_a_flight_that_left_its_references_is_told() -> None:
+    near = Tracking("psi_rad", 3, 0.2, 0.02, 0.01, 0.3)
+    far, wild = replace(near, steady_error_rad=0.25), replace(near, overshoot=1.5)
+    assert left([near]) == ()
+    assert left([near, far]) == ("psi_rad by 17.2 deg",)
+    assert left([wild, replace(near, steady_error_rad=float("nan"))]) != ()
+    assert len(left([wild, replace(near, steady_error_rad=float("nan"))])) == 2

@@ -1,0 +1,46 @@
+"""The page on the Python functions does what it says, and names all of them."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+import twinlaw
+from tests.docs.test_new_plant import run
+from tests.test_project import ROOT
+from twinlaw.command import main
+
+PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
+SHOWN_ELSEWHERE = "within 0 sd of the true value"  # of the block whose output the page leaves out
+
+
+def test_the_page_names_every_function() -> None:
+    for name in twinlaw.__all__:
+        assert f"`{name}`" in PAGE
+        assert callable(getattr(twinlaw, name))
+    with pytest.raises(AttributeError, match="no attribute 'crash'"):
+        twinlaw.crash  # noqa: B018
+
+
+def test_a_log_of_records_is_one_of_files(tmp_path: Path) -> None:
+    # Truth: the same numbers in, the same numbers out, whether a log is a record or a file.
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path)]) == 0
+    arm = twinlaw.load(tmp_path / "plant.toml")
+    log = twinlaw.fly(arm)
+    assert main(["simulate", "--plant", str(tmp_path / "plant.toml"), "--out", str(tmp_path)]) == 0
+    found, again = (twinlaw.identify(arm, logs) for logs in ({"run": log}, [tmp_path / "simulation.csv"]))
+    assert [entry.value for entry in found.estimates] == [entry.value for entry in again.estimates]
+    assert {entry.name for entry in found.estimates} == {"J", "K", "b", "tau_g"}
+
+
+@pytest.mark.soak
+def test_every_block_of_the_page_works_in_its_order(tmp_path: Path) -> None:
+    blocks = BLOCK.findall(PAGE)
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "my_arm")]) == 0
+    program = "".join(text for language, text in blocks if language == "python")
+    printed = run([sys.executable, "-W", "error", "-"], tmp_path, program)
+    shown = [line for line in printed.splitlines(keepends=True) if SHOWN_ELSEWHERE not in line]
+    assert "".join(shown) == "".join(text for language, text in blocks if language == "text")
+    assert printed.count(SHOWN_ELSEWHERE) == 4

@@ -1,0 +1,222 @@
+"""Plants of one's own for the tests: folders of two files, each with something that the project's own plants have not."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+HEAD = '''"""{name}, made for a test."""
+
+from functools import cache
+
+import sympy
+
+from sim.model import Axis, Model, ParameterSpec, named_symbols, symbol
+from sim.places import AxisPlace, InputPlace, Places, RotorPlace, SensorPlace
+
+'''
+
+
+@dataclass(frozen=True)
+class OwnPlant:
+    """Parameters (value, sd, unit) by name, the steps of the sensors by output, and the body of `model()`, where p are the parameters."""
+
+    parameters: Mapping[str, tuple[float, float, str]]
+    sensors: Mapping[str, float]
+    body: str
+
+    def write(self, folder: Path, name: str) -> Path:
+        """Both files in `folder`; the path of plant.toml."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.py").write_text(self.equations(name), encoding="utf-8")
+        (folder / "plant.toml").write_text(self.toml(name), encoding="utf-8")
+        return folder / "plant.toml"
+
+    def equations(self, name: str) -> str:
+        specs = "".join(
+            f'    ParameterSpec("{parameter}", 1, "{unit}", "{"positive" if value > 0.0 else "any"}"),\n'
+            for parameter, (value, _, unit) in self.parameters.items()
+        )
+        body = "".join(f"    {line}\n" if line else "\n" for line in self.body.strip().splitlines())
+        start = "\n\n@cache\ndef model() -> Model:\n    p = named_symbols(PARAMETERS)\n"
+        return f"{HEAD.format(name=name)}PARAMETERS = (\n{specs})\n{start}{body.replace('NAME', name)}"
+
+    def toml(self, name: str) -> str:
+        entries = "".join(
+            f'\n[parameters.{parameter}]\nvalue = {value}\nsd = {sd}\nunit = "{unit}"\nsource = "a test"\n'
+            for parameter, (value, sd, unit) in self.parameters.items()
+        )
+        sensors = "".join(
+            f"\n[sensors.{output}]\nresolution{_suffix(output)} = {step}\n" for output, step in self.sensors.items()
+        )
+        return f'schema = "plant/1"\nequations = "{name}.py"\n{entries}{sensors}'
+
+
+def _suffix(output: str) -> str:
+    return next((f"_{unit}" for unit in ("rad_s", "rad", "A", "V", "m") if output.endswith(f"_{unit}")), "")
+
+
+ARM = {
+    "J": (0.01, 0.001, "kg m^2"),
+    "K": (0.05, 0.005, "N m V^-1"),
+    "b": (0.02, 0.005, "N m s"),
+    "G": (0.2, 0.02, "N m"),
+}
+COIL = {"R": (2.0, 0.1, "V A^-1"), "L": (0.1, 0.01, "V s A^-1")}
+
+NO_AXIS = OwnPlant(
+    COIL,
+    {"i_A": 1e-3},
+    """
+i, u = symbol("i_A"), symbol("u_V")
+return Model(
+    name="NAME", states=(i,), inputs=(u,), outputs={"i_A": i}, parameters=PARAMETERS,
+    rates={i: (u - p["R"] * i) / p["L"]}, axes=(), input_limits={u: (-12, 12)},
+    places=Places(inputs={"input": InputPlace(u, "V", 12.0)}, sensors={"i_sensor": SensorPlace("i_A", "A", 6.0)}),
+)
+""",
+)
+
+_ARM = """
+theta, omega, u = symbol("theta_rad"), symbol("omega_rad_s"), symbol("u_V")
+torque = p["K"] * u - p["b"] * omega - p["G"] * sympy.sin(theta)
+return Model(
+    name="NAME", states=(theta, omega), inputs=(u,), outputs={"theta_rad": theta}, parameters=PARAMETERS,
+    rates={theta: omega}, axes=(Axis("arm", theta, omega, p["J"], torque, 0, None, None),),
+    input_limits={u: (-10, 10)},
+    places=Places(
+        inputs={"input": InputPlace(u, "V", 10.0)},
+        axes={"arm": AxisPlace("theta_rad", "N m", 0.2, speed_size=5.0)},
+        sensors={"theta_sensor": SensorPlace("theta_rad", "rad")},
+    ),
+)
+"""
+ENCODER = {"theta_rad": 1.5e-3}
+PLAIN = OwnPlant(ARM, ENCODER, _ARM)
+RATE_ONLY = OwnPlant(
+    ARM,
+    {"omega_rad_s": 1e-2},
+    _ARM.replace('outputs={"theta_rad": theta}', 'outputs={"omega_rad_s": omega}').replace(
+        'sensors={"theta_sensor": SensorPlace("theta_rad", "rad")}',
+        'sensors={"gyro": SensorPlace("omega_rad_s", "rad s^-1")}',
+    ),
+)
+NO_PLACES = OwnPlant(ARM, ENCODER, _ARM[: _ARM.index("    places=")] + ")\n")
+NO_AXIS_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "AxisPlace" not in line))
+NO_SENSOR_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "SensorPlace" not in line))
+NO_LIMITS = OwnPlant(ARM, ENCODER, _ARM.replace("input_limits={u: (-10, 10)}", "input_limits={}"))
+ONE_LIMIT = OwnPlant(ARM, ENCODER, _ARM.replace("(-10, 10)", "(0, sympy.oo)"))
+FREE_SWING = OwnPlant(
+    {name: ARM[name] for name in ("J", "b", "G")},
+    ENCODER,
+    _ARM.replace('p["K"] * u - ', "-")
+    .replace("inputs=(u,)", "inputs=()")
+    .replace("{u: (-10, 10)}", "{}")
+    .replace('        inputs={"input": InputPlace(u, "V", 10.0)},\n', "")
+    .replace("theta, omega, u = ", "theta, omega = ")
+    .replace(', symbol("u_V")\n', "\n"),
+)
+GRAVITY = OwnPlant(
+    ARM,
+    ENCODER,
+    _ARM.replace("speed_size=5.0", 'speed_size=5.0, gravity=-p["G"] * sympy.sin(theta), gravity_moment=p["G"]'),
+)
+NO_MOMENT = OwnPlant(ARM, ENCODER, GRAVITY.body.replace(', gravity_moment=p["G"]', ""))
+STOPS = OwnPlant(ARM, ENCODER, _ARM.replace("torque, 0, None, None", "torque, 0, -1.0, 1.0"))
+
+# An arm that tips, on a post that turns: rotors called as nobody else calls them, and the post level beside the arm.
+TWO_AXES = OwnPlant(
+    {
+        **ARM,
+        "I": (0.02, 0.002, "kg m^2"),
+        "c": (0.02, 0.005, "N m s"),
+        "Q": (0.04, 0.004, "N m V^-1"),
+        "T": (0.2, 0.02, "s"),
+    },
+    {"psi_rad": 1.5e-3, "phi_rad": 1.5e-3},
+    """
+w, psi, r, phi, q = (symbol(n) for n in ("w_V", "psi_rad", "psi_dot_rad_s", "phi_rad", "phi_dot_rad_s"))
+a, s = symbol("u_lift_V"), symbol("u_swing_V")
+gravity = -p["G"] * sympy.cos(psi)
+lift = p["K"] * w
+return Model(
+    name="NAME", states=(w, psi, r, phi, q), inputs=(a, s), outputs={"psi_rad": psi, "phi_rad": phi},
+    parameters=PARAMETERS, rates={w: (a - w) / p["T"], psi: r, phi: q},
+    axes=(
+        Axis("boom", psi, r, p["J"], lift + gravity - p["b"] * r, 0, -0.8, 0.8),
+        Axis("post", phi, q, p["I"], p["Q"] * s - p["c"] * q, 0, None, None),
+    ),
+    input_limits={a: (0, 10), s: (-10, 10)},
+    places=Places(
+        inputs={"lift_input": InputPlace(a, "V", 10.0), "swing_input": InputPlace(s, "V", 10.0)},
+        rotors={
+            "north": RotorPlace(a, "N", w, 10.0, {"boom": lift}, 10.0, drive=a / p["T"], linear=True),
+            "south": RotorPlace(s, "S", s, 10.0, {"post": p["Q"] * s}, 10.0, linear=True, two_way=True),
+        },
+        axes={
+            "boom": AxisPlace("psi_rad", "N m", 0.2, gravity=gravity, gravity_moment=p["G"], spun_by="south"),
+            "post": AxisPlace("phi_rad", "N m", 0.2, level=True, spun_by="north"),
+        },
+        sensors={"psi_sensor": SensorPlace("psi_rad", "rad"), "phi_sensor": SensorPlace("phi_rad", "rad")},
+    ),
+)
+""",
+)
+LEVEL_ALONE = OwnPlant(ARM, ENCODER, _ARM.replace("speed_size=5.0", "speed_size=5.0, level=True"))
+NO_ROTORS = OwnPlant(
+    TWO_AXES.parameters,
+    TWO_AXES.sensors,
+    TWO_AXES.body.replace(
+        TWO_AXES.body[TWO_AXES.body.index("        rotors={") : TWO_AXES.body.index("        axes={")], ""
+    )
+    .replace(', spun_by="south"', "")
+    .replace(', spun_by="north"', ""),
+)
+
+# A motor that turns a load through a spring: the state between them is the angle of the one against the other.
+ELASTIC = OwnPlant(
+    {**ARM, "I": (0.01, 0.001, "kg m^2"), "k": (1.0, 0.1, "N m rad^-1")},
+    ENCODER,
+    """
+theta, omega, delta, w = (symbol(n) for n in ("theta_rad", "omega_rad_s", "delta_rad", "w_rad_s"))
+u = symbol("u_V")
+spring = p["k"] * delta
+return Model(
+    name="NAME", states=(theta, omega, delta, w), inputs=(u,), outputs={"theta_rad": theta}, parameters=PARAMETERS,
+    rates={theta: omega, delta: w - omega},
+    axes=(
+        Axis("motor", theta, omega, p["J"], p["K"] * u - p["b"] * omega + spring - 0 * p["G"], 0, None, None),
+        Axis("load", delta, w, p["I"], -spring - p["b"] * w, 0, None, None),
+    ),
+    input_limits={u: (-10, 10)},
+    places=Places(
+        inputs={"input": InputPlace(u, "V", 10.0)},
+        axes={
+            "motor": AxisPlace("theta_rad", "N m", 0.2, speed_size=5.0),
+            "load": AxisPlace("delta_rad", "N m", 0.2, speed_size=5.0),
+        },
+        sensors={"theta_sensor": SensorPlace("theta_rad", "rad")},
+    ),
+)
+""",
+)
+
+WORKING: Mapping[str, OwnPlant] = {
+    "coil": NO_AXIS,
+    "plain": PLAIN,
+    "rate_only": RATE_ONLY,
+    "no_sensor_place": NO_SENSOR_PLACE,
+    "no_limits": NO_LIMITS,
+    "one_limit": ONE_LIMIT,
+    "free_swing": FREE_SWING,
+    "gravity": GRAVITY,
+    "stops": STOPS,
+    "two_axes": TWO_AXES,
+    "no_rotors": NO_ROTORS,
+    "elastic": ELASTIC,
+}
+REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
+    "no_places": (NO_PLACES, "no place"),
+    "no_axis_place": (NO_AXIS_PLACE, "no place"),
+    "no_moment": (NO_MOMENT, "gravity without gravity_moment"),
+    "level_alone": (LEVEL_ALONE, "no axis beside it that gravity turns"),
+}

@@ -1,0 +1,145 @@
+"""Equations of one's own: a file beside the plant file, every slip of which is told with its line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jobs.job import canonical
+from records.errors import BadInput
+from records.plant import Equations, load_plant, plant_digest, save_plant
+from sim.bind import bind
+from sim.equations import nominal_model
+from sim.equations.check import RULES
+from sim.manoeuvres import stir
+from sim.plants import MODELS
+from sim.simulate import simulate
+from tests.own_plants import PLAIN, REFUSED
+
+NAME = "my_plain"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """The two files of a plain arm, in a folder that no module path knows."""
+    PLAIN.write(tmp_path / "anywhere", NAME)
+    return tmp_path / "anywhere"
+
+
+def edited(folder: Path, old: str, new: str) -> str:
+    """One text of the equations replaced; the line on which it stands."""
+    path = folder / f"{NAME}.py"
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    return f"line {text[: text.index(old)].count(chr(10)) + 1}"
+
+
+SLIPS = {
+    "a slip of syntax": ("return Model(", "return Model((", "no Python"),
+    "an unknown name": ('p["K"] * u', 'p["K"] * v', "NameError"),
+    "an unknown parameter": ('p["K"] * u', 'p["KK"] * u', "KeyError"),
+    "an exception while the model is made": ('p["K"] * u', "1 / 0 * u", "ZeroDivisionError"),
+    "a module that is not there": ("import sympy", "import sympy, my_constants", "must be installed, or stand in it"),
+    "an end of the program": ("import sympy", "import sympy; raise SystemExit(3)", "SystemExit: 3"),
+    "one symbol instead of a tuple": ("inputs=(u,)", "inputs=(u)", "inputs=(A,)"),
+    "a list instead of a tuple": ("states=(theta, omega)", "states=[theta, omega]", "a tuple"),
+    "a matrix where a number belongs": ("rates={theta: omega}", "rates={theta: sympy.eye(2)}", "one number or SymPy"),
+    "a symbol that nothing declares": ("rates={theta: omega}", 'rates={theta: symbol("w")}', "the unknown name w"),
+    "a symbol that is not real": ('symbol("u_V")', 'sympy.Symbol("u_V")', 'write symbol("u_V")'),
+    "a state without a rate": ("rates={theta: omega}", "rates={}", "nothing for theta_rad"),
+    "a rate of an axis' velocity": ("rates={theta: omega}", "rates={theta: omega, omega: u}", "its axis alone"),
+    "an output of an input": ('outputs={"theta_rad": theta}', 'outputs={"theta_rad": theta + u}', "take it out"),
+    "a function that no C has": ("rates={theta: omega}", "rates={theta: sympy.zeta(omega)}", "write it with these"),
+    "an axis of another velocity": ('Axis("arm", theta, omega', 'Axis("arm", theta, u', "a state: "),
+    "a limit that moves": ("input_limits={u: (-10, 10)}", "input_limits={u: (-10, theta)}", "limit of u_V"),
+    "a name of the kernel's": ('symbol("u_V")', 'symbol("dx")', "the compiled kernel"),
+    "a unit that is none": ('"kg m^2"', '"stone"', "stone"),
+    "a size of nothing": ('InputPlace(u, "V", 10.0)', 'InputPlace(u, "V", 0.0)', "a number above 0"),
+    "another name": (f'name="{NAME}"', 'name="other"', f'write name="{NAME}"'),
+    "no model": ("def model()", "def plant()", "a function model()"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "told"), SLIPS.values(), ids=SLIPS)
+def test_a_slip_is_told_with_file_and_line(old: str, new: str, told: str, folder: Path) -> None:
+    line = edited(folder, old, new)
+    with pytest.raises(BadInput) as error:
+        bind(load_plant(folder / "plant.toml"))
+    assert told in str(error.value)
+    where = error.value.where
+    assert where.startswith(str(folder / f"{NAME}.py"))
+    if new != "def plant()":
+        # A slip inside a call may be told at the line where the call, the tuple or the keyword begins.
+        assert abs(int(where.rsplit(" ", 1)[1]) - int(line.split()[1])) <= 1 or told in ("its axis alone", "no Python")
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_used_is_refused_before_anything_is_compiled(name: str, tmp_path: Path) -> None:
+    plant, told = REFUSED[name]
+    with pytest.raises(BadInput, match=told):
+        bind(load_plant(plant.write(tmp_path, f"my_{name}")))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_project_s_own_models_keep_the_rules(name: str) -> None:
+    slips = [slip for rule in RULES[:1] + RULES[2:] for slip in rule(MODELS[name](), Equations(f"{name}.py", ""))]
+    if name == "antx_2dof_drone":  # its input M, a share of the largest torque, has no unit that a name could bear
+        slips = [slip for slip in slips if slip.words != ("M",)]
+    assert slips == []
+
+
+@pytest.mark.parametrize("file", ["../my_arm.py", "my_arm", "my arm.py", "class.py", "/etc/passwd", ""])
+def test_a_file_that_is_not_beside_is_refused(file: str, folder: Path) -> None:
+    path = folder / "plant.toml"
+    path.write_text(path.read_text(encoding="utf-8").replace(f"{NAME}.py", file), encoding="utf-8")
+    with pytest.raises(BadInput, match="equations"):
+        load_plant(path)
+
+
+def test_a_missing_file_is_named(folder: Path) -> None:
+    (folder / f"{NAME}.py").unlink()
+    with pytest.raises(BadInput, match=f"{NAME}.py"):
+        load_plant(folder / "plant.toml")
+
+
+def test_the_same_text_is_the_same_model_and_another_text_another(folder: Path, tmp_path: Path) -> None:
+    first, again = (load_plant(folder / "plant.toml") for _ in range(2))
+    assert nominal_model(first) is nominal_model(again)
+    save_plant(tmp_path / "copy" / "plant.toml", first)
+    copy = load_plant(tmp_path / "copy" / "plant.toml")
+    assert copy == first
+    assert plant_digest(copy) == plant_digest(first)
+    edited(folder, 'p["K"] * u', '2 * p["K"] * u')
+    changed = load_plant(folder / "plant.toml")
+    assert nominal_model(changed) is not nominal_model(first)
+    assert plant_digest(changed) != plant_digest(first)
+    assert canonical(changed) != canonical(first)
+
+
+def test_changed_equations_move_otherwise(folder: Path) -> None:
+    # Truth: J theta'' = K u at rest, so twice the K bends the start of the way twice as much: 1/2 K u / J t^2.
+    def way() -> float:
+        arm = bind(load_plant(folder / "plant.toml"))
+        run = simulate(arm, np.array([0.0, 0.01]), [0.0, 0.0], np.ones((2, 1)), resolution=[0.0], keep="y")
+        assert run.y is not None
+        return float(run.y[-1, 0])
+
+    before = way()
+    edited(folder, 'p["K"] * u', '2 * p["K"] * u')
+    assert before == pytest.approx(0.5 * 0.05 / 0.01 * 0.01**2, rel=0.02)
+    assert way() == pytest.approx(2.0 * before, rel=1e-9)
+
+
+def test_what_the_file_prints_is_no_answer(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    edited(folder, "import sympy", "import sympy; print('hello')")
+    bind(load_plant(folder / "plant.toml"))
+    told = capsys.readouterr()
+    assert (told.out, told.err) == ("", "hello\n")
+
+
+def test_a_stir_stays_within_the_limits_and_begins_at_rest(folder: Path) -> None:
+    moved = stir(bind(load_plant(folder / "plant.toml")))
+    assert np.all(np.abs(moved.u) <= 10.0)
+    assert moved.u[0] == pytest.approx([0.0], abs=1e-9)
+    assert moved.x0 == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -1,0 +1,115 @@
+"""The project from a program or a notebook: the stages that the verbs run, on records instead of files.
+
+    import twinlaw
+
+    plant = twinlaw.load("plants/ce150.toml")
+    designed = twinlaw.design(plant)
+    flight = twinlaw.fly(plant, designed.table)
+
+Every function raises records.errors.BadInput where a verb would end with its one line. docs/notebooks.md shows all of them.
+"""
+
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from controllers import loading
+from diagnosis.diagnose import diagnose as diagnosed
+from diagnosis.result import Result
+from identification.results.result import Identification
+from records.errors import BadInput
+from records.law_table import FlownTable
+from records.log import RunLog, save_log
+from records.table import ControllerTable
+from records.verification import Verification
+from rig.programming.image import build_firmware
+from sim.bind import BoundPlant
+from twinlaw.cli.options import plant_file
+from twinlaw.workflows.chain.boards import board_url, connected, fly_board
+from twinlaw.workflows.chain.designing import Designed, design_other_on, design_plant, table_poles
+from twinlaw.workflows.chain.flying import fly_double, fly_host, stirred
+from twinlaw.workflows.chain.verifying import STEPS, verify_table
+from twinlaw.workflows.diagnose.material import material_of
+from twinlaw.workflows.identify.by_time import Wishes
+from twinlaw.workflows.identify.by_time import identify as identified
+from twinlaw.workflows.identify.columns import usable_inputs
+from twinlaw.workflows.identify.inputs import free_names
+from twinlaw.workflows.reading import load_bound
+
+__all__ = ["Logs", "design", "design_other", "diagnose", "fly", "generate", "identify", "load", "verify"]
+
+Logs = Sequence[str | Path] | Mapping[str, RunLog]
+FLYING = ("board", "host", "double")
+
+
+def load(path: str | Path) -> BoundPlant:
+    """A plant file, with its equations; `plants/NAME.toml` is the project's own where the current folder has none."""
+    return load_bound(plant_file(str(path)))
+
+
+def design(plant: BoundPlant, arithmetic: str = "float32") -> Designed:
+    """The scheduled law's table and the report on it, judged as flown in `arithmetic`."""
+    return design_plant(plant, arithmetic)
+
+
+def design_other(plant: BoundPlant, controller: str) -> FlownTable:
+    """The table of another controller of docs/controllers.md."""
+    return design_other_on(plant, controller)
+
+
+def generate(table: FlownTable, arithmetic: str = "float32") -> Mapping[str, str]:
+    """The law's C by file name; the same table gives the same bytes."""
+    return loading.generate(table, arithmetic)
+
+
+def verify(plant: BoundPlant, table: ControllerTable, arithmetic: str = "float32", steps: int = STEPS) -> Verification:
+    """Twin, host and target over `steps` steps, bounds and cost; `passed` says whether all of it holds."""
+    law = generate(table, arithmetic)
+    poles = table_poles(plant, table, arithmetic)
+    return verify_table(plant, table, poles, law, build_firmware(law), steps=steps, arithmetic=arithmetic)
+
+
+def fly(plant: BoundPlant, table: FlownTable | None = None, on: str = "double", arithmetic: str = "float32") -> RunLog:
+    """The log of the project's flight under a table's law: in double precision, its C on this computer ("host"), or its image on the
+    emulated "board". Without a table the inputs change in steps, without a loop.
+    """
+    if table is None:
+        return stirred(plant)[0]
+    if on == "double":
+        return fly_double(plant, table).log
+    if on == "host":
+        return fly_host(plant, table, arithmetic).log
+    if on != "board":
+        raise BadInput("on", "fly", repr(on), f"one of {', '.join(FLYING)}", "name what is to fly")
+    with tempfile.TemporaryDirectory() as folder:
+        build_firmware(generate(table, arithmetic), Path(folder))
+        with connected(table, board_url("emulated", Path(folder) / "firmware.elf"), arithmetic) as client:
+            return fly_board(plant, table, client).log
+
+
+def identify(plant: BoundPlant, logs: Logs, holdout: Logs = (), free: str | None = None) -> Identification:
+    """The plant's parameters from run logs, and from experiments where their files are given; `free` names some, with commas."""
+    names = free_names(plant, free)
+    wishes = Wishes(names, {}, None, None, only=None if free is None else names)
+    with _files(logs) as fitted, _files(holdout) as kept, tempfile.TemporaryDirectory() as folder:
+        return identified(plant, usable_inputs(fitted, kept, plant), wishes, Path(folder))
+
+
+def diagnose(plant: BoundPlant, logs: Logs, holdout: Logs = ()) -> Result:
+    """What the plant's model lacks to explain the logs: `diagnosis` is what the verb writes, `plant` the improved one."""
+    with _files(logs) as explained, _files(holdout) as kept:
+        return diagnosed(plant, material_of(plant, explained, kept))
+
+
+@contextmanager
+def _files(logs: Logs) -> Iterator[list[Path]]:
+    """The logs' files; those of records, by name, are there for the body."""
+    if not isinstance(logs, Mapping):
+        yield [Path(path) for path in logs]
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        paths = {name: Path(folder) / f"{name}.csv" for name in logs}
+        for name, log in logs.items():
+            save_log(paths[name], log)
+        yield list(paths.values())
