@@ -14,6 +14,8 @@ from records.errors import BadInput
 from records.log import RunLog
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
+from tests.plants import bound
+from tests.recorded import recorded
 from tests.soak import sampled
 
 SECONDS = 6.0
@@ -82,3 +84,15 @@ def test_numbers_without_meaning_are_not_taken_for_a_slip(library: EffectLibrary
     log, rng = fly(33, seconds=SECONDS), np.random.default_rng(3)
     walk = np.cumsum(rng.normal(0.0, 0.004, log.y.shape), axis=0)
     assert likelier_wiring(make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit) is None
+
+
+@pytest.mark.soak
+def test_a_turned_sign_is_told_of_a_rig_that_is_far_from_its_plant_file_and_no_sign_of_the_recording_as_it_is() -> None:
+    """Truth: the carriage is alike both ways round, so that voltage and place may either be turned; as recorded neither is."""
+    whole = recorded("emps", "DATA_EMPS")
+    rows = slice(0, 6000, 3)  # 6 s
+    log = replace(whole, t_s=whole.t_s[rows], u=whole.u[rows], y=whole.y[rows], extra={}, sample_period_s=0.003)
+    library = effect_library(bound("emps"))
+    demand_wiring(make_case(library, [log]), nominal_fit(make_case(library, [log])), nominal_fit, "the log")
+    with pytest.raises(BadInput, match=r"(u_V|q_m) has the wrong sign, or (q_m|u_V) has the wrong sign"):
+        demanded(make_case(library, [turned(log, "y", 0)]))
