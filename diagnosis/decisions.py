@@ -398,6 +398,16 @@ WIRING_NOISE = Limit(-1.3, "log10 rad/s per sqrt(s)", "or the process noise is s
 WIRING_GAIN = Limit(
     200.0, "nats", "another reading of the columns must be likelier by so much", "honest and rewired logs"
 )
+WIRING_STRAINED_GAIN = Limit(
+    250.0,
+    "nats",
+    "the same where the plant is far from its rig even so",
+    "24 published recordings as they are: 14 at most; inputs of other runs, rows backwards, another rig's: 138; "
+    "a turned sign: 266 to 32600",
+)
+WIRING_ALIKE = Limit(
+    2.0, "nats", "readings of the columns that no log tells apart, such as either sign of a plant alike both ways round"
+)
 ROWS_S = Limit(60.0, "s", "of each log: time")
 ROWS_GAIN = Limit(
     20.0,

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import Array, Finding, Found, Rows, in_words
@@ -33,8 +34,12 @@ def gaps(t_s: Array) -> Rows:
 
 
 def break_findings(log: RunLog, name: str) -> Iterator[Found]:
-    """A note on the stretches without rows behind which the log goes on as another one."""
+    """Notes on the other recordings in the file, and on the stretches without rows, behind which the log goes on as another one."""
+    restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
+    if restarts.size:
+        yield _restarted(log, name, restarts)
     begins = gaps(log.t_s)
+    begins[restarts] = False
     rows = np.flatnonzero(begins)
     if not rows.size:
         return
@@ -43,6 +48,19 @@ def break_findings(log: RunLog, name: str) -> Iterator[Found]:
     sentence = f"no rows from {', '.join(spans)}{more}: what follows is used as another log"
     span = (float(log.t_s[rows[0] - 1]), float(log.t_s[rows[-1]]))
     yield Found(Finding("break", name, "t_s", *span, sentence), begins=begins)
+
+
+def _restarted(log: RunLog, name: str, rows: NDArray[np.int64]) -> Found:
+    begins: Rows = np.zeros(len(log.t_s), bool)
+    begins[rows] = True
+    told = [
+        f"at {entry.own_s:g} s behind {log.t_s[row - 1]:.6g} s, which counts as {entry.at_s:g} s here"
+        for entry, row in zip(log.restarts[:SHOWN], rows.tolist(), strict=False)
+    ]
+    more = f" and {len(rows) - SHOWN} times more" if len(rows) > SHOWN else ""
+    sentence = f"times begin again {', '.join(told)}{more}: several recordings in one file; each is used as another log"
+    span = (float(log.t_s[rows[0]]), float(log.t_s[rows[-1]]))
+    return Found(Finding("restart", name, "t_s", *span, sentence), begins=begins)
 
 
 def unbroken(logs: Sequence[RunLog], used: Sequence[Rows], begins: Sequence[Rows], names: Sequence[str]) -> Stretches:

@@ -1,7 +1,8 @@
 """Readings that stop for a while: an output that stands though its axis goes on, as the jump shows when it is read again.
 
 An axis that slows down, rests and leaves its rest starts by less than it moves next. Where the first move behind a stand is far more than
-those after it, the readings between were old.
+those after it, the readings between were old. So they were where it came back to where it had been, and no jump shows: an axis that comes
+to rest by an even brake goes three times as far in the second last stretch of time as in the last; one that is cut off, as far.
 """
 
 from collections.abc import Iterator, Mapping
@@ -94,15 +95,13 @@ def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, beg
         moves * period_s / np.maximum(np.diff(t_s), period_s)
     )  # as far as in one sample, where rows lie further apart
     way = max(thresholds.WAY_ROWS, round(thresholds.WAY_S / period_s))
-    runs = _runs(values)
-    never_repeats = _repeats(values, runs) < thresholds.SELDOM and _is_noisy(moves)
-    for begin, end in runs:
+    stands = runs(values)
+    never_repeats = _repeats(values, stands) < thresholds.SELDOM and _is_noisy(moves)
+    for begin, end in stands:
         into = float(moves[begin - 1]) if begin else 0.0
         out = float(moves[end]) if end < len(moves) else 0.0
         if never_repeats and values.min() < values[begin] < values.max():  # at an end of its range a sensor may rest
             yield Stand(begin, end, 0.0, 0.0, 0.0)
-            continue
-        if max(abs(into), abs(out)) < thresholds.BROKEN_OFF_STEPS * least:
             continue
         before = moves[max(0, begin - 1 - way) : max(0, begin - 1)]
         after = moves[end + 1 : end + 1 + way]
@@ -112,13 +111,48 @@ def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, beg
         arrives = _is_under_way(np.abs(arrived), least)
         driven = bool(np.any(np.ptp(u[begin : end + 1], axis=0) > thresholds.DRIVEN_SHARE * usual_u))
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
-        if (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (leaps_out and goes_on):
+        leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (leaps_out and goes_on)
+        cut_off = not leaps and _is_cut_off(t_s, values, begin, end, way, least, begins)
+        if cut_off and not arrives:  # so dense are the rows that a few of them tell no speed
+            arrived, arrives = moves[max(0, begin - way) : begin], True
+        if leaps or cut_off:
             took_s = float(t_s[begin] - t_s[max(0, begin - len(arrived))])
             speed = float(np.abs(arrived).sum()) / took_s if arrives and not leaps_in else 0.0
             yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
 
 
-def _runs(values: Array) -> list[tuple[int, int]]:
+def _is_cut_off(t_s: Array, values: Array, begin: int, end: int, way: int, least: float, begins: Rows) -> bool:
+    """Whether the column is under way up to the stand begin..end, and from it on, as no axis is that comes to rest and leaves it."""
+    margin = thresholds.BROKEN_OFF_STEPS * least
+    if not values.min() + margin < values[begin] < values.max() - margin:
+        return False  # at an end of its range an axis may be stopped
+    rows = end - begin + 1
+    both = thresholds.CUT_OFF_STEPS * least, min(rows, max(thresholds.CUT_OFF_ROWS, way))
+    alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
+    comes = [_evenness(t_s, values, begin, -1, *limits, begins) for limits in (both, alone)]
+    goes = _evenness(t_s, values, end + 1, 1, *both, begins)
+    return min(comes[0], goes) > thresholds.EVEN or comes[1] > thresholds.EVEN
+
+
+def _evenness(t_s: Array, values: Array, at: int, way: int, far: float, most_rows: int, begins: Rows) -> float:
+    """How fast a column is in the rows next to `at` as a share of how fast it is in as many rows beyond them; 0 for none.
+
+    The rows are as few as it takes to go `far`, `most_rows` at most.
+    """
+    if not 0 <= at < len(values):
+        return 0.0
+    ahead = values[at : at + most_rows + 1] if way > 0 else values[max(0, at - most_rows) : at + 1][::-1]
+    reached = np.flatnonzero(np.abs(ahead - values[at]) >= far)
+    rows = int(reached[0]) if reached.size else 0
+    beyond = at + 2 * way * rows
+    if not rows or not 0 <= beyond < len(values) or begins[min(at, beyond) + 1 : max(at, beyond) + 1].any():
+        return 0.0
+    places = [at, at + way * rows, beyond]
+    near, further = np.diff(values[places]) / np.diff(t_s[places])
+    return float(near / further) if near * further > 0.0 else 0.0
+
+
+def runs(values: Array) -> list[tuple[int, int]]:
     """First and last rows of one value that is kept for DEAD_ROWS."""
     changed = np.flatnonzero(np.diff(values) != 0.0)
     first, last = np.concatenate([[0], changed + 1]), np.concatenate([changed, [len(values) - 1]])
@@ -126,10 +160,10 @@ def _runs(values: Array) -> list[tuple[int, int]]:
     return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
 
 
-def _repeats(values: Array, runs: list[tuple[int, int]]) -> float:
+def _repeats(values: Array, stands: list[tuple[int, int]]) -> float:
     """Share of the readings that repeat the one before, outside stands."""
     same = np.diff(values) == 0.0
-    for first, last in runs:
+    for first, last in stands:
         same[first:last] = False
     return float(same.mean())
 
@@ -150,4 +184,4 @@ def _is_under_way(moved: Array, least: float) -> bool:
 
 def _stands(t_s: Array, values: Array) -> list[tuple[int, int]]:
     """First and last rows of one value that is kept for DEAD_S."""
-    return [(first, last) for first, last in _runs(values) if t_s[last] - t_s[first] >= thresholds.DEAD_S]
+    return [(first, last) for first, last in runs(values) if t_s[last] - t_s[first] >= thresholds.DEAD_S]

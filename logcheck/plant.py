@@ -22,11 +22,12 @@ WHOLE = 1e-6  # counts that were computed are whole numbers to this
 
 @dataclass(frozen=True)
 class PlantFacts:
-    """What a plant fixes about its logs: encoder steps by output, limits by input, stops by output."""
+    """What a plant fixes about its logs: encoder steps by output, limits by input, stops by output, outputs that are an axis' position."""
 
     steps: Mapping[str, float]
     limits: Mapping[str, tuple[float, float]]
     stops: Mapping[str, tuple[float, float]]
+    positions: frozenset[str]
 
 
 def plant_facts(bound: BoundPlant) -> PlantFacts:
@@ -38,7 +39,9 @@ def plant_facts(bound: BoundPlant) -> PlantFacts:
         if axis.position is not None and axis.lower is not None and axis.upper is not None
     }
     limits = {str(variable): bound.limits(variable) for variable in model.inputs}
-    return PlantFacts(dict(bound.plant.sensors), limits, stops)
+    axes = {str(axis.position) for axis in model.axes}
+    positions = frozenset(output for output, expression in model.outputs.items() if str(expression) in axes)
+    return PlantFacts(dict(bound.plant.sensors), limits, stops, positions)
 
 
 def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:

@@ -1,31 +1,91 @@
-"""Several recordings in one file: where one ends and the next begins, every output leaps, which no motion does."""
+"""Several recordings in one file: where one ends and the next begins, outputs leap, which no motion does.
 
-from collections.abc import Iterator, Mapping
+Where every output leaps, that is enough. Where one does and the others happen to stand where they stood, its sensor may have slipped: but a
+slip moves no reference, no input in an open loop, and leads back to the log's first row by no chance.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from logcheck import thresholds
-from logcheck.dead import amount
+from logcheck.dead import amount, runs
 from logcheck.finding import Array, Finding, Found, Rows
 from records.log import RunLog
+from sim.columns import reference_name
 
 SHOWN = 3
 
 
-def seam_findings(log: RunLog, name: str, steps: Mapping[str, float], read_again: Rows) -> Iterator[Found]:
-    """Where all outputs that move leap at once, and another recording begins; `read_again` (n,) are rows after a dead stretch of all."""
+def seam_findings(
+    log: RunLog, name: str, steps: Mapping[str, float], read_again: Rows, positions: Collection[str] = ()
+) -> Iterator[Found]:
+    """Where another recording begins; `read_again` (n,) are rows after a dead stretch of all, `positions` outputs that a mass moves."""
     if len(log.t_s) < 2:
         return
     moving = [column for column in log.columns.outputs if _moves(log.column(column))]
-    if len(moving) < 2:
+    if not moving:
         return
     passed_s = _passed_s(log, moving)
-    rows = ~read_again[1:]
-    for column in moving:
-        rows &= _leaps(log.column(column), passed_s, log.sample_period_s, steps.get(column, 0.0))
+    leaps = {
+        column: _leaps(log.column(column), passed_s, log.sample_period_s, steps.get(column, 0.0)) for column in moving
+    }
+    rows: Rows = np.zeros(len(log.t_s) - 1, bool)
+    if len(moving) > 1:
+        rows |= np.all(list(leaps.values()), axis=0)
+    alone = np.any(
+        [_not_back(leaps[column], log.column(column)) for column in moving if column in positions] or [rows], axis=0
+    )
+    rows |= alone & (_new_references(log, steps) | _new_inputs(log) | _as_at_first(log, steps))
+    rows &= ~read_again[1:]
     if rows.any():
-        yield _found(log, name, moving, steps, np.flatnonzero(rows) + 1)
+        first = int(np.argmax(rows))
+        leaping = [column for column in moving if leaps[column][first]]
+        yield _found(log, name, leaping, len(leaping) == len(moving) > 1, steps, np.flatnonzero(rows) + 1)
+
+
+def _not_back(leaps: Rows, values: Array) -> Rows:
+    """The leaps (n - 1,) of a column but for those into and out of a stand: there it was not read."""
+    kept = leaps.copy()
+    for first, last in runs(values):
+        if first and last < len(leaps) and leaps[first - 1] and leaps[last]:
+            kept[[first - 1, last]] = False
+    return kept
+
+
+def _new_references(log: RunLog, steps: Mapping[str, float]) -> Rows:
+    """Rows (n - 1,) behind which a reference leaps."""
+    new: Rows = np.zeros(len(log.t_s) - 1, bool)
+    for column in log.columns.outputs:
+        values = log.extra.get(reference_name(column))
+        if values is not None:
+            new |= np.abs(np.nan_to_num(np.diff(values))) > thresholds.LEAST_SEAM_STEPS * steps.get(column, 0.0)
+    return new
+
+
+def _new_inputs(log: RunLog) -> Rows:
+    """Rows (n - 1,) behind which, in an open loop, an input leaps by more than it usually moves."""
+    moves = np.abs(np.diff(log.u, axis=0))
+    usual = np.percentile(moves, thresholds.USUAL_SPEED_PERCENT, axis=0)
+    far = (moves > thresholds.DRIVEN_SHARE * np.ptp(log.u, axis=0)) & (moves > usual)
+    return np.asarray(far.any(axis=1) & (log.loop == "open"))
+
+
+def _as_at_first(log: RunLog, steps: Mapping[str, float]) -> Rows:
+    """Rows (n - 1,) behind which every output and every input is what it was in the log's first row, and was not just before."""
+    of_outputs, of_inputs = (
+        thresholds.BESIDE_FIRST_SHARE
+        * (np.nanmax(values, axis=0, initial=-np.inf) - np.nanmin(values, axis=0, initial=np.inf))
+        for values in (log.y, log.u)
+    )
+    beside = [
+        max(thresholds.BESIDE_FIRST_STEPS * steps.get(column, 0.0), own)
+        for column, own in zip(log.columns.outputs, of_outputs.tolist(), strict=True)
+    ]
+    with np.errstate(invalid="ignore"):
+        there = (np.abs(log.y - log.y[0]) <= beside).all(axis=1) & (np.abs(log.u - log.u[0]) <= of_inputs).all(axis=1)
+    return np.asarray(there[1:] & ~there[:-1])
 
 
 def _moves(values: Array) -> bool:
@@ -54,7 +114,9 @@ def _leaps(values: Array, passed_s: Array, period_s: float, step: float) -> Rows
     )
 
 
-def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float], rows: NDArray[np.int64]) -> Found:
+def _found(
+    log: RunLog, name: str, columns: list[str], are_all: bool, steps: Mapping[str, float], rows: NDArray[np.int64]
+) -> Found:
     first = int(rows[0])
     leaps, usual = [], []
     for column in columns:
@@ -64,8 +126,9 @@ def _found(log: RunLog, name: str, columns: list[str], steps: Mapping[str, float
     later = [f"{log.t_s[row]:.6g} s" for row in rows[1:SHOWN]]
     more = f" and at {len(rows) - SHOWN} more instants" if len(rows) > SHOWN else ""
     again = f", and so at {', '.join(later)}{more}" if later else ""
+    who = "all outputs leap at once" if are_all else "the log leaps"
     sentence = (
-        f"all outputs leap at once between {log.t_s[first - 1]:.6g} s and {log.t_s[first]:.6g} s, {' and '.join(leaps)}, "
+        f"{who} between {log.t_s[first - 1]:.6g} s and {log.t_s[first]:.6g} s, {' and '.join(leaps)}, "
         f"where they usually move by no more than {' and '.join(usual)} from row to row{again}: "
         "several recordings in one file; cut apart there"
     )

@@ -4,10 +4,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
+from records.restarts import LEAST_ROWS, restart_rows
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Timing:
 
 def timing(log: RunLog) -> Timing:
     """The timing of a log; for fewer than three rows the stated period stands."""
-    t_s, stated_s = log.t_s, log.sample_period_s
+    t_s, stated_s = _without_pauses(log), log.sample_period_s
     n = len(t_s)
     duration_s = float(t_s[-1] - t_s[0]) if n else 0.0
     if n < 3 or not np.isfinite(duration_s):
@@ -55,6 +57,14 @@ def timing(log: RunLog) -> Timing:
         missing_by_time=int(np.sum(np.maximum(by_time - 1.0, 0.0))),
         missing_by_seq=None if log.seq is None else int(np.sum(np.maximum(by_seq - 1, 0))),
     )
+
+
+def _without_pauses(log: RunLog) -> Array:
+    """The times with one usual step in front of each other recording of the file."""
+    steps = np.diff(log.t_s)
+    rows = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts]) - 1
+    steps[rows] = np.median(steps) if rows.size else 0.0
+    return np.concatenate([log.t_s[:1], log.t_s[:1] + np.cumsum(steps)]) if rows.size else log.t_s
 
 
 def _slope(samples: Array, t_s: Array) -> float:
@@ -103,8 +113,22 @@ def _by_jitter_ppm(found: Timing) -> float:
 def _order(log: RunLog, name: str) -> Iterator[Found]:
     """Rows whose time or sequence number does not rise: the later one is left out."""
     yield from _not_rising(log, name, "t_s", log.t_s)
-    if log.seq is not None:
+    if log.seq is None:
+        return
+    begins = restart_rows(log.seq.astype(float), LEAST_ROWS)
+    if begins.size:
+        yield _numbered_anew(log, name, begins)
+    else:
         yield from _not_rising(log, name, "seq", log.seq.astype(float))
+
+
+def _numbered_anew(log: RunLog, name: str, rows: NDArray[np.int64]) -> Found:
+    """Sequence numbers that begin again while the clock goes on: the board was started anew."""
+    begins: Rows = np.zeros(len(log.t_s), bool)
+    begins[rows] = True
+    at = log.t_s[rows]
+    sentence = f"sequence numbers begin again at {', '.join(f'{t:.6g} s' for t in at[:3])}: what follows is used as another log"
+    return Found(Finding("restart", name, "seq", float(at[0]), float(at[-1]), sentence), begins=begins)
 
 
 def _not_rising(log: RunLog, name: str, column: str, values: Array) -> Iterator[Found]:
@@ -123,7 +147,7 @@ def _not_rising(log: RunLog, name: str, column: str, values: Array) -> Iterator[
 
 
 def _missing(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
-    steps = np.diff(log.t_s)
+    steps = np.diff(_without_pauses(log))
     gaps = np.flatnonzero(steps > thresholds.GAP_PERIODS * found.period_s)
     if gaps.size and found.missing_by_time:
         first, longest = gaps[0], gaps[np.argmax(steps[gaps])]

@@ -49,6 +49,17 @@ BROKEN_OFF_STEPS = Limit(4.0, "least moves", "the same stands: 3 at most", "publ
 DRIVEN_SHARE = Limit(
     0.05, "share of an input's range", "inputs that move so far during a stand would have moved the axis"
 )
+EVEN = Limit(
+    0.7,
+    "share",
+    "of the way before, in the rows next to a stand: 1/3 for an even brake, 1 for an axis that goes on unseen; 0.6 at most",
+    "9 700 stands in the published recordings and simulated flights",
+)
+CUT_OFF_STEPS = Limit(
+    14.0, "least moves", "next to a stand on both sides, in as many rows as it lasts at most", "the same stands"
+)
+CUT_OFF_ROWS = Count(128, "rows", "next to a stand at most", "the same stands")
+CUT_OFF_ALONE_STEPS = Limit(20.0, "least moves", "before a stand alone, in half as many rows", "the same stands")
 LINK_STOPS_S = Limit(0.5, "s", "within which all outputs stop where the link stops")
 
 # held
@@ -94,6 +105,8 @@ SEAM_FASTER = Limit(
 )
 LEAST_SEAM_STEPS = Limit(20.0, "encoder steps", "a quiet log usually moves by one")
 SEAM_ROWS = Count(5, "rows", "a mass that is thrown is fast in the next rows too; a reading that fails comes back")
+BESIDE_FIRST_STEPS = Limit(4.0, "encoder steps", "rigs come to rest so near to where they rested before")
+BESIDE_FIRST_SHARE = Limit(0.02, "share of a column's range", "a run begins so near to where the one before began")
 LONGEST_HELD_S = Limit(
     0.2, "s", "readings repeated so long move on by all that they missed; longer ones are dead stretches"
 )

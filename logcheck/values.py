@@ -1,6 +1,6 @@
 """What the numbers of a log's columns say by themselves: missing, constant, saturated, copied, out of line; and how much moves."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -69,8 +69,10 @@ def excitations(log: RunLog, steps: Mapping[str, float]) -> dict[str, Excitation
     return result
 
 
-def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterator[Found]:
-    """What is odd about the numbers, whatever the plant."""
+def value_findings(
+    log: RunLog, name: str, steps: Mapping[str, float], positions: Collection[str] = ()
+) -> Iterator[Found]:
+    """What is odd about the numbers, whatever the plant; `positions` are outputs that a mass moves."""
     yield from _missing_numbers(log, name)
     yield from _constant(log, name)
     yield from _copies(log, name)
@@ -80,7 +82,7 @@ def value_findings(log: RunLog, name: str, steps: Mapping[str, float]) -> Iterat
     yield from zeros
     log = _without(log, zeros)
     again = read_again(log)
-    seams = list(seam_findings(log, name, steps, again))
+    seams = list(seam_findings(log, name, steps, again, positions))
     yield from seams
     begins: Rows = np.zeros(len(log.t_s), bool)
     for found in seams:

@@ -9,6 +9,7 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
+from recordings.joined import from_the_inputs, on_one_clock
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -27,6 +28,11 @@ from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
 SLOW_S = 1.0  # between rows: a rig that moves within seconds is sampled faster
+FINER = (
+    (1e5, "ns", "1e-9"),
+    (200.0, "us", "1e-6"),
+    (SLOW_S, "ms", "0.001"),
+)  # as such rows would be 0.1 ms to 1 s apart
 MOST_TURNS = 3  # of an angle that nothing is said of: no axis here turns more in a log, degrees and counts do at once
 EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
 
@@ -57,17 +63,20 @@ def log_of_contents(
     facts = _facts(contents, where, columns)
     of = source(contents, where, mapping.group, mapping.per_turn, mapping.columns.get(TIME))
     found, left_out = _columns(of, mapping, columns)
-    channels, shift = _from_the_first({name: entry.channel for name, entry in found.items()})
+    channels, counted = on_one_clock({name: entry.channel for name, entry in found.items()})
+    channels, shift = _from_the_first(channels)
+    part, before = from_the_inputs(channels, columns, span or Span())
     stated = mapping.loop or facts.get("loop")
     if stated not in (None, *LOOPS):
         raise BadInput("text 'loop'", where, repr(stated), " or ".join(LOOPS), "say it with --loop")
-    log = log_of_channels(channels, columns, where, span=span, loop=stated)
+    log = log_of_channels(channels, columns, where, span=part, loop=stated)
     log = replace(log, locked=tuple(facts.get("locked", ())), table_digest=facts.get("table_digest"))
     used = replace(
         mapping, plant=columns.plant, columns={**_time(mapping), **{name: entry.text for name, entry in found.items()}}
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
+    told += [*counted, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log)))
 
 
@@ -183,7 +192,8 @@ def _doubtful(log: RunLog) -> list[str]:
     """Times that look like milliseconds, and angles like degrees or counts, which nothing said to be such."""
     told = []
     if log.sample_period_s >= SLOW_S:
-        told.append(f"rows are {log.sample_period_s:g} s apart: if times are in ms, say --column t_s=...*0.001")
+        unit, factor = next((u, f) for least, u, f in FINER if log.sample_period_s >= least)
+        told.append(f"rows are {log.sample_period_s:g} s apart: if times are in {unit}, say --column t_s=...*{factor}")
     for name in log.columns.outputs:
         reached = float(np.nanmax(np.abs(log.column(name)), initial=0.0))
         if unit_of(name) == "rad" and reached > MOST_TURNS * 2.0 * np.pi:

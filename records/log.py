@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
+from records.restarts import Restart, counted_on, on_one_clock, restart_rows
 from records.source import Source, parse_source, source_table
 from records.text import checks
 from records.text.log_csv import read_rows, rows_text
@@ -39,7 +40,8 @@ class RunLog:
 
     Shapes: t_s (n,), u (n, inputs), y (n, outputs; NaN where nothing was measured), `extra` optional columns (n,), `seq` (n,) the
     board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none;
-    `source` the published recording that the log was imported from, None for a log of this project's own making.
+    `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
+    another recording of the same file begins, whose times are counted on.
     """
 
     columns: LogColumns
@@ -53,6 +55,7 @@ class RunLog:
     locked: tuple[str, ...] = ()
     table_digest: str | None = None
     source: Source | None = None
+    restarts: tuple[Restart, ...] = ()
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -127,7 +130,7 @@ def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, An
 
 
 def load_log(path: Path, columns: LogColumns) -> RunLog:
-    """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are.
+    """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
     Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a
     truncated row, a number that is none, time that does not increase, an input that is not finite.
@@ -137,6 +140,8 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     controller = _check_sidecar(sidecar, str(sidecar_path), columns)
     names, rows = read_rows(path, lambda header: _check_columns(header, str(path), columns))
     data = {name: rows[:, index] for index, name in enumerate(names)}
+    begins = restart_rows(data["t_s"])
+    data["t_s"], restarts = on_one_clock(data["t_s"])
     _check_numbers(data, str(path), columns)
     return RunLog(
         columns=columns,
@@ -146,10 +151,11 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
         u=np.stack([data[name] for name in columns.inputs], axis=1) if columns.inputs else np.zeros((len(rows), 0)),
         y=np.column_stack([data[name] for name in columns.outputs]),
         extra={name: data[name].copy() for name in names if name in columns.optional},
-        seq=data["seq"].astype(np.int64) if "seq" in data else None,
+        seq=counted_on(data["seq"].astype(np.int64), begins) if "seq" in data else None,
         locked=tuple(sidecar["locked"]),
         table_digest=controller,
         source=parse_source(sidecar["source"], f"{sidecar_path}: source") if "source" in sidecar else None,
+        restarts=restarts,
     )
 
 

@@ -13,8 +13,8 @@ from blind.effects.effect import SCALAR, Effect, Settings, effects_struct
 from toolchain.host import CText, build_shared, load_shared
 
 COMMON_DIR = Path(__file__).resolve().parent / "c"
-FREE_RUNS = ("line.c", "predict.c")  # with line.h and predict.h, whatever else a rig is made of
-COMMON_SOURCES = (*FREE_RUNS, "plant.c", "run.c")
+OF_EVERY_RIG = ("line.c", "stages.c", "predict.c")  # with their headers
+COMMON_SOURCES = (*OF_EVERY_RIG, "plant.c", "run.c")
 DECLARATIONS = "simulation.h"  # what every C file includes
 OPENING = Lock()
 
@@ -44,10 +44,10 @@ class Program:
 
     def declarations(self) -> str:
         """Text of simulation.h, for the compiler and for cffi: the plant, the effects' fields, the rig's own state, what a run takes."""
-        headers = ("line.h", "plant.h", "run.h", "predict.h")
-        line, plant, run, predict = (COMMON_DIR.joinpath(name).read_text(encoding="utf-8") for name in headers)
+        headers = ("line.h", "plant.h", "stages.h", "run.h", "predict.h")
+        line, plant, stages, run, predict = (COMMON_DIR.joinpath(name).read_text(encoding="utf-8") for name in headers)
         own = self.folder.joinpath("state.h").read_text(encoding="utf-8")
-        return "\n".join([line, plant, effects_struct(self.effects), "", own, run, predict])
+        return "\n".join([line, plant, effects_struct(self.effects), "", own, stages, run, predict])
 
 
 def opened(program: Program) -> tuple[Any, Any]:

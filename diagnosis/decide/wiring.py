@@ -48,8 +48,8 @@ def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where
 
 
 def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
-    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its
-    parameters where they are stated."""
+    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its parameters where
+    they are stated; or, of a plant that is far from its rig whatever the reading, by far better."""
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
@@ -61,7 +61,20 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = fit.log_posterior - usual.log_posterior
-    return (best, gain) if gain > decisions.WIRING_GAIN and not is_strained(case, fit) else None
+    if gain > (decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN):
+        alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
+        return _either(best, alike), gain
+    return None
+
+
+def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:
+    """The best reading, told with those that the logs cannot tell from it: of a plant that is the same both ways round, either sign."""
+    first = sorted(alike, key=lambda wiring: wiring is not best)
+    return replace(
+        best,
+        what=", or ".join(wiring.what for wiring in first),
+        remedy=", or ".join(wiring.remedy for wiring in first),
+    )
 
 
 def is_strained(case: Case, fit: Fit) -> bool:

@@ -35,7 +35,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
     if said and asked.separator is None:
         asked = replace(asked, separator=said)
     layout = find_layout(lines, comments, asked, str(path))
-    body, left_out = _body(lines[layout.first :], layout)
+    body, left_out = _body(*_without_headers(lines, layout), layout)
     told = (*found, *layout.found, *_comments(comments), *left_out)
     signals, unread = _signals(body, layout)
     return Contents(with_clocks(signals), _sidecar(path), told, unread)
@@ -66,12 +66,24 @@ def _comments(comments: Sequence[Line]) -> tuple[str, ...]:
     return (f"{len(comments)} lines of comment",) if comments else ()
 
 
-def _body(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], tuple[str, ...]]:
+def _without_headers(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], list[str]]:
+    """The lines below the header without it where it stands again, as files laid behind one another have it; and that it does."""
+    above = {line.text.strip() for line in lines[max(0, layout.first - 2) : layout.first]}
+    below = lines[layout.first :]
+    again = [line for line in below if line.text.strip() in above]
+    if not again:
+        return below, []
+    told = (
+        f"the header stands again in line {again[0].number}{' and later' if len(again) > 1 else ''}, and is passed over"
+    )
+    return [line for line in below if line.text.strip() not in above], [told]
+
+
+def _body(lines: Sequence[Line], told: list[str], layout: Layout) -> tuple[Sequence[Line], tuple[str, ...]]:
     """The rows of numbers: a last row that was cut short, and text below the numbers, are left out and said; rows of nothing too."""
     end = len(lines)
     while end > 1 and not any(_is_value(cell, layout) for cell in split(lines[end - 1].text, layout.separator)):
         end -= 1
-    told = []
     if end < len(lines):
         told.append(f"text below the numbers is left out, from line {lines[end].number} on: {lines[end].text[:40]!r}")
     width, last = len(layout.headings), split(lines[end - 1].text, layout.separator)

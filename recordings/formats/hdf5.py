@@ -6,15 +6,12 @@ from typing import Any
 import numpy as np
 
 from recordings.formats.clocks import with_clocks
+from recordings.formats.matlab_objects import WHAT
 from recordings.formats.nested import Unreadable, flat
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
-
-_OBJECT = (
-    "a MATLAB object, which only MATLAB reads: save x.Time and x.Data of a timeseries, or a structure, in place of it"
-)
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
@@ -60,7 +57,7 @@ def _value(node: Any, file: Any) -> Any:
         return _entries(fields) if all(_is_field_of_several(node[name]) for name in node) else fields
     kind = _kind(node)
     if "MATLAB_object_decode" in node.attrs or kind in ("function_handle", "timeseries"):
-        return Unreadable(_OBJECT)
+        return Unreadable(WHAT)
     if node.attrs.get("MATLAB_empty"):
         return np.zeros(0)
     if node.dtype.kind == "O" and node.dtype.metadata and "ref" in node.dtype.metadata:

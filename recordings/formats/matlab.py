@@ -11,14 +11,11 @@ from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadError
 
 from recordings.formats import hdf5
 from recordings.formats.clocks import is_time_name, with_clocks
+from recordings.formats.matlab_objects import WHAT, with_objects
 from recordings.formats.nested import Unreadable, flat
 from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
-
-_OBJECT = (
-    "a MATLAB object, which only MATLAB reads: save x.Time and x.Data of a timeseries, or a structure, in place of it"
-)
 
 _UNITS = ("unit", "units", "Unit", "Units")
 _LABELS = ("label", "Name", "name")  # of a scope's signal, and of a timeseries
@@ -26,13 +23,23 @@ _LABELS = ("label", "Name", "name")  # of a scope's signal, and of a timeseries
 
 def read(path: Path, asked: TextLayout) -> Contents:
     """All arrays of numbers under their paths, all texts; raises BadInput for a file that is missing or no whole .mat file."""
-    found = flat(_content(path))
+    found = flat(with_objects(_content(path), path))
     texts = {name: text.strip() for name, text in found.texts.items()}
     signals = {
-        name: replace(signal, unit=_beside(name, _UNITS, texts), heading=_beside(name, _LABELS, texts))
+        name: replace(
+            signal,
+            unit=_beside(name, _UNITS, texts),
+            heading=_beside(name, _LABELS, texts) or _of_series(name, found.signals),
+        )
         for name, signal in found.signals.items()
     }
     return Contents(with_clocks(signals), texts, unread=found.unread)
+
+
+def _of_series(name: str, signals: Mapping[str, object]) -> str:
+    """The name of the timeseries whose data this is, empty for anything else: `psi_rad` of `psi_rad.Data` beside `psi_rad.Time`."""
+    scope, _, field = name.rpartition(".")
+    return scope.rpartition(".")[2] if field == "Data" and f"{scope}.Time" in signals else ""
 
 
 def _beside(name: str, words: Sequence[str], texts: Mapping[str, str]) -> str:
@@ -67,4 +74,4 @@ def _content(path: Path) -> dict[str, Any]:
 def _readable(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _readable(inner) for name, inner in value.items()}
-    return Unreadable(_OBJECT) if isinstance(value, (MatlabOpaque, MatlabFunction)) else value
+    return Unreadable(WHAT) if isinstance(value, (MatlabOpaque, MatlabFunction)) else value

@@ -1,6 +1,6 @@
 """Messages of a bag as signals: each number of a topic's messages under its path, at the time stamps of the messages."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -80,9 +80,9 @@ def _times(topic: _Topic, first_ns: int) -> tuple[NDArray[np.float64], bool]:
 
 
 def _stamp_ns(leaves: Mapping[str, float]) -> int | None:
-    """The header's stamp of a ROS 1 or ROS 2 message, exactly."""
-    for stamp in ("header.stamp", "stamp"):
-        for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs")):
+    """The stamp of a ROS 1, ROS 2 or Protobuf message, exactly."""
+    for stamp in ("header.stamp", "stamp", "timestamp"):
+        for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs"), ("seconds", "nanos")):
             if f"{stamp}.{seconds}" in leaves and f"{stamp}.{nanoseconds}" in leaves:
                 return int(leaves[f"{stamp}.{seconds}"]) * 10**9 + int(leaves[f"{stamp}.{nanoseconds}"])
     return None
@@ -91,11 +91,11 @@ def _stamp_ns(leaves: Mapping[str, float]) -> int | None:
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
     if isinstance(value, bool | int | float | np.number | np.bool_):
         yield path or "data", float(value)
-    elif isinstance(value, list | tuple | np.ndarray):
+    elif isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes | bytearray | memoryview):
         if len(value) <= LONGEST_ARRAY:
             for index, inner in enumerate(value):
                 yield from _leaves(inner, f"{path}[{index}]")
-    elif value is not None and not isinstance(value, str | bytes | bytearray | memoryview):
+    elif value is not None and not isinstance(value, Sequence | bytearray | memoryview):
         for name, inner in _fields(value):
             yield from _leaves(inner, f"{path}.{name}" if path else name)
 

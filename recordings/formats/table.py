@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Protocol, cast
 
-from recordings.formats import apart
+from recordings.formats import apart, compressed
 from recordings.formats.optional import is_installed, missing
 from recordings.layout import TextLayout
 from recordings.signals import Contents
@@ -58,6 +58,8 @@ def is_file(name: str) -> bool:
 def read(path: Path, asked: TextLayout) -> Contents:
     """What the file at `path` holds; a folder is a ROS 2 bag. Raises BadInput, also for an ending that no row has."""
     suffix = ".db3" if path.is_dir() else path.suffix.lower()
+    if suffix == compressed.SUFFIX:
+        return compressed.read(path, lambda unpacked: read(unpacked, asked))
     if suffix not in _BY_SUFFIX:
         got = f"the ending {path.suffix!r}" if path.suffix else "a name without an ending"
         raise BadInput("file", str(path), got, f"one of {', '.join(SUFFIXES)}", "export it as one of these")

@@ -27,7 +27,8 @@ def read_rows(
 ) -> tuple[tuple[str, ...], Array]:
     """Header and numbers (rows, columns) of a CSV file; an empty cell reads as NaN. Raises BadInput naming the line.
 
-    `check_header` sees the header before any row is read: what is no log at all is named as that, not by its first row.
+    `check_header` sees the header before any row is read: what is no log at all is named as that, not by its first row. A header that
+    stands again, where files were laid one behind the other, is passed over.
     """
     text = read_text(path, "run log")
     header, _, body = text.partition("\n")
@@ -40,15 +41,17 @@ def read_rows(
     try:
         rows = np.loadtxt(io.StringIO(body), delimiter=",", ndmin=2, comments=None)
     except ValueError:
-        return names, _slow_rows(body, len(names), path)
+        return names, _slow_rows(body, names, path)
     if rows.shape[1] != len(names):
         raise _row_length(path, 2, rows.shape[1], len(names))
     return names, rows
 
 
-def _slow_rows(body: str, width: int, path: Path) -> Array:
-    """Line by line, for a file with empty cells, or with the first wrong cell named."""
+def _slow_rows(body: str, names: tuple[str, ...], path: Path) -> Array:
+    """Line by line, for a file with empty cells or a second header, or with the first wrong cell named."""
     lines = [(number, line) for number, line in enumerate(body.split("\n"), start=2) if line.strip()]
+    lines = [(number, line) for number, line in lines if tuple(name.strip() for name in line.split(",")) != names]
+    width = len(names)
     rows = np.empty((len(lines), width))
     for index, (number, line) in enumerate(lines):
         cells = line.split(",")

@@ -34,6 +34,15 @@ def commands(page: str) -> list[str]:
     return found
 
 
+def indented(page: str, beginning: str) -> str:
+    """The page's indented block that begins so, empty where there is none."""
+    blocks = (
+        re.sub(r"^    ", "", match[0], flags=re.MULTILINE)
+        for match in _INDENTED.finditer((ROOT / page).read_text("utf-8"))
+    )
+    return next((block for block in blocks if block.lstrip().startswith(beginning)), "")
+
+
 def _split(block: str) -> list[str]:
     """Commands of a block: lines, those that go on joined, a loop as one; without comments and without the path of .venv."""
     text = re.sub(r"\\\n\s*", "", block).replace(".venv/bin/twinlaw", "twinlaw")
@@ -59,8 +68,11 @@ def checkout(folder: Path) -> Path:
     (folder / "plants").mkdir(parents=True)
     for plant in (ROOT / "plants").glob("*.toml"):
         (folder / "plants" / plant.name).symlink_to(plant)
+    (folder / "docs").mkdir()
+    (folder / "tests").symlink_to(ROOT / "tests")
     program = folder / "bin" / "twinlaw"
     program.parent.mkdir()
+    (program.parent / "python").symlink_to(sys.executable)
     program.write_text(f'#!/bin/sh\nexec {sys.executable} -m twinlaw.command "$@"\n')
     program.chmod(0o755)
     return folder

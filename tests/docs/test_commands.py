@@ -4,49 +4,54 @@ import os
 import re
 import shlex
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from recordings.datasets.files import datasets_folder
-from tests.docs.commands import PAGES, calls, checkout, commands, fenced, mentions
+from rig.emulator.ports.pty_port import PtyBoard
+from tests.docs.commands import PAGES, calls, checkout, commands, fenced, indented, mentions
 from tests.test_project import ROOT
 from toolchain.cache import CACHE_DIR
 from twinlaw.cli.completion import Command, command_tree
 from twinlaw.verbs import VERBS, build_parser
 
 RUN = "twinlaw run --plant plants/ce150.toml --out build"  # once for all pages
+PATIENCE_S = 600.0
 
 # A pattern at the beginning of a command, and why it is not tried here; it is read by the real parser nevertheless.
 NOT_TRIED = {
-    r"make |\. \.venv": "sets up an environment; tests/docs/test_tutorial.py tries what `make run` calls",
-    r"twinlaw run$": "as `make run`: tests/docs/test_readme.py",
-    r"twinlaw run --plant plants/mine\.toml": "the chain with another file: docs/identification.md",
-    r"twinlaw flash$|twinlaw .*--port /dev/": "needs a board",
-    r"twinlaw flash --port emulated": "needs stm32flash; tests/rig/programming/test_flash.py",
-    r"twinlaw watch": "runs until it is ended; tests/docs/test_tutorial.py does",
-    r"twinlaw compare|cp build-compare": "takes minutes; tests/twinlaw/verbs/test_compare.py with fewer flights",
-    r"twinlaw envelope": "takes a minute; tests/twinlaw/verbs/test_envelope.py with one condition",
-    r"twinlaw diagnose --plant plants/(?!ce150)": "takes minutes on a recording; tests/diagnosis/test_real_data.py has one",
-    r"twinlaw splits |python tests/real_rigs\.py": "takes minutes; tests/twinlaw/workflows/test_splits.py with two short logs",
-    r"twinlaw identify .*--search genetic": "takes ten seconds; tests/twinlaw/verbs/test_identify_genetic.py",
-    r"twinlaw sweep .*--repetitions": "tests/twinlaw/verbs/test_frequency.py with one repetition",
-    r"twinlaw blind make --rig second": "tests/blind/test_second_make.py",
-    r"twinlaw blind calibrate": "needs answers to many cases; tests/blind/test_calibrate.py has some made up",
-    r"twinlaw blind sensitivity": "takes minutes; tests/twinlaw/workflows/test_sensitivity.py with a case of six seconds",
-    r"twinlaw experiments --plant .*velagic.*--repetitions": "the repetitions of docs/identification.md with another plant",
-    r"pip |dask |twinlaw .*--cluster": "needs other computers; tests/jobs/test_cluster.py has some on this one",
+    r"make |\. \.venv|pip ": "changes the environment; tests/docs/test_tutorial.py tries what `make run` calls",
 }
-# What is smaller here than on the page, so that it takes seconds.
+# What is smaller here than on the page, so that it takes a minute or two at most.
 SMALLER = {
-    "--repetitions 100": "--repetitions 1",
-    r"--seed \d+ --cases \d{3}": "--seed 3 --cases 1 --kinds nominal",
+    "--repetitions (100|60|17)": "--repetitions 1",
+    r"--seed \d+ --cases \d{2,3}": "--seed 3 --cases 1 --kinds nominal",
+    r"--cases \d{2,3}": "--cases 1",
     "--cases 2 --workers": "--cases 1 --workers",
+    "--constant ALARM UNKNOWN --factors 0.7 1.4": "--constant ALARM --factors 1.4",
+    "compare --plant plants/ce150.toml": r"\g<0> --controllers pid --runs 2 --effects azimuth.cable_spring --steps 1000",
+    "splits --plant": "splits --most 1 --plant",
+    r"real_rigs\.py rigs": r"\g<0> --only maglev_coil --most 1",
 }
+# What a page leaves to the reader, and what is none of this computer's: the board, the other computers.
+READERS = {
+    "envelope --seed 1": r"\g<0> --keep-flights",
+    "FLIGHTS": "envelope/flights",
+}
+NO_TOOL = (
+    r"twinlaw flash"  # what programs a chip is not found here: the answer says so; tests/rig/programming has it found
+)
+WATCHES, SERVES = r"twinlaw watch", r"dask "  # both run until they are ended
+ADDRESS = "10.0.0.5:8786"
 HELD = {"docs/tutorial.md": "tests/docs/test_tutorial.py", "docs/new-plant.md": "tests/docs/test_new_plant.py"}
 TRIED = tuple(page for page in PAGES if page not in HELD and commands(page))
 
@@ -57,9 +62,16 @@ def reason(command: str) -> str | None:
 
 
 def smaller(command: str) -> str:
-    for large, small in SMALLER.items():
+    """The command with what is smaller here, and with what a reader puts in."""
+    for large, small in {**SMALLER, **READERS}.items():
         command = re.sub(large, small, command)
     return command
+
+
+def _free_port() -> int:
+    with socket.socket() as there:
+        there.bind(("127.0.0.1", 0))
+        return int(there.getsockname()[1])
 
 
 @pytest.fixture(scope="module")
@@ -70,26 +82,94 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "build"
 
 
-def shell(command: str, folder: Path) -> None:
+@pytest.fixture(scope="module")
+def board(built: Path) -> Iterator[str]:
+    """The device of an emulated board that carries what RUN left."""
+    with PtyBoard(built / "firmware.elf") as there:
+        yield there.path
+
+
+@pytest.fixture
+def serving() -> Iterator[list[subprocess.Popen[bytes]]]:
+    """What a page has started and not ended; it is ended behind the page."""
+    there: list[subprocess.Popen[bytes]] = []
+    yield there
+    for process in reversed(there):
+        process.terminate()
+        process.wait(PATIENCE_S)
+
+
+def environment(folder: Path) -> dict[str, str]:
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
-    given = {"PATH": path, "PYTHONPATH": str(ROOT), "TWINLAW_CACHE": str(CACHE_DIR)}
-    given["TWINLAW_DATASETS"] = str(datasets_folder())
+    given = {"PATH": path, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    given |= {"TWINLAW_CACHE": str(CACHE_DIR), "TWINLAW_DATASETS": str(datasets_folder())}
+    return {**os.environ, **given}
+
+
+def shell(command: str, folder: Path) -> None:
     done = subprocess.run(
-        ["sh", "-e", "-c", command], cwd=folder, env={**os.environ, **given}, capture_output=True, text=True
+        ["sh", "-e", "-c", command], cwd=folder, env=environment(folder), capture_output=True, text=True
     )
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
 
+def without_a_tool(command: str, folder: Path) -> None:
+    """Where what programs a chip is not installed, the command names it in one line and has done nothing."""
+    here = {**environment(folder), "PATH": str(folder / "bin")}
+    done = subprocess.run(["/bin/sh", "-c", command], cwd=folder, env=here, capture_output=True, text=True)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert ("stm32flash" if "--port" in command else "openocd") in done.stderr
+
+
+def watched(command: str, folder: Path) -> None:
+    """Start a watch, see that it offers an address, and end it as a person does."""
+    process = subprocess.Popen(
+        shlex.split(command),
+        cwd=folder,
+        env=environment(folder),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        first = process.stdout.readline()
+        assert first.startswith("open http://127.0.0.1:"), (command, first, process.communicate()[1])
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE_S) == 0, command
+    finally:
+        process.kill()
+
+
 @pytest.mark.soak
 @pytest.mark.parametrize("page", TRIED)
-def test_the_commands_of_a_page_work_in_their_order(page: str, built: Path, tmp_path: Path) -> None:
+def test_the_commands_of_a_page_work_in_their_order(
+    page: str, built: Path, board: str, tmp_path: Path, serving: list[subprocess.Popen[bytes]]
+) -> None:
     if page == "docs/real-data.md" and not (datasets_folder() / "emps").is_dir():
         pytest.skip(f"no recordings in {datasets_folder()}: see recordings/datasets/registry.toml")
     folder = checkout(tmp_path / "checkout")
     shutil.copytree(built, folder / "build")
-    for command in commands(page):
-        if command != RUN and reason(command) is None:
-            shell(smaller(command), folder)
+    (folder / "STARTS.toml").write_text(indented(page, 'schema = "starts/1"'))
+    address = f"127.0.0.1:{_free_port()}"
+    for shown in commands(page):
+        command = smaller(shown).replace("/dev/ttyACM0", board).replace(ADDRESS, address)
+        if command == RUN or reason(command) is not None:
+            continue
+        if re.match(SERVES, command):
+            if find_spec("distributed") is None:
+                pytest.skip("no Dask: pip install --editable '.[cluster]'")
+            told = command.replace(
+                "dask scheduler", f"dask scheduler --host 127.0.0.1 --port {address.partition(':')[2]}"
+            )
+            words = [sys.executable, "-m", *told.split()]
+            serving.append(subprocess.Popen(words, cwd=folder, env=environment(folder), stderr=subprocess.DEVNULL))
+        elif re.match(WATCHES, command):
+            watched(command, folder)
+        elif re.match(NO_TOOL, command):
+            without_a_tool(command, folder)
+        else:
+            shell(command, folder)
     for program in fenced(page, "python"):
         done = subprocess.run(
             [sys.executable, "-c", program],
@@ -130,5 +210,5 @@ def test_no_reason_and_no_smaller_number_has_outlived_its_command() -> None:
     shown = [command for page in PAGES for command in commands(page)]
     for pattern in NOT_TRIED:
         assert any(re.match(pattern, command) for command in shown), pattern
-    for large in SMALLER:
+    for large in (*SMALLER, *READERS):
         assert any(re.search(large, command) for command in shown), large

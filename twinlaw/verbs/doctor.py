@@ -29,6 +29,7 @@ EXTRAS: Mapping[str, str] = {
     "docs": "make docs",
     "mdf4": "import, export: logs in MDF4",
     "hdf5": "import: MATLAB 7.3, HDF5",
+    "matlab": "import: objects of MATLAB",
     "px4": "import: PX4 logs",
     "parquet": "import: Parquet files",
     "ros": "import: MCAP and ROS bags",

@@ -21,7 +21,7 @@ import numpy as np
 
 from recordings.channels import Span
 from recordings.datasets.library import IMPORTERS, import_record, records
-from recordings.formats import table
+from recordings.formats import compressed, table
 from recordings.importing import DEFAULT_PLANT, Imported, columns_of, import_file
 from recordings.layout import TextLayout
 from recordings.mapping.mapping import ColumnMapping, load_mapping, save_mapping
@@ -163,7 +163,7 @@ def _said(chosen: argparse.Namespace) -> ColumnMapping:
 
 
 def _out(chosen: argparse.Namespace, name: str) -> Path:
-    out: Path = chosen.out or Path(f"{Path(name).stem}.csv")
+    out: Path = chosen.out or Path(f"{Path(name.removesuffix(compressed.SUFFIX)).stem}.csv")
     options.demand_ending(out, ".csv")
     return out
 

@@ -14,7 +14,7 @@ from blind.effects.effect import effects_struct
 from blind.rigs.real.catalogue import ALL
 from blind.rigs.real.plants import RealPlant
 from blind.simulation.ce150 import Rig
-from blind.simulation.native import COMMON_DIR, DECLARATIONS, FLAGS, FREE_RUNS, pointer, set_fields
+from blind.simulation.native import COMMON_DIR, DECLARATIONS, FLAGS, OF_EVERY_RIG, pointer, set_fields
 from blind.simulation.record import Model, Record
 from toolchain.host import CText, build_shared, load_shared
 
@@ -70,15 +70,21 @@ def opened() -> tuple[Any, Any]:
 
 def declarations() -> str:
     """Text of simulation.h, for the compiler and for cffi."""
-    headers = (COMMON_DIR / "line.h", FOLDER / "rig.h", FOLDER / "state.h", COMMON_DIR / "predict.h")
-    line, rig, state, predict = (path.read_text(encoding="utf-8") for path in headers)
-    return "\n".join([line, rig, effects_struct(ALL), "", state, predict])
+    headers = (
+        COMMON_DIR / "line.h",
+        FOLDER / "rig.h",
+        FOLDER / "state.h",
+        COMMON_DIR / "stages.h",
+        COMMON_DIR / "predict.h",
+    )
+    line, rig, state, stages, predict = (path.read_text(encoding="utf-8") for path in headers)
+    return "\n".join([line, rig, effects_struct(ALL), "", state, stages, predict])
 
 
 @cache
 def _opened() -> tuple[Any, Any]:
     text = declarations()
-    common = [COMMON_DIR / name for name in FREE_RUNS]
+    common = [COMMON_DIR / name for name in OF_EVERY_RIG]
     sources: list[Path | CText] = [CText(DECLARATIONS, text), *(FOLDER / name for name in SOURCES), *common]
     return load_shared(text, build_shared("blind_real", sources, flags=FLAGS))
 

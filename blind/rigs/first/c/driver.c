@@ -21,9 +21,20 @@ void commands_settle(state_t *s, const double u_V[2])
     s->load_V = fabs(u_V[0]) + fabs(u_V[1]);
 }
 
-/* Dead band with rounded knees: w ln(1 + exp((|u| - d) / w)), d subtracted far outside, almost nothing inside. */
-static double dead_band(double u, double d, double w)
+double slewed(const effects_t *fx, state_t *s, int i, double u, double dt)
 {
+    return s->slewed_V[i] += clamp(u - s->slewed_V[i], -fx->slew_V_s[i] * dt, fx->slew_V_s[i] * dt);
+}
+
+double lagged(const effects_t *fx, state_t *s, int i, double u, double dt)
+{
+    return s->lagged_V[i] += (u - s->lagged_V[i]) * dt / (fx->lag_s[i] + dt);
+}
+
+/* Dead band with rounded knees: w ln(1 + exp((|u| - d) / w)), d subtracted far outside, almost nothing inside. */
+double dead_band(const effects_t *fx, int i, double u)
+{
+    double d = fx->dead_V[i], w = fx->dead_width[i] * d;
     double excess = (fabs(u) - d) / w;
     double kept = excess > 30.0 ? excess : log1p(exp(excess));
     double at_zero = log1p(exp(-d / w));
@@ -31,26 +42,16 @@ static double dead_band(double u, double d, double w)
 }
 
 /* Limit with a rounded corner, (1 + |u/L|^12)^(-1/12). */
-static double soft_limit(double u, double limit)
+double limited(const effects_t *fx, int i, double u)
 {
-    double x = fabs(u) / limit;
+    double x = fabs(u) / fx->limit_V[i];
     double x2 = x * x, x4 = x2 * x2, x12 = x4 * x4 * x4;
     return u / pow(1.0 + x12, 1.0 / 12.0);
 }
 
-static double motor_voltage(const rig_t *rig, const effects_t *fx, state_t *s, int rotor, double u)
+double sagged(const effects_t *fx, const state_t *s, int i, double u)
 {
-    if (fx->dead_V[rotor] > 0.0)
-        u = dead_band(u, fx->dead_V[rotor], fx->dead_width[rotor] * fx->dead_V[rotor]);
-    if (fx->limit_V[rotor] > 0.0)
-        u = soft_limit(u, fx->limit_V[rotor]);
-    if (fx->sag[rotor] != 0.0)
-        u *= 1.0 - fx->sag[rotor] * s->load_V / 10.0;
-    if (fx->current_V[rotor] > 0.0) {
-        double back_V = rotor_damping(rig, rotor, s->omega[rotor]) * s->omega[rotor] / rig->drive[rotor];
-        u = clamp(u, back_V - fx->current_V[rotor], back_V + fx->current_V[rotor]);
-    }
-    return u;
+    return u * (1.0 - fx->sag[i] * s->load_V / 10.0);
 }
 
 double driver_output(const rig_t *rig, const effects_t *fx, state_t *s, int rotor, double dt)
@@ -61,9 +62,10 @@ double driver_output(const rig_t *rig, const effects_t *fx, state_t *s, int roto
         u = fx->step_V[rotor] * floor(u / fx->step_V[rotor] + 0.5);
     if (fx->play_V[rotor] > 0.0)
         u = s->played_V[rotor] = clamp(s->played_V[rotor], u - fx->play_V[rotor], u + fx->play_V[rotor]);
-    if (fx->slew_V_s[rotor] > 0.0)
-        u = s->slewed_V[rotor] += clamp(u - s->slewed_V[rotor], -fx->slew_V_s[rotor] * dt, fx->slew_V_s[rotor] * dt);
-    if (fx->lag_s[rotor] > 0.0)
-        u = s->lagged_V[rotor] += (u - s->lagged_V[rotor]) * dt / (fx->lag_s[rotor] + dt);
-    return motor_voltage(rig, fx, s, rotor, u);
+    u = stages(fx, s, rotor, u, dt);
+    if (fx->current_V[rotor] > 0.0) {
+        double back_V = rotor_damping(rig, rotor, s->omega[rotor]) * s->omega[rotor] / rig->drive[rotor];
+        u = clamp(u, back_V - fx->current_V[rotor], back_V + fx->current_V[rotor]);
+    }
+    return u;
 }

@@ -32,7 +32,7 @@ static double stepped(const effects_t *fx, state_t *s, int i, double u)
     return s->stepped_V[i];
 }
 
-static double slewed(const effects_t *fx, state_t *s, int i, double u, double dt)
+double slewed(const effects_t *fx, state_t *s, int i, double u, double dt)
 {
     double up = fx->slew_V_s[i] * (1.0 + fx->slew_skew[i]), down = fx->slew_V_s[i] * (1.0 - fx->slew_skew[i]);
     s->slewed_V[i] += within(u - s->slewed_V[i], -down * dt, up * dt);
@@ -40,7 +40,7 @@ static double slewed(const effects_t *fx, state_t *s, int i, double u, double dt
 }
 
 /* Two lags in a row that share the time between them. */
-static double lagged(const effects_t *fx, state_t *s, int i, double u, double dt)
+double lagged(const effects_t *fx, state_t *s, int i, double u, double dt)
 {
     double first_s = fx->lag_s[i] * fx->lag_split[i], second_s = fx->lag_s[i] - first_s;
     s->first_V[i] += (u - s->first_V[i]) * -expm1(-dt / first_s);
@@ -49,7 +49,7 @@ static double lagged(const effects_t *fx, state_t *s, int i, double u, double dt
 }
 
 /* Nothing up to d (1 - knee), a parabola up to d (1 + knee), |u| - d beyond; d differs a little between the signs. */
-static double dead_band(const effects_t *fx, int i, double u)
+double dead_band(const effects_t *fx, int i, double u)
 {
     double d = fx->dead_V[i] * (u > 0.0 ? 1.0 + fx->dead_skew[i] : 1.0 - fx->dead_skew[i]);
     double from = d * (1.0 - fx->dead_knee[i]), to = d * (1.0 + fx->dead_knee[i]), size = fabs(u);
@@ -58,10 +58,15 @@ static double dead_band(const effects_t *fx, int i, double u)
 }
 
 /* Straight up to a knee, then towards the limit as a tanh. */
-static double limited(const effects_t *fx, int i, double u)
+double limited(const effects_t *fx, int i, double u)
 {
     double room = fx->limit_V[i] * fx->limit_knee[i], knee = fx->limit_V[i] - room, size = fabs(u);
     return size <= knee ? u : copysign(knee + room * tanh((size - knee) / room), u);
+}
+
+double sagged(const effects_t *fx, const state_t *s, int i, double u)
+{
+    return u / (1.0 + fx->sag[i] * s->load_V / 10.0);
 }
 
 void driver_step(const rig_t *rig, const effects_t *fx, state_t *s, double dt)
@@ -77,16 +82,6 @@ void driver_step(const rig_t *rig, const effects_t *fx, state_t *s, double dt)
         double u = came[i] + fx->bias_V[i] + fx->cross[i] * came[1 - i];
         if (fx->step_V[i] > 0.0)
             u = stepped(fx, s, i, u);
-        if (fx->slew_V_s[i] > 0.0)
-            u = slewed(fx, s, i, u, dt);
-        if (fx->lag_s[i] > 0.0)
-            u = lagged(fx, s, i, u, dt);
-        if (fx->dead_V[i] > 0.0)
-            u = dead_band(fx, i, u);
-        if (fx->limit_V[i] > 0.0)
-            u = limited(fx, i, u);
-        if (fx->sag[i] != 0.0)
-            u /= 1.0 + fx->sag[i] * s->load_V / 10.0;
-        s->volts[i] = u * s->dip_factor[i];
+        s->volts[i] = stages(fx, s, i, u, dt) * s->dip_factor[i];
     }
 }

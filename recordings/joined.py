@@ -1,0 +1,74 @@
+"""Channels of one file as one recording: several runs behind one another on one clock, and nothing before the inputs are known."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from recordings.channels import Array, Channel, Span
+from records.log import LogColumns
+from records.restarts import pause_s, restart_rows
+
+
+def on_one_clock(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:
+    """The channels with times that count on where they begin again, and what is to be said of it.
+
+    As they are where clocks begin again unlike one another: then nobody knows which samples belong together.
+    """
+    clocks = {name: channel.t_s for name, channel in channels.items() if channel.t_s is not None}
+    rows = {
+        name: restart_rows(t_s) if np.isfinite(t_s).all() else np.zeros(0, np.int64) for name, t_s in clocks.items()
+    }
+    counts = {len(found) for found in rows.values()}
+    if len(counts) != 1 or counts == {0}:
+        return dict(channels), []
+    pieces = {name: list(pairwise([0, *rows[name].tolist(), len(t_s)])) for name, t_s in clocks.items()}
+    shifts, begins = _counted_on(clocks, pieces)
+    moved = {
+        name: np.concatenate([t_s[a:b] + shift for (a, b), shift in zip(pieces[name], shifts, strict=True)])
+        for name, t_s in clocks.items()
+    }
+    told = ", ".join(f"{begin:g} s" for begin in begins[1:4])
+    said = (
+        f"times begin again {len(begins) - 1} times: several recordings in one file; they count on from {told} here, "
+        "and each is used as another log"
+    )
+    return {name: Channel(moved.get(name), c.values, c.faults) for name, c in channels.items()}, [said]
+
+
+def _counted_on(
+    clocks: Mapping[str, Array], pieces: Mapping[str, Sequence[tuple[int, int]]]
+) -> tuple[list[float], list[float]]:
+    """By how much the times of each recording move, and where it begins then: in the first whole second behind a pause."""
+    shifts, begins, end_s = [0.0], [], -np.inf
+    for number in range(len(next(iter(pieces.values())))):
+        runs = [t_s[slice(*pieces[name][number])] for name, t_s in clocks.items()]
+        first_s, last_s = min(run[0] for run in runs), max(run[-1] for run in runs)
+        if number:
+            shifts.append(float(np.ceil(end_s) - first_s))
+        begins.append(float(first_s + shifts[-1]))
+        end_s = last_s + shifts[-1] + pause_s(max(float(np.median(np.diff(run))) for run in runs))
+    return shifts, begins
+
+
+def from_the_inputs(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -> tuple[Span, list[str]]:
+    """The span from where every input is known, and what is to be said of the samples in front of it."""
+    firsts = {name: _first_s(channels[name], span) for name in columns.inputs}
+    name = max(firsts, key=lambda name: firsts[name])
+    begin_s = firsts[name]
+    outputs = [channels[column].t_s for column in columns.outputs]
+    lost = max((int(np.sum(span.holds(t_s) & (t_s < begin_s))) for t_s in outputs if t_s is not None), default=0)
+    if not np.isfinite(begin_s) or not lost:
+        return span, []
+    said = f"{name} begins at {begin_s:.9g} s: {lost} samples of the outputs in front of it are left out"
+    return Span(begin_s, span.until_s), [said]
+
+
+def _first_s(channel: Channel, span: Span) -> float:
+    """When a channel has its first number within the span; before all time for a constant and for one that is known before."""
+    if channel.t_s is None:
+        return -np.inf
+    known = np.isfinite(channel.values) & np.isfinite(channel.t_s)
+    if np.any(known & (channel.t_s <= span.from_s)):
+        return -np.inf
+    return float(np.min(channel.t_s[known], initial=np.inf))

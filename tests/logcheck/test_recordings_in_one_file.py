@@ -1,0 +1,139 @@
+"""Several recordings in one file, by clocks, counters or leaps, and readings that stop where no jump shows; honest logs are left whole."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from logcheck.dead import dead_findings, read_again
+from logcheck.integrity import examine
+from logcheck.seams import seam_findings
+from recordings.datasets.files import datasets_folder
+from recordings.datasets.library import IMPORTERS, import_record, records
+from records.errors import BadInput
+from records.log import RunLog, load_log, save_log
+from records.restarts import restart_rows
+from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
+from tests.plants import bound
+
+POSITIONS = ("psi_rad", "phi_rad")
+
+
+def in_one_file(folder: Path, *logs: RunLog, header: bool = False) -> Path:
+    """The logs as one file, each with its own times; with `header`, each with its header too."""
+    texts = []
+    for index, log in enumerate(logs):
+        save_log(folder / f"{index}.csv", log)
+        texts.append((folder / f"{index}.csv").read_text())
+    rest = texts[1:] if header else [text.partition("\n")[2] for text in texts[1:]]
+    (folder / "log.csv").write_text("".join([texts[0], *rest]))
+    (folder / "log.toml").write_text((folder / "0.toml").read_text())
+    return folder / "log.csv"
+
+
+def begins(log: RunLog) -> list[int]:
+    return np.flatnonzero(examine([log], PLANT, names=["log"]).logs[0].begins).tolist()
+
+
+@pytest.mark.parametrize("header", [False, True])
+def test_times_that_begin_again_begin_another_log(tmp_path: Path, header: bool) -> None:
+    """Truth: 20 s from 0 s on, then 8 s from 0 s on, then 8 s from 5 s on."""
+    first = log_of(2000)
+    later = replace(log_of(800), t_s=5.0 + 0.01 * np.arange(800))
+    log = load_log(in_one_file(tmp_path, first, log_of(800), later, header=header), first.columns)
+    assert begins(log) == [2000, 2800]
+    assert np.diff(log.t_s).min() > 0.0
+    assert [(entry.at_s, entry.own_s) for entry in log.restarts] == [(21.0, 0.0), (30.0, 5.0)]
+    (found,) = examine([log], PLANT, names=["log"]).findings
+    assert found.kind == "restart"
+    assert "at 0 s behind 19.99 s, which counts as 21 s here" in found.sentence
+
+
+def test_rows_out_of_order_are_no_recordings(tmp_path: Path) -> None:
+    log = log_of(300)
+    for rows in ([*range(200), 150, *range(200, 300)], [*range(290), *range(20)], [*range(300)][::-1]):
+        path = in_one_file(tmp_path, log)
+        lines = path.read_text().splitlines()
+        path.write_text("\n".join([lines[0], *(lines[row + 1] for row in rows)]) + "\n")
+        with pytest.raises(BadInput, match="a time that increases"):
+            load_log(path, log.columns)
+
+
+def test_sequence_numbers_that_begin_again_begin_another_log_and_a_counter_at_its_end_does_not(tmp_path: Path) -> None:
+    log = log_of(2000)
+    anew = np.concatenate([np.arange(1200), np.arange(800)])
+    assert begins(replace(log, seq=anew)) == [1200]
+    path = in_one_file(tmp_path, replace(log, seq=(65_000 + np.arange(2000)) % 65_536))
+    whole = load_log(path, log.columns)
+    assert whole.seq is not None
+    assert np.all(np.diff(whole.seq) == 1)
+    assert begins(whole) == []
+    assert restart_rows(np.arange(9.0)).size == 0
+
+
+def second_run(log: RunLog, row: int) -> RunLog:
+    """The log up to a row, at which the azimuth is back where it began, and then from its first row on: the rig started again."""
+    rows = np.r_[0:row, 0 : len(log.t_s) - row]
+    phi = rounded(0.2 * np.sin(2.0 * np.pi / row * np.arange(len(rows))))
+    return replace(log, u=log.u[rows], y=np.column_stack([log.y[rows, 0], phi]))
+
+
+def test_a_run_that_begins_where_the_first_began_is_another_one_though_one_output_leaps_alone() -> None:
+    log = second_run(log_of(), 780)  # elevation 0.3 rad from where it began
+    (found,) = seam_findings(log, "a", STEPS, read_again(log), POSITIONS)
+    assert found.begins is not None
+    assert np.flatnonzero(found.begins).tolist() == [780]
+    assert "the log leaps between 7.79 s and 7.8 s, psi_rad by" in found.finding.sentence
+
+
+@pytest.mark.parametrize("told_by", ["a reference", "an input in an open loop"])
+def test_one_output_that_leaps_with_a_reference_or_an_open_loop_s_input_is_another_run(told_by: str) -> None:
+    log = log_of()
+    rows = np.arange(2000) >= 900
+    log.y[rows, 0] += 80 * STEP_RAD
+    assert list(seam_findings(log, "a", STEPS, read_again(log), POSITIONS)) == []  # its sensor may have slipped
+    if told_by == "a reference":
+        other = replace(log, extra={"psi_ref_rad": np.where(rows, 0.2, -0.2)})
+    else:
+        other = replace(log, loop="open", u=log.u + np.where(rows, 2.0, 0.0)[:, None])
+    (found,) = seam_findings(other, "a", STEPS, read_again(other), POSITIONS)
+    assert found.begins is not None
+    assert np.flatnonzero(found.begins).tolist() == [900]
+
+
+@pytest.mark.parametrize("period_s", [0.02, 0.01, 0.002])
+def test_readings_that_stop_and_go_on_within_four_counts_of_there_are_left_out(period_s: float) -> None:
+    """Truth: a sine of 0.5 rad is not read for the half of its period after which it is back; without that nothing is told."""
+    t_s = np.arange(0.0, 12.0, period_s)
+    psi = rounded(0.5 * np.sin(2.5 * t_s))
+    plain = log_of(len(t_s))
+    log = replace(plain, t_s=t_s, sample_period_s=period_s, y=np.column_stack([psi, plain.y[:, 1]]))
+    assert list(dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))) == []
+    start_s = (2.0 * np.pi + 0.4) / 2.5
+    unread = (t_s > start_s) & (t_s < start_s + (np.pi - 0.8) / 2.5)  # from 0.4 rad of phase up and down again
+    first = int(np.argmax(unread))
+    log.y[unread, 0] = psi[first]
+    assert abs(psi[unread.nonzero()[0][-1] + 1] - psi[first]) < 4.0 * STEP_RAD + 0.5 * 2.5 * period_s
+    (found,) = dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))
+    assert found.excluded is not None
+    assert found.excluded[unread].mean() > 0.9
+    assert found.excluded.sum() <= unread.sum() + 1
+    assert "/s just before" in found.finding.sentence
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("dataset", IMPORTERS)
+def test_no_recording_of_a_rig_is_cut_where_rows_follow_one_another_or_loses_a_reading(dataset: str) -> None:
+    if not (datasets_folder() / dataset).is_dir():
+        pytest.skip(f"no recordings in {datasets_folder()}: see recordings/datasets/registry.toml")
+    for record in records(dataset):
+        log = import_record(dataset, record)
+        found = examine([log], bound(log.columns.plant), names=[record])
+        assert {entry.kind for entry in found.findings} <= KINDS_OF_HONEST_LOGS, (record, found.findings)
+        assert not found.logs[0].unread.any()
+        assert not found.logs[0].excluded.any()
+
+
+KINDS_OF_HONEST_LOGS = {"break", "constant", "jitter", "missing_rows", "not_a_number", "not_recorded", "other_grid"}
+KINDS_OF_HONEST_LOGS |= {"sample_period", "saturated", "simulated", "simulated_looking"}
