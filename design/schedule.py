@@ -24,6 +24,10 @@ NOISE = 1e-11
 # flight of `make run` leaves its references by 25 deg, at 2 ms it is 0.1 deg further off on the average, at 5 ms nothing is seen.
 CONSTANT_Q3_BELOW_S = 2.5e-3
 DIGITS = 8  # float32 holds 7
+# A constant p_i has few digits (records.table.SHORT_BITS) where these move its distance from 1 by this share at most, else all. P is
+# delta^n where p_1, p_2 .. are 1, and that distance, which falls with the sample period to the power n, places the slow poles: rounding
+# 1 - p_1 of the CE150 costs 0.04 % at 10 ms, 28 % at 1 ms, and at 0.5 ms it is all gone and the loop unstable.
+ROUNDED_SHARE = 0.01
 
 
 @dataclass(frozen=True)
@@ -86,13 +90,15 @@ def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degrees: Degrees,
     fitted = [_kept(psi_rad, column, degrees.q) for column in q.T]
     if sample_period_s < CONSTANT_Q3_BELOW_S:
         fitted[3] = _kept(psi_rad, q[:, 3], 0) + (0.0,) * degrees.q
-    return Schedule(q=tuple(fitted), p=tuple(_kept(psi_rad, column, degrees.p) for column in p.T))
+    return Schedule(q=tuple(fitted), p=tuple(_kept(psi_rad, column, degrees.p, 1.0) for column in p.T))
 
 
-def _kept(psi_rad: Array, values: Array, degree: int) -> Polynomial:
-    """The stored fit, a constant as a short number."""
+def _kept(psi_rad: Array, values: Array, degree: int, origin: float = 0.0) -> Polynomial:
+    """The stored fit, a constant as a short number where its distance from `origin`, which is what matters, allows that."""
     fitted = stored_fit(psi_rad, values, degree)
-    return fitted if degree else (short(fitted[0]),)
+    rounded = short(fitted[0])
+    is_kept = abs(rounded - fitted[0]) <= ROUNDED_SHARE * abs(fitted[0] - origin)
+    return (rounded,) if degree == 0 and is_kept else fitted
 
 
 def schedule_of(law: AxisLaw) -> Schedule:

@@ -22,14 +22,14 @@ PERIODS_S = (0.0005, 0.0007, 0.001, 0.0012, 0.002, 0.005, 0.007, 0.02, 0.05)
 
 @pytest.mark.parametrize("period_s", sampled(PERIODS_S, keep=[0.0005, 0.05]))
 def test_the_slowest_poles_stay_near_where_they_were_placed(period_s: float) -> None:
-    """Within 6 %, and within a third where q_3 is the same at all elevations."""
+    """Within 6 %, and within a fifth where q_3 is the same at all elevations."""
     settings = replace(read_settings(BOUND), sample_period_s=period_s)
     table, report = design(BOUND, settings)
     assert SAMPLE_PERIODS_S[0] <= table.sample_period_s == period_s <= SAMPLE_PERIODS_S[1]
     constant = period_s < CONSTANT_Q3_BELOW_S
     for entry in report.pole_entries():
         assert entry["stable"]
-        assert entry["worst_slowest_rad_s"] < (0.67 if constant else 0.94) * entry["designed_slowest_rad_s"]
+        assert entry["worst_slowest_rad_s"] < (0.8 if constant else 0.94) * entry["designed_slowest_rad_s"]
 
 
 @pytest.mark.parametrize("period_s", sampled(PERIODS_S, keep=[0.001]))
