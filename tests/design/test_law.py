@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from design.direct_form import to_direct
+from design.direct_form import DeltaForm, to_direct
 from design.law import FloatLaw, law_reset, law_step, polynomial, saturate
 from design.schedule import evaluate, schedule_of
-from tests.design.helicopter import DOM2, equal, settings_for, table_for
+from design.settings import read_settings
+from tests.design.helicopter import DOM2, equal, helicopter, settings_for, table_for
 
 TABLE = table_for(settings_for())
 ANGLES = st.floats(-0.78, 0.78)
@@ -25,23 +26,29 @@ def unfiltered(table):
     )
 
 
-@pytest.mark.parametrize("elevation", [(DOM2, "integral"), (equal(-8.0), "q3_zero")])
-def test_law_fulfils_A_v_equals_Q_e_plus_A_minus_P_s_also_when_saturated(elevation):
-    """At a constant scheduling angle, in the paper's powers of z^-1: recursion over stored v, s, e."""
-    table = unfiltered(table_for(settings_for(elevation)))
+@pytest.mark.parametrize(
+    "wishes",
+    [settings_for((DOM2, "integral")), settings_for((equal(-8.0), "q3_zero")), read_settings(helicopter())],
+    ids=["six poles", "no integrator", "roll-off"],
+)
+def test_law_fulfils_A_v_equals_Q_e_plus_A_minus_P_s_also_when_saturated(wishes):
+    """At a constant scheduling angle, in the paper's powers of z^-1 and with the table's own A: recursion over stored v, s, e."""
+    table = unfiltered(table_for(wishes))
     psi, law = 0.25, table.elevation
     form = to_direct(evaluate(schedule_of(law), psi))
-    observer = np.poly([0.9, 0.9, 0.9])
+    observer = np.zeros(len(form.p))
+    observer[:4] = to_direct(DeltaForm(form.q, np.array(law.a))).p
+    order = len(form.p) - 1
     state, rng = law_reset(table, psi, 0.0), np.random.default_rng(5)
-    v, s, e = np.zeros(4), np.zeros(4), np.zeros(4)
+    v, s, e = np.zeros(5), np.zeros(5), np.zeros(4)
     feedforward_V, saturated = 0.0, 0
     for _ in range(400):
         reference = psi + rng.uniform(-0.9, 0.4)
         state, u_M_V, _ = law_step(table, state, reference, 0.0, psi, 0.0)
         feedforward_V = polynomial(law.feedforward_V, reference)
         e = np.append(reference - psi, e[:3])
-        now = form.q @ e + (observer - form.p)[1:] @ s[:3] - observer[1:] @ v[:3]
-        v, s = np.append(now, v[:3]), np.append(u_M_V - feedforward_V, s[:3])
+        now = form.q @ e + (observer - form.p)[1:] @ s[:order] - observer[1:] @ v[:order]
+        v, s = np.append(now, v[:4]), np.append(u_M_V - feedforward_V, s[:4])
         saturated += u_M_V in (law.u_min_V, law.u_max_V)
         assert u_M_V == pytest.approx(np.clip(now + feedforward_V, law.u_min_V, law.u_max_V), abs=1e-7)
     assert saturated > 20
