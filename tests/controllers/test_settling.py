@@ -11,6 +11,7 @@ from controllers.table import CONTROLLERS
 from design.settings import read_settings
 from records.errors import BadInput
 from records.plant import load_plant
+from sim.activity import Activity
 from sim.bind import bind
 from sim.equilibrium import equilibrium
 from sim.loop import fly
@@ -67,7 +68,7 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
 
 
 def test_a_flight_that_left_its_references_is_told() -> None:
-    near = Tracking("psi_rad", 3, 0.2, 0.02, 0.01, 0.3)
+    near = Tracking("psi_rad", 3, 0.2, 0.02, 0.01, 0.3, "u_M_V", Activity(4.0, 10.0))
     far, wild = replace(near, steady_error_rad=0.25), replace(near, overshoot=1.5)
     assert left([near]) == ()
     assert left([near, far]) == ("psi_rad by 17.2 deg",)

@@ -18,7 +18,15 @@ from tests.soak import SOAK, sampled
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.equality import EqualityResult, compare, differing
 from verification.host_law import HostLaw, host_law
-from verification.stimuli import Stimulus, reference_jumps, replayed, sequences, standard_stimuli, total_steps
+from verification.stimuli import (
+    Stimulus,
+    from_random_bits,
+    reference_jumps,
+    replayed,
+    sequences,
+    standard_stimuli,
+    total_steps,
+)
 
 DATASETS = Path(os.environ.get("TWINLAW_DATASETS", Path(__file__).resolve().parents[2].parent / "shared" / "datasets"))
 STEPS = 100_000 if SOAK else 20_000
@@ -51,7 +59,8 @@ def test_the_stimuli_reach_limits_special_numbers_and_broken_states() -> None:
     assert ((outputs["reference jumps"][..., 0] > 0.0) & (outputs["reference jumps"][..., 0] < 10.0)).mean() > 0.2
     inputs = np.concatenate([stimulus.inputs.view(np.float32).ravel() for stimulus in stimuli])
     magnitude = np.abs(inputs)
-    assert min(np.isnan(inputs).sum(), np.isinf(inputs).sum(), ((magnitude > 0) & (magnitude < 1e-38)).sum()) > 450
+    # Two of the 20 special numbers are infinite: one in 300 of 80 000 inputs and one in 160 of 39 000 are 510, with a deviation of 22.
+    assert min(np.isnan(inputs).sum(), np.isinf(inputs).sum(), ((magnitude > 0) & (magnitude < 1e-38)).sum()) > 400
 
 
 def test_the_same_seed_gives_the_same_stimuli_and_sequences_set_no_state() -> None:
@@ -189,9 +198,13 @@ def _states(twin: Float32Twin, stimulus: Stimulus) -> np.ndarray:
 
 
 def _mismatches(table: ControllerTable, texts: dict[str, str]) -> int:
-    """Against the C that equals the twin: a Python run for each change would cost the most."""
+    """Against the C that equals the twin: a Python run for each change would cost the most.
+
+    An input that is no number meets a state that holds none in its place in one lane of random bits in 1500.
+    """
     changed = HostLaw(texts, flags=UNOPTIMISED_FLAGS)
-    result: EqualityResult = compare(host_law(table), changed, standard_stimuli(table, 6_000))
+    stimuli = [*standard_stimuli(table, 3_000), from_random_bits(np.random.default_rng(1), 20_000)]
+    result: EqualityResult = compare(host_law(table), changed, stimuli)
     assert table.digest in texts["law.c"]
     assert STATE_WORDS == 30
     return result.equality.mismatches
