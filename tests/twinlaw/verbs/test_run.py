@@ -98,11 +98,11 @@ def test_verification_has_the_fields_of_the_contract_and_passes(out: Path) -> No
 
 
 def test_the_poles_that_were_asked_for_stand_out_of_those_that_came(out: Path) -> None:
-    # Hundreds of dots lie over the six crosses of an axis: a cross 8 points wide, twice a dot, is seen on them.
+    # Hundreds of dots lie over the crosses of an axis: a cross 8 points wide, twice a dot, is seen on them.
     text = (out / "report.html").read_text(encoding="utf-8")
     cross = re.search(r'<path id="(\w+)" d="M -4 4\s+L 4 -4\s', text)
     assert cross is not None
-    assert text.count(f'"#{cross[1]}"') == 2 * (6 + 1)  # six an axis, and one in the legend
+    assert text.count(f'"#{cross[1]}"') == 2 * (7 + 1)  # six poles and the roll-off's an axis, and one in the legend
 
 
 def test_the_flight_tracks_within_two_percent_and_a_twentieth_of_a_degree(out: Path) -> None:
@@ -215,7 +215,7 @@ def test_the_report_is_one_page_without_network_or_script(out: Path) -> None:
     text = (out / "report.html").read_text(encoding="utf-8")
     page = _Page()
     page.feed(text)
-    assert page.tags.count("svg") == 3
+    assert page.tags.count("svg") == 5  # flight, poles, margins, coefficients, roll-off
     assert "script" not in page.tags
     assert [link for link in page.links if not link.startswith("#")] == []
     assert not re.search(r"url\((?!#)|@import", text)
