@@ -186,13 +186,13 @@ def test_default_plant_file_overshoots_at_most_two_percent_and_rests_within_a_tw
         flight = fly(helicopter(), default_table(), t_s, alone, start_deg=start_deg)
         assert np.max(flight.overshoot(axis)) <= 0.02
         assert np.max(flight.steady_error_deg(axis)) <= 0.05
-        assert flight.saturated < 0.006
+        assert flight.saturated < 0.01, "less than a second of the 95"
 
 
 def test_default_plant_file_holds_both_axes_when_both_move():
-    """Azimuth steps of up to 90 deg at 30 deg elevation push the elevation by a third of a degree; it comes back."""
+    """Azimuth steps of up to 90 deg push the elevation, after a step of 10 to 30 deg, by half a degree; it comes back."""
     flight = fly(helicopter(), default_table(), *manoeuvre(), start_deg=None)
-    assert np.max(flight.overshoot(0)) <= 0.055
+    assert np.max(flight.overshoot(0)) <= 0.05 + 0.009, "half a degree, seen by an encoder of 0.09 deg"
     assert np.max(flight.overshoot(1)) <= 0.02
     assert np.max(flight.steady_error_deg(0)) <= 0.1
     assert np.max(flight.steady_error_deg(1)) <= 0.05

@@ -16,7 +16,7 @@ from design.report import ANGLES_BETWEEN, make_report
 from design.settings import MarginLimits, read_settings
 from design.table import design, make_table
 from records.errors import BadInput
-from records.table import load_table, table_text
+from records.table import AXES, load_table, table_text
 from sim.bind import bind
 from tests.angles import few_angles
 from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, helicopter, settings_for
@@ -212,6 +212,7 @@ def test_no_table_leaves_the_design_below_a_stated_margin():
 
 
 def test_default_plant_file_passes_with_room():
+    """6 dB of gain either way and 35 deg of phase are what textbooks ask for."""
     table, report = design(helicopter(), read_settings(helicopter()))
     assert table_text(table) == table_text(stated_table("ce150"))
     for axis in (report.elevation, report.azimuth):
@@ -219,9 +220,10 @@ def test_default_plant_file_passes_with_room():
         assert worst.sensitivity < 1.8
         assert math.degrees(worst.phase_rad) > 35.0
         assert worst.delay_s > 0.06
-        assert worst.gain_up > 2.3
-        assert worst.gain_down < 0.33
-    assert report.coupled.worst_rad_s < -2.5
+        assert worst.gain_up > 2.0
+        assert worst.gain_down < 0.5
+    placed = [pole.real for axis in AXES for pole in read_settings(helicopter()).axis(axis).placed_rad_s]
+    assert report.coupled.worst_rad_s < 0.9 * max(placed), "fit and coupling together take less than a tenth"
 
 
 def test_the_literal_text_of_the_seed_can_be_designed_for_as_well():
