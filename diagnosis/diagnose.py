@@ -281,10 +281,10 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether what explains the logs changes what a model predicts. What is not explained is not asked, nor are parameters: the plain
-    plant has them moved as far as it may."""
+    """Whether anything that was found changes what a model predicts. Parameters are not asked: the plain plant has them moved as far as it
+    may."""
     weighed = judged.weighed
-    if not weighed.explained or weighed.retune > max(weighed.probabilities, default=0.0):
+    if weighed.retune > max(weighed.probabilities, default=0.0):
         return seen, True
     beyond = [] if judged.beyond is None else [judged.beyond.fitted]
     rules = consequence(seen.case, seen.retuned, [*beyond, *weighed.fitted])
