@@ -24,7 +24,7 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.fit.between_rows import between_rows, straight
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.nominal import plain_fit, with_memory
+from diagnosis.fit.nominal import best_plain_fit, plain_fit, with_memory
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
@@ -128,7 +128,7 @@ def _seen(bound: BoundPlant, material: Material) -> Seen:
 
 def _detected(case: Case, checked: Case | None) -> Seen:
     """Fit the plant alone, and score the library beside it."""
-    nominal = plain_fit(case)
+    nominal = best_plain_fit(case)
     held = case
     case, nominal, between = between_rows(case, nominal)
     nominal = with_memory(case, nominal)
@@ -281,10 +281,10 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether what explains the logs changes what a model predicts. What is not explained is not asked, nor are parameters: the plain
-    plant has them moved as far as it may."""
+    """Whether anything that was found changes what a model predicts. Parameters are not asked: the plain plant has them moved as far as it
+    may."""
     weighed = judged.weighed
-    if not weighed.explained or weighed.retune > max(weighed.probabilities, default=0.0):
+    if weighed.retune > max(weighed.probabilities, default=0.0):
         return seen, True
     beyond = [] if judged.beyond is None else [judged.beyond.fitted]
     rules = consequence(seen.case, seen.retuned, [*beyond, *weighed.fitted])

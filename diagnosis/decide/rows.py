@@ -13,6 +13,7 @@ from diagnosis import decisions
 from diagnosis.decide.wiring import fitted_or_none, is_strained
 from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import gain_over
 from diagnosis.hypothesis.case import Case
 from jobs.thread_map import thread_map
 from records.errors import BadInput
@@ -84,7 +85,7 @@ def misplaced(case: Case, fitted: Callable[[Case], Fit], ways: Sequence[int]) ->
 
     def gain_of(slip: Misplaced) -> float:
         fit = fitted_or_none(moved(short, slip), fitted)
-        return -np.inf if fit is None or is_strained(case, fit) else fit.log_posterior - usual.log_posterior
+        return -np.inf if fit is None or is_strained(case, fit) else gain_over(short, usual, fit)
 
     slips = list(_by_one_row(len(case.library.bound.model.inputs), ways))
     gains = thread_map(gain_of, slips)

@@ -20,8 +20,7 @@ RANKED = 12
 @dataclass(frozen=True, eq=False)
 class Weighed:
     """Hypotheses with effects, most probable first, with their probabilities; that of an effect that no candidate explains; that of
-    parameters beyond their spread; the scale in nats on which hypotheses are compared; and whether the best leaves forms no more than
-    is usual."""
+    parameters beyond their spread; and the scale in nats on which hypotheses are compared."""
 
     fitted: tuple[FittedHypothesis, ...]
     probabilities: tuple[float, ...]
@@ -29,7 +28,6 @@ class Weighed:
     retune: float
     scale: float
     decisions: tuple[Decision, ...] = ()
-    explained: bool = False
 
     @property
     def nameless(self) -> bool:
@@ -112,7 +110,6 @@ def weigh(
         float(weights[-2]),
         scale,
         rules,
-        bool(left <= expected),
     )
 
 

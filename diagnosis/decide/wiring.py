@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.nominal import gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.search.draughts import beyond_noise
@@ -60,7 +61,7 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     if usual is None or not found:
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
-    gain = fit.log_posterior - usual.log_posterior
+    gain = gain_over(short, usual, fit)
     if gain > (decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN):
         alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
         return _either(best, alike), gain

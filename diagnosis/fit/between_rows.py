@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decisions import decided
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import plain_fit
+from diagnosis.fit.nominal import gain_over, plain_fit
 from diagnosis.hypothesis.case import Case, FilteredLog
 from records.reasons import Decision
 
@@ -24,7 +24,7 @@ def between_rows(case: Case, held: Fit) -> tuple[Case, Fit, tuple[Decision, ...]
     if other is case:
         return case, held, ()
     found = plain_fit(other)
-    gain = found.log_posterior - held.log_posterior
+    gain = gain_over(case, held, found)
     better = gain > decisions.WORTH_STRAIGHT
     rule = decided("between_rows", "inputs", gain, decisions.WORTH_STRAIGHT, "straight" if better else "held")
     return (other, found, (rule,)) if better else (case, held, (rule,))

@@ -1,33 +1,34 @@
 """The plant alone, fitted: what every other hypothesis is compared with."""
 
-import numpy as np
-
 from diagnosis import decisions
 from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of
+from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of, with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from jobs.thread_map import thread_map
 from records.errors import BadInput
 
 NOMINAL_ROUNDS = 4
-SETTLED_NOISE = 0.05
-MEMORY_ROUNDS, SETTLED_GAIN = (
-    6,
-    1.0,
-)  # nats: white noise and noise with a memory give way to each other by little a round
+NOISE_STARTS = tuple(float(decisions.FIRST_PROCESS_NOISE) + by for by in (-1.0, 0.0, 1.0))  # log10 rad/s per sqrt(s)
+FINE_STEP = 0.1  # decades
+SETTLING_ROUNDS, SETTLED_GAIN = 8, 1.0  # nats: parameters and noises give way to each other by little a round
 
 
 def nominal_fit(case: Case) -> Fit:
     """The plant re-tuned within its spread, with all noise that then remains, white and with a memory."""
-    return with_memory(case, plain_fit(case))
+    return with_memory(case, best_plain_fit(case))
 
 
-def plain_fit(case: Case) -> Fit:
-    """The plant re-tuned within its spread, with the white noise that then remains."""
-    hypothesis = nominal_hypothesis(case, decisions.FIRST_PROCESS_NOISE)
-    found = fit(case, hypothesis, rounds=NOMINAL_ROUNDS)
-    for turn in range(NOMINAL_ROUNDS):
+def best_plain_fit(case: Case) -> Fit:
+    """The likeliest of plain fits that begin at several levels of noise: where axes stick, slopes lead to the next hill only."""
+    return max(thread_map(lambda first: plain_fit(case, first), NOISE_STARTS), key=lambda found: found.log_posterior)
+
+
+def plain_fit(case: Case, first: float = float(decisions.FIRST_PROCESS_NOISE)) -> Fit:
+    """The plant re-tuned within its spread, with the white noise that then remains; its search begins at log10 `first`."""
+    found = fit(case, nominal_hypothesis(case, first), rounds=NOMINAL_ROUNDS)
+    for turn in range(SETTLING_ROUNDS):
         if found is None:
             raise BadInput(
                 "plant",
@@ -36,13 +37,10 @@ def plain_fit(case: Case) -> Fit:
                 "a plant that can follow these logs",
                 "check units",
             )
-        refined_noise = process_noise_of(case, found, FIRST_STEP if turn < 2 else 0.1)
-        settled = bool(
-            np.max(np.abs(refined_noise.process_noise - found.hypothesis.process_noise), initial=0.0) < SETTLED_NOISE
-        )
-        found = fit(case, refined_noise, rounds=NOMINAL_ROUNDS)
-        if settled and found is not None:
+        again = fit(case, process_noise_of(case, found, FIRST_STEP if turn < 2 else FINE_STEP), rounds=NOMINAL_ROUNDS)
+        if again is not None and again.log_posterior < found.log_posterior + SETTLED_GAIN:
             break
+        found = again
     assert found is not None
     return found
 
@@ -52,7 +50,7 @@ def with_memory(case: Case, found: Fit) -> Fit:
     coloured = with_colours(case, found)
     if coloured is found.hypothesis:
         return found
-    for _ in range(MEMORY_ROUNDS):
+    for _ in range(SETTLING_ROUNDS):
         again = fit(case, coloured_noise_of(case, coloured), rounds=NOMINAL_ROUNDS)
         if again is None:
             break
@@ -60,3 +58,13 @@ def with_memory(case: Case, found: Fit) -> Fit:
         if gained < SETTLED_GAIN:
             break
     return found
+
+
+def gain_over(case: Case, usual: Fit, other: Fit) -> float:
+    """By how many nats another reading of the logs, as fitted, is likelier than that of `case`, whose search counts from where the other
+    ended too: else a hill that slopes did not find would look like another reading."""
+    gain = other.log_posterior - usual.log_posterior
+    if gain <= 0.0:
+        return gain
+    again = fit(case, with_process_noise(case, other.hypothesis), rounds=NOMINAL_ROUNDS)
+    return gain if again is None else min(gain, other.log_posterior - again.log_posterior)
