@@ -3,10 +3,12 @@
 import asyncio
 import logging
 import multiprocessing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 from jobs.code import code_digest
@@ -15,6 +17,7 @@ from jobs.work import settle_in
 from records.errors import BadInput
 
 PATIENCE_S = 10.0  # for a cluster to answer
+GRACE_S = 2.0  # for a process that was told to end
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,20 @@ def processes(workers: int | None = None) -> Crew:
                 finished = True
             finally:
                 if not finished:
-                    for child in set(multiprocessing.active_children()) - others:
-                        child.terminate()
+                    _end(set(multiprocessing.active_children()) - others)
                 executor.shutdown(wait=True, cancel_futures=True)
 
     return opened
+
+
+def _end(children: Collection[BaseProcess]) -> None:
+    """Terminate processes, and kill those that do not end: one that waits for a lock which a dead one holds takes its end for an error of
+    its job, and waits on to tell it."""
+    for child in children:
+        child.terminate()
+    for child in children:
+        if not wait([child.sentinel], GRACE_S):
+            child.kill()
 
 
 def cluster(address: str) -> Crew:
