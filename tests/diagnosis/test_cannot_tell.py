@@ -61,7 +61,7 @@ def test_the_run_to_record_next_is_one_that_shows_more(hover: Diagnosis) -> None
 
 
 def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> None:
-    # Truth: a drag with the square of a speed of 0.2 deg/s, and a stop never reached, leave no trace at any size; some delay leaves a bound.
+    # Truth: a drag with the square of a speed of 0.2 deg/s, and a stop never reached, leave no trace at any size; a delay does.
     unseen = [note for note in hover.note_records if note.kind == "unseen"]
     told = {note.subject: sentence(note) for note in unseen}
     assert {"azimuth", "elevation", "tail_input"} <= set(told)
