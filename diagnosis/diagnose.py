@@ -45,9 +45,9 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     seen = _seen(bound, material)
     if not _in_their_rows(material.firmware):
         demand_rows(seen.case, plain_fit, "the logs to explain", _ways(material.firmware))
+    demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
-    demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     if not _in_their_rows(material.firmware):
         material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
     seen, found = _explained(_beside_noise(seen))

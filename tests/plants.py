@@ -12,6 +12,11 @@ from sim.bind import BoundPlant, bind
 from tests.test_project import ROOT
 
 PLANTS = ROOT / "plants"
+# By axis: poles in rad/s, distinct and fast, and the time constant of the reference's filter in s.
+LIVELY = {
+    "elevation": ((-4.0, -5.0, -8.0, -14.0, -18.0, -24.0), 0.4),
+    "azimuth": ((-4.0, -5.0, -6.0, -8.0, -10.0, -12.0), 0.5),
+}
 
 
 def bound(name: str, **changed: float) -> BoundPlant:
@@ -27,3 +32,22 @@ def stated_table(name: str) -> ControllerTable:
     plant = bound(name)
     settings = read_settings(plant)
     return make_table(plant, settings, design_points(plant, settings))
+
+
+@cache
+def lively_table() -> ControllerTable:
+    """A faster law of the CE150 without a roll-off: every encoder step shakes its inputs, so that a flight tells more of the plant."""
+    plant = bound("ce150")
+    settings = read_settings(plant)
+    fast = {
+        axis: replace(
+            settings.axis(axis),
+            poles_rad_s=tuple(complex(pole) for pole in poles),
+            roll_off_pole_rad_s=0.0,
+            coefficient_degree=None,
+            prefilter_time_constant_s=prefilter_s,
+        )
+        for axis, (poles, prefilter_s) in LIVELY.items()
+    }
+    lively = replace(settings, coefficient_degree=3, recursion_degree=3, **fast)
+    return make_table(plant, lively, design_points(plant, lively))

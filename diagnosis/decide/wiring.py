@@ -13,7 +13,7 @@ from diagnosis.fit.gauss_newton import Fit
 from diagnosis.fit.nominal import gain_over
 from diagnosis.hypothesis.case import Case, FilteredLog
 from diagnosis.hypothesis.initial_state import start_of
-from diagnosis.search.draughts import beyond_noise
+from diagnosis.search.draughts import gust_shares
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 
@@ -84,7 +84,7 @@ def is_strained(case: Case, fit: Fit) -> bool:
     return bool(
         np.max(np.abs(hypothesis.theta), initial=0.0) > decisions.WIRING_DEVIATIONS
         or np.max(hypothesis.process_noise, initial=-np.inf) > decisions.WIRING_NOISE
-        or beyond_noise(case, hypothesis)
+        or max(gust_shares(case, hypothesis).values(), default=0.0) >= decisions.DRAUGHT
     )
 
 

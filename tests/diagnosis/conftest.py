@@ -15,7 +15,7 @@ from sim.added_effects import library, with_effects
 from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
-from tests.plants import stated_table
+from tests.plants import lively_table
 
 Fly = Callable[..., RunLog]
 SECONDS = 30.0
@@ -48,7 +48,7 @@ def fly(plant: BoundPlant) -> Fly:
     `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes;
     axes that are `locked` are held.
     """
-    table, known = stated_table("ce150"), library(plant)
+    table, known = lively_table(), library(plant)
 
     def flown(
         seed: int,

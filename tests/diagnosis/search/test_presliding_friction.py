@@ -20,7 +20,7 @@ from sim.loop import fly_law
 from sim.manoeuvres import flight
 from sim.model import Model
 from tests.diagnosis.conftest import Fly
-from tests.plants import stated_table
+from tests.plants import lively_table
 
 V_C_RAD_S = 0.005
 LEVEL_N_M = 3e-4
@@ -33,7 +33,7 @@ CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD
 
 def default_flight(plant: BoundPlant, effects: Mapping[str, Mapping[str, float]], seconds: float = SECONDS) -> RunLog:
     """The default flight in still air, or so much of it, with holds in which an axis that sticks stays where it is."""
-    log = fly_law(with_effects(plant, effects), stated_table("ce150"), flight(plant))
+    log = fly_law(with_effects(plant, effects), lively_table(), flight(plant))
     rows = slice(round(seconds / log.sample_period_s))
     return replace(log, t_s=log.t_s[rows], u=log.u[rows], y=log.y[rows], extra={})
 
