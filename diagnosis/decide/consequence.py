@@ -28,10 +28,7 @@ def consequence(case: Case, plain: FittedHypothesis, tried: Sequence[FittedHypot
     if not tried:
         return ()
 
-    def errors(entry: FittedHypothesis) -> Errors:
-        return errors_of(case, entry.fit.hypothesis, lambda hypothesis: _all(case, hypothesis))
-
-    own, *others = thread_map(errors, [plain, *tried[:ASKED]])
+    own, *others = thread_map(lambda entry: _errors(case, entry), [plain, *tried[:ASKED]])
     gains = [score(other, own).gain for other in others]
     best = max(gains)
     of = " + ".join(tried[gains.index(best)].effects) or "parameters"
@@ -51,8 +48,10 @@ def without_idle(
             fewer = _one_less(entry, tried)
             if fewer is None:
                 break
-            own, other = (_errors(case, one, judged) for one in (entry, fewer))
-            gain = score(own, other).gain
+            for one in (entry, fewer):
+                if one not in judged:
+                    judged[one] = _errors(case, one)
+            gain = score(judged[entry], judged[fewer]).gain
             left = " + ".join(sorted(set(entry.effects) - set(fewer.effects)))
             idle = gain < decisions.MATTERS
             outcome = f"{left} is left out" if idle else f"{left} matters"
@@ -75,10 +74,9 @@ def _one_less(entry: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> Fit
     return max(fewer, key=lambda other: other.evidence, default=None)
 
 
-def _errors(case: Case, entry: FittedHypothesis, judged: dict[FittedHypothesis, Errors]) -> Errors:
-    if entry not in judged:
-        judged[entry] = errors_of(case, entry.fit.hypothesis, lambda hypothesis: _all(case, hypothesis))
-    return judged[entry]
+def _errors(case: Case, entry: FittedHypothesis) -> Errors:
+    """The errors of its predictions of the logs that it was fitted to."""
+    return errors_of(case, entry.fit.hypothesis, lambda hypothesis: _all(case, hypothesis))
 
 
 def _all(case: Case, hypothesis: Hypothesis) -> list[Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
-from diagnosis.fit.process_noise import FIRST_STEP, white_noise
+from diagnosis.fit.process_noise import white_noise
 from diagnosis.fit.profile_likelihood import Number, along_each, likeliest, likelihoods
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
@@ -53,12 +53,11 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     return hypothesis
 
 
-def coloured_noise_of(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
+def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     """The hypothesis with the likeliest numbers of all noise that it has, white and with a memory."""
     chosen = [colour for colour in _colours(case) if colour.of(hypothesis) is not None]
-    return _likeliest(case, hypothesis, likelihood_of(case, hypothesis), chosen, white_noise(case, hypothesis, first))[
-        0
-    ]
+    found, _ = _likeliest(case, hypothesis, likelihood_of(case, hypothesis), chosen, white_noise(case, hypothesis))
+    return found
 
 
 def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:

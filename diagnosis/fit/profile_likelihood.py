@@ -23,7 +23,8 @@ AGAIN_AS_FAR = 0.7  # of the way that all numbers went together, at first
 
 @dataclass(frozen=True, eq=False)
 class Number:
-    """A number that a hypothesis has: where it is, a hypothesis with another, and the step in which it is looked for."""
+    """A number that a hypothesis has, its log10 where it is a noise's: where it is, a hypothesis with another, and the step, in its own
+    unit, in which it is looked for."""
 
     of: Callable[[Hypothesis], float]
     put: Callable[[Hypothesis, float], Hypothesis]
