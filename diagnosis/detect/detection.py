@@ -101,11 +101,11 @@ def form_scores(linearisation: Linearisation) -> FormScores:
     found = forms(linearisation)
     columns, drawn = _at_once(lambda: _form_columns(linearisation, found), lambda: replicas(linearisation))
     scores, null = _gains_of(linearisation, columns, drawn)
-    usual = np.maximum(null.mean(axis=1), MEAN_GAIN * alike(linearisation, columns))
+    usual = np.maximum(null.mean(axis=1), MEAN_GAIN * scatter_of_scores(linearisation, columns))
     return FormScores(tuple(found), scores, usual)
 
 
-def alike(linearisation: Linearisation, columns: Array) -> Array:
+def scatter_of_scores(linearisation: Linearisation, columns: Array) -> Array:
     """How much more the scores of columns (rows, k) scatter than white innovations would make them (k,).
 
     (1)  J / I = sum over seconds b of (g_b - theta I_b)^2 / sum of I_b,   theta = sum of g_b / sum of I_b

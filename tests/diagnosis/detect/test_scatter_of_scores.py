@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from diagnosis.detect.detection import alike
+from diagnosis.detect.detection import scatter_of_scores
 from tests.diagnosis.arm import plain_linearisation
 
 KEPT = 0.9  # from row to row of 10 ms: forgotten in 0.1 s, a tenth of a block
@@ -26,7 +26,7 @@ def scatter(kept: float, seeds: int) -> float:
     for seed in range(seeds):
         white = np.random.default_rng(seed).standard_normal(count)
         w = lfilter([np.sqrt(1.0 - kept**2)], [1.0, -kept], white)
-        found.append(alike(replace(linearisation, w=w), columns).mean())
+        found.append(scatter_of_scores(replace(linearisation, w=w), columns).mean())
     return float(np.mean(found))
 
 
@@ -47,5 +47,7 @@ def test_an_effect_of_its_own_form_is_no_scatter() -> None:
     columns = slow_columns(len(linearisation.w))
     unit = columns[:, 0] / np.linalg.norm(columns[:, 0])
     white = np.random.default_rng(3).standard_normal(len(unit))
-    one, other = (alike(replace(linearisation, w=w), columns[:, :1])[0] for w in (white, white - 30.0 * unit))
+    one, other = (
+        scatter_of_scores(replace(linearisation, w=w), columns[:, :1])[0] for w in (white, white - 30.0 * unit)
+    )
     assert other == pytest.approx(one, rel=0.2)
