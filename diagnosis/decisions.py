@@ -119,10 +119,6 @@ SURE_ROUGHNESS = Limit(
     "AeroShield, whose readings are as smooth in fast motion as in slow",
 )
 LEAST_FAST_READINGS = Count(30, "readings", "fewer that are faster than a step a row show no scatter")
-LOWEST_NOISE = Limit(2.0, "decades", "the process noise is lowered by no more for a second score test", DEVELOPMENT)
-LEAST_LOWERED = Limit(
-    0.3, "decades", "a second score test under noise lowered by less is not worth its time", DEVELOPMENT
-)
 
 # Is there a gap (detect)
 ALARM = Limit(0.01, "probability", "the contract's level of a false alarm", "the contract")
@@ -213,19 +209,6 @@ FARTHEST_SIZE = Limit(30.0, "references", "a score test proposes no larger size"
 SINGLES = Count(7, "effects", "single effects that are fitted: time", DEVELOPMENT)
 PARTNERS = Count(3, "effects", "further effects that are fitted beside each of the best: time", DEVELOPMENT)
 BEAM = Counts((3, 2), "hypotheses", "of each size that are worth a further effect: time", DEVELOPMENT)
-LOW_NOISE_SINGLES = Count(
-    4,
-    "effects",
-    "fitted from score tests under low process noise, and as many from those under the noise as it seems",
-    DEVELOPMENT,
-)
-WORTH_A_PLACE = Limit(
-    0.1,
-    "share of the best score test",
-    "a sensor's whole family looks well where an axis has a spring, so each further place has its best fitted "
-    "from here",
-    "pairs and triples of seeds 900006 and 900007",
-)
 CLOSE_PAIR = Limit(60.0, "nats", "another pair is worth a third effect within", DEVELOPMENT)
 CLOSE_PAIR_SHARE = Limit(0.05, "share of the gap", "the same of a large gap", DEVELOPMENT)
 LEAST_GAIN = Limit(4.0, "nats", "a score test below is not worth a fit")

@@ -9,9 +9,11 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.filter.filter_input import beginning
-from diagnosis.fit.gauss_newton import Fit
+from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.nominal import gain_over
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case, FilteredLog
+from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.search.draughts import gust_shares
 from jobs.thread_map import thread_map
@@ -54,10 +56,11 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
-    usual = fitted_or_none(short, fitted)
-    slips = list(wirings(case))
-    fits = thread_map(lambda wiring: fitted_or_none(_rewired(short, wiring), fitted), slips)
-    found = [(wiring, fit) for wiring, fit in zip(slips, fits, strict=True) if fit is not None]
+    least = _as_stated(short)
+    slips = [(wiring, read) for wiring in wirings(case) if _as_stated(read := _rewired(short, wiring)) > least]
+    usual = fitted_or_none(short, fitted) if slips else None
+    fits = thread_map(lambda slip: fitted_or_none(slip[1], fitted), slips)
+    found = [(wiring, fit) for (wiring, _), fit in zip(slips, fits, strict=True) if fit is not None]
     if usual is None or not found:
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
@@ -66,6 +69,12 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
         return _either(best, alike), gain
     return None
+
+
+def _as_stated(case: Case) -> float:
+    """The log likelihood of the plant as it is stated, with the white noise that it then needs: what cannot follow the logs better so is no
+    reading that anybody meant."""
+    return likelihood_of(case, with_process_noise(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE))))
 
 
 def _either(best: Wiring, alike: Sequence[Wiring]) -> Wiring:

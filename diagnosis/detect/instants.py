@@ -22,7 +22,7 @@ def instants(linearisation: Linearisation, effect: Effect) -> list[dict[str, flo
     if lasts is not None:
         return [{symbol: start, lasts.symbol: duration} for start, duration in _pulses(times_s, gram, score)]
     power = score**2 / np.maximum(np.diag(gram), 1e-12)
-    power[0] = 0.0
+    power[_untold(times_s)] = 0.0  # there before readings count: no event in this log
     found = [*_jumps(linearisation, target), *(float(times_s[index]) for index in _peaks(power))]
     return [{symbol: instant} for instant in found]
 
@@ -52,8 +52,8 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, floa
     first, last = np.triu_indices(size, 1)
     norm = gram[first, first] + gram[last, last] - 2.0 * gram[first, last]
     power = (score[first] - score[last]) ** 2 / np.maximum(norm, 1e-12)
-    power[times_s[last] - times_s[first] > 0.5 * times_s[-1]] = 0.0
-    power[times_s[last] <= decisions.UNTOLD_S] = 0.0  # over before readings count: all that is left of it is a start
+    power[times_s[last] - times_s[first] > 0.5 * (times_s[-1] - times_s[0])] = 0.0
+    power[_untold(times_s)[last]] = 0.0  # over before readings count: all that is left of it is a start
     order = np.argsort(-power)
     found: list[tuple[float, float]] = []
     for index in order[:200]:
@@ -63,6 +63,11 @@ def _pulses(times_s: Array, gram: Array, score: Array) -> list[tuple[float, floa
         if len(found) == decisions.MOST_INSTANTS:
             break
     return found
+
+
+def _untold(times_s: Array) -> NDArray[np.bool_]:
+    """Which instants are before any reading counts."""
+    return np.asarray(times_s <= times_s[0] + decisions.UNTOLD_S)
 
 
 def _peaks(power: Array) -> list[int]:

@@ -156,8 +156,9 @@ class Linearisation:
 
     def instants(self) -> Array:
         """The grid of instants of steps (k,), in s."""
+        begin = min(filter_input.t_s[0] for filter_input in self.filter_inputs)
         end = max(filter_input.t_s[-1] for filter_input in self.filter_inputs)
-        return np.arange(0.0, end, max(decisions.EVENT_GRID_S, end / decisions.MOST_EVENT_STEPS))
+        return np.arange(begin, end, max(decisions.EVENT_GRID_S, (end - begin) / decisions.MOST_EVENT_STEPS))
 
 
 def _of_one(values: Disturbances) -> Disturbances:

@@ -101,17 +101,3 @@ def along_each(case: Case, hypothesis: Hypothesis, value: float, numbers: Sequen
         return hypothesis
 
     return along(case, hypothesis, value, Number(lambda _: 0.0, put, AGAIN_AS_FAR))
-
-
-def by_folds(at: Callable[[float], Point], start: Point, fold: float, low: float, high: float) -> Point:
-    """Uphill from a positive number by folds, upwards first, else downwards, strictly between `low` and `high`."""
-    best = start
-    for factor in (fold, 1.0 / fold):
-        while low < best.x * factor < high:
-            further = at(best.x * factor)
-            if further.value <= best.value:
-                break
-            best = further
-        if best is not start:
-            break
-    return best

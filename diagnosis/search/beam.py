@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import chain
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from diagnosis.detect.linearisation import Linearisation, linearised
 from diagnosis.detect.score_tests import ScoreTest, score_effects
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.search.exchange import exchange, fit_twins
 from diagnosis.search.fitting import Job, keep_better, once_more, refined, rough
@@ -74,15 +72,7 @@ def alone(
     found: dict[frozenset[str], FittedHypothesis] = {}
     if lossy is not None and case.library.losses is not None:
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
-    low_noise = with_low_process_noise(case, nominal)
-    jobs = _promising(nominal, score_tests, False)[: decisions.SINGLES]
-    if low_noise is not None:
-        low_noise_score_tests = score_effects(case, linearised(case, low_noise), names)
-        worth |= _worth(low_noise_score_tests)
-        jobs = [
-            *_first_of_each(_promising(low_noise, low_noise_score_tests, True)),
-            *jobs[: decisions.LOW_NOISE_SINGLES],
-        ]
+    jobs = _promising(nominal, score_tests)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
     fit_twins(case, found)
     return Alone(found, first, frozenset(worth), linearisation, tuple(score_tests))
@@ -98,6 +88,8 @@ def search(case: Case, names: Sequence[str], begun: Alone) -> Search:
         if not grown or not _fit_all(case, grown, found, best[0]):
             break
         exchange(case, found, worth)
+        if max(found.values(), key=lambda entry: entry.evidence).evidence <= best[0].evidence:
+            break
     _settle(case, found)
     certain = [entry for entry in found.values() if _certain(entry, found)]
     fitted = sorted([first, *(certain or found.values())], key=lambda entry: -entry.evidence)
@@ -146,26 +138,10 @@ def beam_of(fitted: Sequence[FittedHypothesis], nominal: FittedHypothesis, count
     return kept if count < 3 or likeliest in kept else [*kept[: count - 1], likeliest]
 
 
-def _promising(start: Fit, score_tests: Sequence[ScoreTest], low_noise: bool) -> list[Job]:
+def _promising(start: Fit, score_tests: Sequence[ScoreTest]) -> list[Job]:
     """Effects worth a fit from `start`, best first."""
     least = max(decisions.LEAST_GAIN, decisions.LEAST_SHARE * score_tests[0].gain) if score_tests else 0.0
-    return [Job(start, entry, low_noise) for entry in score_tests if entry.gain > least]
-
-
-def _first_of_each(jobs: Sequence[Job]) -> list[Job]:
-    """The first LOW_NOISE_SINGLES, and of each further place its first that promises a tenth of the best: a sensor's whole family may look
-    better than the one effect of an axis that is there."""
-    kept = list(jobs[: decisions.LOW_NOISE_SINGLES])
-    places = {_place(job) for job in kept}
-    for job in jobs[decisions.LOW_NOISE_SINGLES :]:
-        if _place(job) not in places and job.score_test.gain > decisions.WORTH_A_PLACE * jobs[0].score_test.gain:
-            places.add(_place(job))
-            kept.append(job)
-    return kept
-
-
-def _place(job: Job) -> str:
-    return job.score_test.effect.split(".")[0]
+    return [Job(start, entry) for entry in score_tests if entry.gain > least]
 
 
 def _settle(case: Case, found: dict[frozenset[str], FittedHypothesis]) -> None:
@@ -215,29 +191,15 @@ def certainties(fit: Fit) -> dict[str, float]:
 
 
 def _grown(case: Case, best: Sequence[FittedHypothesis], names: Sequence[str], worth: Set[str]) -> list[Job]:
-    """The best hypotheses, each with the further effects that promise most beside it; none where the first has none.
+    """The best hypotheses, each with the further effects that promise most beside it; none where the first has none."""
 
-    The first also with the one that promises most under the process noise as it seems: under low process noise what
-    is left of a rough rig hides a
-    lesser effect.
-    """
-    if not best:
-        return []
-    low_noise = thread_map(lambda fitted: with_low_process_noise(case, fitted.fit), best)
-    starts = [lowered or fitted.fit for lowered, fitted in zip(low_noise, best, strict=True)]
-    counts: list[int] = [decisions.PARTNERS] * len(best)
-    if low_noise[0] is not None:
-        low_noise, starts, counts = [*low_noise, None], [*starts, best[0].fit], [*counts, 1]
+    def partners(fitted: FittedHypothesis) -> list[Job]:
+        score_tests = score_effects(case, linearised(case, fitted.fit), names, worth)
+        promising = [Job(fitted.fit, entry) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN]
+        return promising[: decisions.PARTNERS]
 
-    def partners(start: Fit, lowered: Fit | None, count: int) -> list[Job]:
-        score_tests = score_effects(case, linearised(case, start), names, worth)
-        return [Job(start, entry, lowered is not None) for entry in score_tests if entry.gain > decisions.FURTHER_GAIN][
-            :count
-        ]
-
-    jobs = thread_map(partners, starts, low_noise, counts)
-    of_the_first = [*jobs[0], *chain.from_iterable(jobs[len(best) :])]
-    return [*of_the_first, *chain.from_iterable(jobs[1 : len(best)])] if of_the_first else []
+    jobs = thread_map(partners, best)
+    return [job for own in jobs for job in own] if jobs and jobs[0] else []
 
 
 def _fit_all(
@@ -247,12 +209,10 @@ def _fit_all(
     known: FittedHypothesis,
 ) -> bool:
     """Fit each job that is new, those to the end whose first fit gains most over what is `known`; whether anything was added."""
-    fresh: dict[tuple[frozenset[str], bool], Job] = {}
+    fresh: dict[frozenset[str], Job] = {}
     for job in jobs:
-        fresh.setdefault(
-            (frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect)), job.low_noise), job
-        )
-    wanted = [job for (names, _), job in fresh.items() if names not in found]
+        fresh.setdefault(frozenset((*case.added(job.start.hypothesis.effects), job.score_test.effect)), job)
+    wanted = [job for names, job in fresh.items() if names not in found]
     firsts: dict[frozenset[str], FittedHypothesis] = {}
     keep_better(firsts, (entry for entry in thread_map(lambda job: rough(case, job), wanted) if entry))
     begun = list(firsts.values())

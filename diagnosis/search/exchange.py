@@ -71,4 +71,4 @@ def _instead(case: Case, fitted: FittedHypothesis, name: str, worth: Set[str]) -
         return []
     score_tests = score_effects(case, linearised(case, start), sorted(worth - {name}))
     least = max(decisions.FURTHER_GAIN, decisions.NEARLY_AS_GOOD * (fitted.fit.log_likelihood - start.log_likelihood))
-    return [Job(start, entry, True) for entry in score_tests if entry.gain > least][: decisions.INSTEAD]
+    return [Job(start, entry) for entry in score_tests if entry.gain > least][: decisions.INSTEAD]

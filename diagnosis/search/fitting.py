@@ -12,10 +12,9 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
-from diagnosis.fit.low_process_noise import with_own_process_noise
-from diagnosis.fit.process_noise import with_process_noise
+from diagnosis.fit.process_noise import process_noise_of, with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
-from diagnosis.hypothesis.case import Case
+from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from sim.effect import Role
 
@@ -34,23 +33,20 @@ LEVELS = np.geomspace(
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A further effect to fit from a start, whose process noise may have been lowered (`low_noise`)."""
+    """A further effect to fit from a start."""
 
     start: Fit
     score_test: ScoreTest
-    low_noise: bool
 
 
 def rough(case: Case, job: Job) -> FittedHypothesis | None:
-    """A first joint fit, under the process noise that was there before, or what then shows where that had been lowered."""
+    """A first joint fit, under the process noise that was there before."""
     hypothesis, entry = job.start.hypothesis, job.score_test
     start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
     if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
     found = fit(case, start, rounds=4)
-    if found is not None and job.low_noise:
-        found = with_own_process_noise(case, found)
-    elif found is not None and found.log_posterior < job.start.log_posterior:
+    if found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
     astray = start if found is None else found.hypothesis
@@ -62,10 +58,9 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
 
 
 def at_its_place(case: Case, job: Job) -> FittedHypothesis | None:
-    """A first fit from where the rest fits already, under low process noise."""
+    """A first fit from where the rest fits already."""
     hypothesis, entry = job.start.hypothesis, job.score_test
     found = fit(case, hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values}), rounds=4)
-    found = None if found is None else with_own_process_noise(case, found)
     return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
 
 
@@ -83,7 +78,7 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
 def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     """The same begun once more from the parameters as stated, where they have gone far and that ends better.
 
-    Once under low process noise, and once under that of before any log was seen: a filter that expects any motion
+    Once under the process noise that it has, and once under that of before any log was seen: a filter that expects any motion
     leads back from further off.
     """
     hypothesis = fitted.fit.hypothesis
@@ -108,10 +103,10 @@ def _polished(case: Case, start: Hypothesis, effect: str, reaches: Sequence[floa
 
 
 def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | None:
-    """The fit, or a likelier one where readings come after a delay that scatters: with less process noise then."""
+    """The fit, or a likelier one where readings come after a delay that scatters, with the process noise that the delay leaves."""
     if found is None or not any(scatters(case, name) for name in effects):
         return found
-    start = with_jitter(case, found.hypothesis, effects)
+    start = with_jitter(case, process_noise_of(case, found), effects)
     if start.effects == found.hypothesis.effects:
         return found
     return _likelier(found, fit(case, with_process_noise(case, start), rounds=4))
@@ -150,7 +145,7 @@ def _from_stated(case: Case, start: Hypothesis) -> Fit | None:
     """The fit from the parameters as stated: where the nominal plant had gone far astray, nothing is found from there."""
     low_noise = np.minimum(start.process_noise, decisions.FIRST_PROCESS_NOISE)
     found = fit(case, replace(start, theta=np.zeros_like(start.theta), process_noise=low_noise), rounds=4)
-    return None if found is None else with_own_process_noise(case, found)
+    return None if found is None else fit(case, with_process_noise(beginning_of(case), found.hypothesis), rounds=3)
 
 
 def _likelier(one: Fit | None, other: Fit | None) -> Fit | None:

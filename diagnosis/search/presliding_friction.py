@@ -2,13 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
+
+import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis, evidence
-from diagnosis.fit.gauss_newton import Fit, fit, likelihood_of
-from diagnosis.fit.process_noise import with_process_noise
-from diagnosis.fit.profile_likelihood import Point, by_folds, likelihoods
+from diagnosis.fit.gauss_newton import Fit, fit
+from diagnosis.fit.process_noise import white_noise, with_process_noise
+from diagnosis.fit.profile_likelihood import Number, along_each, likeliest
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
@@ -67,9 +70,9 @@ def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
     """What was fitted with those axes that yield beside it, one after the other, and what that gains."""
     hypothesis, value = found.hypothesis, found.log_likelihood
     for axis in case.library.bound.model.places.axes:
-        ways = [_likeliest(case, hypothesis, effect, value) for effect in _unstated(case, found.hypothesis, axis)]
+        ways = list(_unstated(case, found.hypothesis, axis))
         if ways:
-            fitted, reached = max(ways, key=lambda way: way[1])
+            fitted, reached = _likeliest(case, hypothesis, ways, value)
             if reached > value + decisions.LEAST_YIELDING_GAIN:
                 hypothesis, value = fitted, reached
     return hypothesis, value - found.log_likelihood
@@ -90,26 +93,36 @@ def _is_held(case: Case, hypothesis: Hypothesis, axis: str) -> bool:
     return any(effect.place == axis and effect.holds_at_rest for effect in supposed)
 
 
-def _likeliest(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> tuple[Hypothesis, float]:
-    """The likeliest speed or way in which friction builds up, by folds up, else down, with the process noise that then remains.
+def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value: float) -> tuple[Hypothesis, float]:
+    """The likeliest way in which an axis yields, with the speed or the travel over which friction builds up and the white noise that then
+    remain; the hypothesis itself where none is likelier than its `value`.
 
-    None of it where neither its reference nor a quarter of that is likelier than `value` with the process noise as
-    it was: where an axis sticks, both
-    cost hundreds of nats, and no other process noise makes up for them.
+    Each is tried at its reference and at a quarter of it, with the noise as it was: where an axis sticks, both cost hundreds of nats, and
+    no other noise makes up for them.
     """
-    reference = effect.size.reference
-    sizes = (reference, reference / FOLD**2)
-    first = likelihoods(case, [_with(hypothesis, effect, size) for size in sizes])
-    if max(first) <= value:
+    begun = [_begun(case, hypothesis, effect, value) for effect in ways]
+    likelier = [start for start in begun if start is not None]
+    if not likelier:
         return hypothesis, value
+    start, reached = likeliest(case, likelier)
+    effect = ways[begun.index(start)]
+    size = Number(partial(_log_size, effect), partial(_with_log_size, effect), float(np.log10(FOLD)))
+    return along_each(case, start, reached, [size, *white_noise(case, start)])
 
-    def at(size: float) -> Point:
-        settled = with_process_noise(case, _with(hypothesis, effect, size))
-        return Point(size, settled, likelihood_of(case, settled))
 
-    start = at(sizes[first.index(max(first))])
-    found = by_folds(at, start, FOLD, reference / FOLD**3, effect.size.upper)
-    return found.hypothesis, found.value
+def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:
+    """The likelier of two sizes of a way with its own noise; None where neither is likelier than `value` as the noise was."""
+    sizes = (effect.size.reference, effect.size.reference / FOLD**2)
+    start, reached = likeliest(case, [_with(hypothesis, effect, size) for size in sizes])
+    return with_process_noise(case, start) if reached > value else None
+
+
+def _log_size(effect: Effect, hypothesis: Hypothesis) -> float:
+    return float(np.log10(hypothesis.effects[effect.name][effect.size.symbol]))
+
+
+def _with_log_size(effect: Effect, hypothesis: Hypothesis, x: float) -> Hypothesis:
+    return _with(hypothesis, effect, float(np.clip(10.0**x, effect.size.reference / FOLD**3, effect.size.upper)))
 
 
 def _with(hypothesis: Hypothesis, effect: Effect, size: float) -> Hypothesis:

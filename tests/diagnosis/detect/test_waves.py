@@ -70,7 +70,7 @@ def test_a_sine_explains_more_than_a_springy_part(plant: BoundPlant, fly: Fly) -
     nominal = nominal_fit(case)
     names = ("elevation.periodic_torque", "elevation.flexible_mode")
     tests = {entry.effect: entry for entry in score_effects(case, linearised(case, nominal), names)}
-    sine, springy = (rough(case, Job(nominal, tests[name], False)) for name in names)
+    sine, springy = (rough(case, Job(nominal, tests[name])) for name in names)
     assert sine is not None
     assert springy is None or sine.evidence > springy.evidence + 20.0
     found = sine.fit.hypothesis.effects[names[0]]

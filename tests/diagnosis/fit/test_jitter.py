@@ -9,7 +9,6 @@ from diagnosis.detect.linearisation import linearised
 from diagnosis.detect.score_tests import score_effects
 from diagnosis.diagnose import Material, diagnose
 from diagnosis.fit.jitter import jitter_sd, most_shown_s, with_jitter
-from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
@@ -38,12 +37,11 @@ def late_flight(plant: BoundPlant, jitter_s: float) -> RunLog:
 
 
 def test_the_fit_of_a_delay_finds_its_scatter(plant: BoundPlant) -> None:
-    # Begun where its score test begins, under low process noise; 1500 readings tell a scatter to some 4 %.
+    # Begun where its score test begins; 1500 readings tell a scatter to some 4 %.
     case = make_case(effect_library(plant), [late_flight(plant, JITTER_S)])
-    low_noise = with_low_process_noise(case, nominal_fit(case))
-    assert low_noise is not None
-    (seen,) = score_effects(case, linearised(case, low_noise), [DELAY])
-    begun = rough(case, Job(low_noise, seen, True))
+    nominal = nominal_fit(case)
+    (seen,) = score_effects(case, linearised(case, nominal), [DELAY])
+    begun = rough(case, Job(nominal, seen))
     assert begun is not None
     found = refined(case, begun)
     assert found is not None

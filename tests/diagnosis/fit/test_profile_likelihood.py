@@ -2,11 +2,10 @@
 
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 
 from diagnosis.fit.gauss_newton import likelihood_of
-from diagnosis.fit.profile_likelihood import Point, by_folds, by_parabola, likeliest, likelihoods
+from diagnosis.fit.profile_likelihood import Point, by_parabola, likeliest, likelihoods
 from tests.diagnosis.arm import plain_linearisation
 
 
@@ -31,13 +30,6 @@ def test_a_top_that_promises_next_to_nothing_is_not_asked_for() -> None:
 
     assert by_parabola(at, at(0.01), 0.3, 20, 0.1).x == 0.01
     assert len(asked) == 3
-
-
-@pytest.mark.parametrize(("top", "reached"), [(9.0, 8.0), (0.3, 0.25), (1.0, 1.0), (1e9, 64.0)])
-def test_folds_go_uphill_and_stay_within_their_bounds(top: float, reached: float) -> None:
-    # Truth: from 1 by twos the nearest to the top in the logarithm; below 100 there is nothing beyond 64.
-    at = along(lambda x: -abs(np.log(x / top)))
-    assert by_folds(at, at(1.0), 2.0, 0.01, 100.0).x == reached
 
 
 def test_the_likeliest_of_some_hypotheses_has_the_filters_own_likelihood() -> None:

@@ -13,7 +13,6 @@ from diagnosis.detect.score_tests import score_effects
 from diagnosis.explain.places import place_shares
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, Free, fit
-from diagnosis.fit.low_process_noise import with_low_process_noise
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.hypothesis.hypothesis import Hypothesis
@@ -136,23 +135,15 @@ def test_a_fit_gone_astray_is_begun_once_more_from_the_plant_as_stated(plant: Bo
 
 
 @pytest.mark.soak
-def test_a_fit_gone_astray_under_calm_air_is_led_back_by_restless_air(plant: BoundPlant, fly: Fly) -> None:
-    # A motor that loses a fifth of its pull as it warms up: from the plant bent to hide that, low process noise holds the fit where it is.
-    truth = WARMING
-    case = make_case(
-        effect_library(plant), [fly(seed, truth, rig_seed=63, air=False, seconds=60.0) for seed in (63, 73)]
-    )
+def test_an_effect_that_parameters_imitate_in_part_is_fitted_without_going_astray(plant: BoundPlant, fly: Fly) -> None:
+    # Truth: a motor that loses a fifth of its pull as it warms up; other numbers of the rig by standard deviations as drawn.
+    logs = [fly(seed, WARMING, rig_seed=63, air=False, seconds=60.0) for seed in (63, 73)]
+    case = make_case(effect_library(plant), logs)
     nominal = nominal_fit(case)
-    low_noise = with_low_process_noise(case, nominal)
-    assert low_noise is not None
-    (seen,) = score_effects(case, linearised(case, low_noise), list(truth))
-    begun = rough(case, Job(low_noise, seen, True))
+    (seen,) = score_effects(case, linearised(case, nominal), list(WARMING))
+    begun = rough(case, Job(nominal, seen))
     assert begun is not None
-    strayed = refined(case, begun)
-    assert strayed is not None
-    # In standard deviations, from which the rig's own numbers were drawn.
-    assert np.max(np.abs(strayed.fit.hypothesis.theta)) > 4.0
-    found = once_more(case, strayed)
-    assert found.evidence > strayed.evidence + 50.0
+    found = refined(case, begun)
+    assert found is not None
     assert np.max(np.abs(found.fit.hypothesis.theta)) < 3.5
     assert found.fit.hypothesis.effects["tail_rotor.warmup"]["a"] == pytest.approx(0.22, rel=0.05)
