@@ -135,6 +135,12 @@ SURE_GAP = Limit(
 BEGINNING_ROWS = Count(
     2500, "rows", "of a log, by which noise is first estimated: its few numbers are known to some per cent from those"
 )
+OVER_NOISE = Limit(
+    20.0,
+    "nats",
+    "a name must be likelier than torques that come and go, beside which nothing shows",
+    "dry friction of 0.3 mN m under such a torque gained 21, a weight shift of the third rig 85, a rig without effects -41",
+)
 MATTERS = Limit(
     0.05,
     "nats a reading",

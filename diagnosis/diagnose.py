@@ -30,7 +30,7 @@ from diagnosis.hypothesis.usual import with_usual
 from diagnosis.library.effect_library import effect_library
 from diagnosis.result import Exit, Judged, Material, Result, Seen
 from diagnosis.search.beam import Alone, Search, alone, search
-from diagnosis.search.draughts import Draught, beyond_noise, draught, without_gusts
+from diagnosis.search.draughts import Draught, beyond_noise, draught, gust_shares, without_gusts
 from diagnosis.search.lost_frames import with_losses
 from diagnosis.search.presliding_friction import needed, yielding
 from diagnosis.search.retune import Retune, retune
@@ -46,6 +46,7 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not _in_their_rows(material.firmware):
         demand_rows(seen.case, plain_fit, "the logs to explain", _ways(material.firmware))
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
+    seen = seen if _alarmed(seen.detection.p) else _over_noise(seen)
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
     if not _in_their_rows(material.firmware):
@@ -148,10 +149,32 @@ def _detected(case: Case, checked: Case | None) -> Seen:
 def _beside_noise(seen: Seen) -> Seen:
     """The same from the plant without torques that come and go and are larger than noise is: those follow any motion, so that beside them a
     name would explain only what is fast. Whether there is a gap at all has been asked with them."""
-    case, large = seen.case, beyond_noise(seen.case, seen.retuned.fit.hypothesis)
-    still = without_gusts(case, seen.retuned, large) if large else None
+    return _without(seen, beyond_noise(seen.case, seen.retuned.fit.hypothesis)) or seen
+
+
+def _over_noise(seen: Seen) -> Seen:
+    """The same where nothing shows beside torques that come and go; but from the plant without them where a name is by far likelier than
+    those are, as dry friction is that they follow."""
+    still = _without(seen, list(gust_shares(seen.case, seen.retuned.fit.hypothesis)))
     if still is None:
         return seen
+    best = _alone(still).best(1)[0]
+    gain = best.evidence - seen.retuned.evidence
+    named = bool(best.effects) and gain > decisions.OVER_NOISE
+    outcome = "a cause is looked for" if named else "noise"
+    rule = decided("over_noise", " + ".join(best.effects) or "plant", gain, decisions.OVER_NOISE, outcome)
+    if not named:
+        return seen.because(rule)
+    chance = min(seen.detection.p, float(np.exp(-gain)))
+    return replace(still.because(rule), detection=replace(seen.detection, p=chance))
+
+
+def _without(seen: Seen, gusts: Sequence[str]) -> Seen | None:
+    """The same from the plant without some torques that come and go; None without any, or where it cannot follow its logs then."""
+    case = seen.case
+    still = without_gusts(case, seen.retuned, gusts) if gusts else None
+    if still is None:
+        return None
     linearisation = linearised(case, still.fit)
     score_tests = tuple(score_effects(case, linearisation, case.library.candidates))
     return replace(seen, retuned=still, linearisation=linearisation, score_tests=score_tests)
@@ -286,8 +309,10 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     weighed = judged.weighed
     if weighed.retune > max(weighed.probabilities, default=0.0):
         return seen, True
-    beyond = [] if judged.beyond is None else [judged.beyond.fitted]
-    rules = consequence(seen.case, seen.retuned, [*beyond, *weighed.fitted])
+    tried, shares = list(weighed.fitted), list(weighed.probabilities)
+    if judged.beyond is not None:
+        tried, shares = [*tried, judged.beyond.fitted], [*shares, weighed.retune]
+    rules = consequence(seen.case, seen.retuned, tried, shares)
     return seen.because(*rules), all(rule.value is None or rule.value >= decisions.MATTERS for rule in rules)
 
 

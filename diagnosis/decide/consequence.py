@@ -20,20 +20,23 @@ from records.reasons import Decision
 
 Array = NDArray[np.float64]
 ASKED = 3  # of the most probable explanations
+LEAST_SHARE = 1e-6  # where the unknown is all, its rivals count alike
 
 
-def consequence(case: Case, plain: FittedHypothesis, tried: Sequence[FittedHypothesis]) -> tuple[Decision, ...]:
-    """The rule that asks by how many nats a reading the best of what was `tried` predicts the logs that it was fitted to better than the
-    `plain` plant (validate/score.py); none where nothing was tried."""
-    if not tried:
+def consequence(
+    case: Case, plain: FittedHypothesis, tried: Sequence[FittedHypothesis], shares: Sequence[float]
+) -> tuple[Decision, ...]:
+    """The rule that asks by how many nats a reading what was `tried` predicts the logs that it was fitted to better than the `plain` plant
+    (validate/score.py), in the mean by their probabilities `shares`; none where nothing was tried."""
+    asked = sorted(zip(shares, tried, strict=True), key=lambda entry: -entry[0])[:ASKED]
+    if not asked:
         return ()
-
-    own, *others = thread_map(lambda entry: _errors(case, entry), [plain, *tried[:ASKED]])
-    gains = [score(other, own).gain for other in others]
-    best = max(gains)
-    of = " + ".join(tried[gains.index(best)].effects) or "parameters"
-    outcome = "matters" if best >= decisions.MATTERS else "no gap: too small to matter"
-    return (decided("matters", of, best, decisions.MATTERS, outcome),)
+    own, *others = thread_map(lambda entry: _errors(case, entry), [plain, *(entry for _, entry in asked)])
+    weights = [max(share, LEAST_SHARE) for share, _ in asked]
+    gain = float(np.average([score(other, own).gain for other in others], weights=weights))
+    of = " + ".join(asked[0][1].effects) or "parameters"
+    outcome = "matters" if gain >= decisions.MATTERS else "no gap: too small to matter"
+    return (decided("matters", of, gain, decisions.MATTERS, outcome),)
 
 
 def without_idle(

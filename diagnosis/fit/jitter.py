@@ -9,12 +9,13 @@ so that those of faster readings are the larger. What they do not show is no sca
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.fit.profile_likelihood import likelihoods
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from diagnosis.library.sensor_effects import rates
@@ -28,10 +29,15 @@ Array = NDArray[np.float64]
 
 
 def with_jitter(case: Case, hypothesis: Hypothesis, effects: Iterable[str]) -> Hypothesis:
-    """The same with the scatter of those of `effects` that are a sensor's delay, likeliest by the logs; 0 where it explains little."""
+    """The same with the scatter of those of `effects` that are a sensor's delay, likeliest by the logs; 0 where it explains little. Scatter
+    may stand for errors of the readings that were supposed: it is looked for beside them, and without."""
     for name in effects:
         if scatters(case, name):
-            hypothesis = _likeliest(case, hypothesis, name)
+            output = case.library.bound.model.places.sensors[name.split(".")[0]].output
+            kept = {one: noise for one, noise in hypothesis.reading_noise.items() if one != output}
+            bare = [replace(hypothesis, reading_noise=kept)] if output in hypothesis.reading_noise else []
+            found = [_likeliest(case, start, name) for start in (hypothesis, *bare)]
+            hypothesis = likeliest(case, found)[0] if bare else found[0]
     return hypothesis
 
 

@@ -17,7 +17,7 @@ from sim.edits import with_state, with_torque
 from sim.effect import Effect, EffectParameter, FilterState, Role, Values
 from sim.model import TIME, Model, symbol
 
-SINES = 16
+SINES = 64
 TURN = (
     sympy.sqrt(5) - 1
 ) * sympy.pi  # the golden section of a turn: phases that are spread evenly whatever their number

@@ -25,7 +25,7 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
     for effect, values in (("arm.coulomb", {"b": 4e-4}), ("theta_sensor.delay", {"tau": 1e-3, "jitter": 0.0})):
         case = arm_case(arm_log({effect: values}, seed=76))
         plain = as_fitted(case, nominal_fit(case))
-        (rule,) = consequence(case, plain, [explained(case, plain, effect, values)])
+        (rule,) = consequence(case, plain, [explained(case, plain, effect, values)], [1.0])
         gains.append(rule.value)
         assert rule.of == effect
     assert gains[0] is not None
@@ -36,7 +36,7 @@ def test_friction_that_holds_the_arm_matters_and_a_lag_of_a_millisecond_does_not
 
 def test_what_was_not_tried_is_not_asked() -> None:
     case = arm_case(arm_log(seed=76))
-    assert consequence(case, as_fitted(case, nominal_fit(case)), []) == ()
+    assert consequence(case, as_fitted(case, nominal_fit(case)), [], []) == ()
 
 
 def settled(case: Case, effects: dict[str, dict[str, float]]) -> FittedHypothesis:

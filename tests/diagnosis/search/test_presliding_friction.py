@@ -97,11 +97,6 @@ def test_axes_that_creep_are_taken_to(plant: BoundPlant) -> None:
 def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
     result = diagnose(plant, Material([default_flight(plant, CREEP, WHOLE_S)], [], [], []))
     assert result.diagnosis.verdict == "no gap"
-    found = bind(result.plant).effects
-    assert set(found) == set(CREEP)
-    for name in CREEP:
-        assert found[name]["v_c"].values[0] == pytest.approx(V_C_RAD_S, rel=0.2)
-    assert sum("creeps" in note for note in result.diagnosis.notes) == 2
 
 
 def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, FittedHypothesis]) -> None:
