@@ -11,7 +11,7 @@ from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import white_noise, with_process_noise
-from diagnosis.fit.profile_likelihood import Number, along_each, likeliest
+from diagnosis.fit.profile_likelihood import Number, along_each, likeliest, likelihoods
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
@@ -29,15 +29,14 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
     for it.
     """
-    asked = [(fitted, *_yielded(case, fitted.fit)) for fitted in found]
-    promising = sorted(
-        ((fitted.evidence + gained, fitted, hypothesis) for fitted, hypothesis, gained in asked if gained > 0.0),
-        key=lambda entry: -entry[0],
-    )
+    promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
+    promising = sorted((fitted.evidence + gain, place) for place, (gain, fitted) in enumerate(promised) if gain > 0.0)
     needed_nats = decisions.YIELDING_GAIN + further
     best, yields, rules = found[0].evidence + needed_nats, dict[str, Values](), list[Decision]()
-    for _, fitted, hypothesis in promising[: decisions.YIELDING_FITTED]:
-        ended = fit(case, hypothesis, rounds=4)
+    for _, place in promising[: -decisions.YIELDING_FITTED - 1 : -1]:
+        fitted = found[place]
+        hypothesis = _yielded(case, fitted.fit)
+        ended = None if hypothesis is None else fit(case, hypothesis, rounds=4)
         if ended is None:
             continue
         explained = evidence(ended, case.library.effects)
@@ -66,8 +65,17 @@ def needed(case: Case, best: FittedHypothesis) -> bool:
     return found is None or best.evidence > evidence(found, case.library.effects) + decisions.YIELDING_GAIN
 
 
-def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
-    """What was fitted with those axes that yield beside it, one after the other, and what that gains."""
+def _promised(case: Case, found: Fit) -> float:
+    """What the likeliest way of each axis gains with the noise as it was, in nats: 0 where all stick."""
+    hypothesis, gain = found.hypothesis, 0.0
+    for axis in case.library.bound.model.places.axes:
+        tried = [start for effect in _unstated(case, hypothesis, axis) for start in _tried(hypothesis, effect)]
+        gain += max([0.0, *(value - found.log_likelihood for value in likelihoods(case, tried))])
+    return gain
+
+
+def _yielded(case: Case, found: Fit) -> Hypothesis | None:
+    """What was fitted with those axes that yield beside it, one after the other; None where none does."""
     hypothesis, value = found.hypothesis, found.log_likelihood
     for axis in case.library.bound.model.places.axes:
         ways = list(_unstated(case, found.hypothesis, axis))
@@ -75,7 +83,7 @@ def _yielded(case: Case, found: Fit) -> tuple[Hypothesis, float]:
             fitted, reached = _likeliest(case, hypothesis, ways, value)
             if reached > value + decisions.LEAST_YIELDING_GAIN:
                 hypothesis, value = fitted, reached
-    return hypothesis, value - found.log_likelihood
+    return hypothesis if value > found.log_likelihood else None
 
 
 def _unstated(case: Case, hypothesis: Hypothesis, axis: str) -> Iterator[Effect]:
@@ -112,9 +120,13 @@ def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value
 
 def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:
     """The likelier of two sizes of a way with its own noise; None where neither is likelier than `value` as the noise was."""
-    sizes = (effect.size.reference, effect.size.reference / FOLD**2)
-    start, reached = likeliest(case, [_with(hypothesis, effect, size) for size in sizes])
+    start, reached = likeliest(case, _tried(hypothesis, effect))
     return with_process_noise(case, start) if reached > value else None
+
+
+def _tried(hypothesis: Hypothesis, effect: Effect) -> list[Hypothesis]:
+    """A way at its reference and at a quarter of it."""
+    return [_with(hypothesis, effect, size) for size in (effect.size.reference, effect.size.reference / FOLD**2)]
 
 
 def _log_size(effect: Effect, hypothesis: Hypothesis) -> float:
