@@ -44,13 +44,13 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
     if not _in_their_rows(material.firmware):
-        demand_rows(seen.case, plain_fit, "the logs to explain", _ways(material.firmware))
+        demand_rows(seen.case, "the logs to explain", _ways(material.firmware))
     demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
     seen = seen if _alarmed(seen.detection.p) else _over_noise(seen)
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
     if not _in_their_rows(material.firmware):
-        material = replace(material, notes=(*material.notes, *early_note(seen.case, plain_fit)))
+        material = replace(material, notes=(*material.notes, *early_note(seen.case)))
     seen, found = _explained(_beside_noise(seen))
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)

@@ -3,7 +3,7 @@
 A plant that answers before its command was logged is against all causes, so the log is wrong. One that answers late may be so itself.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from diagnosis import decisions
 from diagnosis.decide.wiring import fitted_or_none, is_strained
 from diagnosis.filter.filter_input import beginning
-from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import gain_over
+from diagnosis.fit.nominal import gain_over, plain_fit, settled
 from diagnosis.hypothesis.case import Case
 from jobs.thread_map import thread_map
 from records.errors import BadInput
@@ -32,12 +31,12 @@ class Misplaced:
     rows: int
 
 
-def demand_rows(case: Case, fitted: Callable[[Case], Fit], where: str, ways: Sequence[int] = (LATE,)) -> None:
+def demand_rows(case: Case, where: str, ways: Sequence[int] = (LATE,)) -> None:
     """Raise BadInput where the plant as stated follows the logs once their commands are moved by whole rows.
 
-    `fitted` fits the plant to a case, `where` says which logs they are, `ways` whether late or early commands are looked for.
+    `where` says which logs they are, `ways` whether late or early commands are looked for.
     """
-    found = misplaced(case, fitted, ways)
+    found = misplaced(case, ways)
     if found is None:
         return
     slip, gain = found
@@ -54,9 +53,9 @@ def demand_rows(case: Case, fitted: Callable[[Case], Fit], where: str, ways: Seq
     )
 
 
-def early_note(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Note, ...]:
+def early_note(case: Case) -> tuple[Note, ...]:
     """That the commands may stand some rows early in the logs, where moving them explains these; none where it does not."""
-    found = misplaced(case, fitted, (EARLY,))
+    found = misplaced(case, (EARLY,))
     if found is None:
         return ()
     slip, gain = found
@@ -74,28 +73,30 @@ def _names(case: Case, slip: Misplaced) -> str:
     return " and ".join(str(case.library.bound.model.inputs[place]) for place in slip.inputs)
 
 
-def misplaced(case: Case, fitted: Callable[[Case], Fit], ways: Sequence[int]) -> tuple[Misplaced, float] | None:
+def misplaced(case: Case, ways: Sequence[int]) -> tuple[Misplaced, float] | None:
     """The inputs that stand in other rows than those of their time, and what it gains in nats to move them; None where none do."""
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.ROWS_S)) for flight in case.flights]
     )
-    usual = fitted_or_none(short, fitted)
+    usual = fitted_or_none(short, plain_fit)
     if usual is None:
         return None
+    start = usual.hypothesis
 
-    def gain_of(slip: Misplaced) -> float:
-        fit = fitted_or_none(moved(short, slip), fitted)
-        return -np.inf if fit is None or is_strained(case, fit) else gain_over(short, usual, fit)
+    def followed(slip: Misplaced) -> tuple[float, bool]:
+        fit = fitted_or_none(moved(short, slip), lambda case: settled(case, start))
+        return (-np.inf, False) if fit is None else (gain_over(short, usual, fit), not is_strained(case, fit))
 
     slips = list(_by_one_row(len(case.library.bound.model.inputs), ways))
-    gains = thread_map(gain_of, slips)
-    best, gain = max(zip(slips, gains, strict=True), key=lambda entry: entry[1])
+    found = thread_map(followed, slips)
+    best, (gain, follows) = max(zip(slips, found, strict=True), key=lambda entry: entry[1])
     while gain > decisions.ROWS_GAIN and abs(best.rows) < max(NUMBERS):
         further = replace(best, rows=best.rows + int(np.sign(best.rows)))
-        if (more := gain_of(further)) <= gain:
+        more = followed(further)
+        if more[0] <= gain:
             break
-        best, gain = further, more
-    return (best, gain) if gain > decisions.ROWS_GAIN else None
+        best, (gain, follows) = further, more
+    return (best, gain) if follows and gain > decisions.ROWS_GAIN else None
 
 
 def _by_one_row(inputs: int, ways: Sequence[int]) -> Iterator[Misplaced]:

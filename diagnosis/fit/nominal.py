@@ -5,7 +5,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of, with_process_noise
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import nominal_hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 
@@ -27,7 +27,12 @@ def best_plain_fit(case: Case) -> Fit:
 
 def plain_fit(case: Case, first: float = float(decisions.FIRST_PROCESS_NOISE)) -> Fit:
     """The plant re-tuned within its spread, with the white noise that then remains; its search begins at log10 `first`."""
-    found = fit(case, nominal_hypothesis(case, first), rounds=NOMINAL_ROUNDS)
+    return settled(case, nominal_hypothesis(case, first))
+
+
+def settled(case: Case, start: Hypothesis) -> Fit:
+    """The same from where a search may begin nearer to its end. Raises BadInput where the plant cannot follow its logs."""
+    found = fit(case, start, rounds=NOMINAL_ROUNDS)
     for turn in range(SETTLING_ROUNDS):
         if found is None:
             raise BadInput(

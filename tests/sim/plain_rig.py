@@ -42,7 +42,7 @@ def squared(x: float) -> float:
 
 
 def draught(t: float) -> float:
-    """64 sines, each holding a sixty-fourth of the power of a process that forgets in one unit of time, a golden section of a turn apart."""
+    """64 sines, each holding its share of the power of a process that forgets in one unit of time, a golden section of a turn apart."""
     slots = [(k, tan(pi * (k + 0.5) / 128)) for k in range(64)]
     return sqrt(2 / 64) * sum(cos(rate * t + 2 * pi * k * (sqrt(5) - 1) / 2) for k, rate in slots)
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from diagnosis.decide.rows import EARLY, LATE, Misplaced, demand_rows, misplaced
-from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
@@ -50,11 +49,11 @@ def test_commands_in_other_rows_are_refused_by_name(
 ) -> None:
     case = make_case(library, [logged(fly(31, seconds=SECONDS), slip)])
     with pytest.raises(BadInput, match=named):
-        demand_rows(case, plain_fit, "the logs to explain", (LATE, EARLY))
+        demand_rows(case, "the logs to explain", (LATE, EARLY))
 
 
 def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly) -> None:
-    demand_rows(make_case(library, [fly(31, seconds=SECONDS)]), plain_fit, "the logs to explain", (LATE, EARLY))
+    demand_rows(make_case(library, [fly(31, seconds=SECONDS)]), "the logs to explain", (LATE, EARLY))
 
 
 @pytest.mark.parametrize(
@@ -63,4 +62,4 @@ def test_commands_in_their_rows_are_not_doubted(library: EffectLibrary, fly: Fly
 def test_a_plant_that_lacks_something_is_not_taken_for_commands_logged_late(
     library: EffectLibrary, fly: Fly, effects: dict[str, dict[str, float]]
 ) -> None:
-    assert misplaced(make_case(library, [fly(32, effects, SECONDS)]), plain_fit, (LATE,)) is None
+    assert misplaced(make_case(library, [fly(32, effects, SECONDS)]), (LATE,)) is None

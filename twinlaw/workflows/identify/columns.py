@@ -38,4 +38,4 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> None:
     library.prepare()
     case, where = make_case(library, list(logs.values()), stated=bound), ", ".join(logs)
     demand_wiring(case, plain_fit(case), plain_fit, where)
-    demand_rows(case, plain_fit, where, (LATE, EARLY))
+    demand_rows(case, where, (LATE, EARLY))
