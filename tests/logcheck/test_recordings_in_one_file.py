@@ -14,6 +14,9 @@ from recordings.datasets.library import IMPORTERS, import_record, records
 from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from records.restarts import restart_rows
+from sim.columns import log_columns
+from sim.manoeuvres import stir
+from sim.simulate import simulate
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
 from tests.plants import bound
 
@@ -109,17 +112,29 @@ def test_readings_that_stop_and_go_on_within_four_counts_of_there_are_left_out(p
     psi = rounded(0.5 * np.sin(2.5 * t_s))
     plain = log_of(len(t_s))
     log = replace(plain, t_s=t_s, sample_period_s=period_s, y=np.column_stack([psi, plain.y[:, 1]]))
-    assert list(dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))) == []
+    assert list(dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool), POSITIONS)) == []
     start_s = (2.0 * np.pi + 0.4) / 2.5
     unread = (t_s > start_s) & (t_s < start_s + (np.pi - 0.8) / 2.5)  # from 0.4 rad of phase up and down again
     first = int(np.argmax(unread))
     log.y[unread, 0] = psi[first]
     assert abs(psi[unread.nonzero()[0][-1] + 1] - psi[first]) < 4.0 * STEP_RAD + 0.5 * 2.5 * period_s
-    (found,) = dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))
+    (found,) = dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool), POSITIONS)
     assert found.excluded is not None
     assert found.excluded[unread].mean() > 0.9
     assert found.excluded.sum() <= unread.sum() + 1
     assert "/s just before" in found.finding.sentence
+
+
+@pytest.mark.parametrize("plant", ["maglev_coil", "aeroshield"])
+def test_a_current_that_settles_and_an_arm_that_an_input_sets_going_are_read(plant: str) -> None:
+    # Truth: a simulated run without noise, every reading of it sound; the input's steps set off all that moves.
+    rig = bound(plant)
+    moved = stir(rig)
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    assert y is not None
+    step = rig.plant.sensors[next(iter(rig.model.outputs))]
+    log = RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, step * np.round(y / step))
+    assert {entry.kind for entry in examine([log], rig, names=["log"]).findings} <= {"saturated"}
 
 
 @pytest.mark.soak
