@@ -75,6 +75,32 @@ def test_sequence_numbers_that_begin_again_begin_another_log_and_a_counter_at_it
     assert restart_rows(np.arange(9.0)).size == 0
 
 
+def test_rows_in_front_of_an_input_s_first_number_are_left_out_in_each_recording(tmp_path: Path) -> None:
+    """Truth: u_T_V begins 1.2 s behind the outputs, in the second recording 0.3 s; both are told, and no other row is lost."""
+    log = log_of(1000)
+    path = in_one_file(tmp_path, log, log)
+    lines = path.read_text().splitlines()
+    late = [*range(120), *range(1000, 1030)]
+    for row in late:
+        cells = lines[row + 1].split(",")
+        lines[row + 1] = ",".join([*cells[:2], "", *cells[3:]])
+    path.write_text("\n".join(lines) + "\n")
+    read = load_log(path, log.columns)
+    assert len(read.t_s) == 2000 - len(late)
+    assert np.isfinite(read.u).all()
+    assert begins(read) == [880]
+    told = {entry.kind: entry.sentence for entry in examine([read], PLANT, names=["log"]).findings}
+    assert set(told) == {"late_input", "restart"}
+    assert [(late.column, late.begins_s, late.rows) for late in read.late_inputs] == [
+        ("u_T_V", 1.2, 120),
+        ("u_T_V", 11.3, 30),
+    ]
+    lines[500] = lines[500].replace(lines[500].split(",")[1], "nan", 1)
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(BadInput, match="line 501"):
+        load_log(path, log.columns)
+
+
 def second_run(log: RunLog, row: int) -> RunLog:
     """The log up to a row, at which the azimuth is back where it began, and then from its first row on: the rig started again."""
     rows = np.r_[0:row, 0 : len(log.t_s) - row]
