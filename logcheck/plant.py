@@ -1,5 +1,6 @@
 """What a log's numbers say against the plant that it names: stops, limits, encoder grids, units."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from logcheck.motion import motion_findings
 from logcheck.units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
 from records.log import RunLog
+from records.text.units import unit_suffix
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
 
@@ -188,7 +190,16 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     held = _phase(values, step)
     own = grid_step(values)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
-    if held < thresholds.OFF_GRID and own == 0.0:
+    digits = printed_digits(values)
+    if digits is not None:
+        unit = unit_suffix(column) or ""
+        lost = 0.5 * 10.0 ** (math.floor(math.log10(float(np.abs(values).max()))) + 1 - digits)
+        sentence = (
+            f"{column} is printed with {in_words(digits, 'digit')}, which leaves up to {lost:.2g} {unit} open where its sensor "
+            f"has steps of {step:.5g}: print nine"
+        )
+        yield Found(Finding("few_digits", name, column, *span, sentence))
+    elif held < thresholds.OFF_GRID and own == 0.0:
         sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
         yield Found(Finding("simulated_looking", name, column, *span, sentence))
     elif own > 0.0 and abs(own / step - 1.0) > 0.01 and not 0.99 < own / step - round(own / step) + 1.0 < 1.01:
@@ -201,6 +212,22 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
                 f"{column} moves in steps of {own:.5g}, not of {step:.5g} as the plant states",
             )
         )
+
+
+def printed_digits(values: Array) -> int | None:
+    """The significant digits that numbers were printed with; None for more than FEW_DIGITS, and for a fixed number of decimals, a grid."""
+    size = np.abs(values[values != 0.0])
+    if not size.size:
+        return None
+    exponents = np.floor(np.log10(size))
+    for digits in range(1, thresholds.FEW_DIGITS + 1):
+        if _are_whole(size * 10.0 ** (digits - 1 - exponents)):
+            return None if _are_whole(size * 10.0 ** (digits - 1 - exponents.max())) else digits
+    return None
+
+
+def _are_whole(values: Array) -> bool:
+    return bool(np.all(np.abs(values - np.round(values)) < WHOLE))
 
 
 def grid_step(values: Array) -> float:

@@ -10,7 +10,7 @@ from logcheck.held import held_findings
 from logcheck.inputs import input_findings
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
-from logcheck.plant import grid_step, plant_facts, plant_findings
+from logcheck.plant import grid_step, plant_facts, plant_findings, printed_digits
 from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.units import rate_unit, reference_unit
@@ -111,6 +111,23 @@ def test_degrees_are_no_radians_and_a_grid_is_found_by_its_step() -> None:
     found = list(plant_findings(log, "a", PLANT, plant_facts(PLANT)))
     assert REFUSE in kinds(found).values()
     assert any("degrees" in entry.finding.sentence for entry in found)
+
+
+@pytest.mark.parametrize("digits", [2, 3, 4])
+def test_readings_printed_with_few_digits_are_told_and_decimals_are_a_grid(digits: int) -> None:
+    # Truth: an encoder's angles of 0.5 rad at most, printed with so many digits: the largest are off by half of the last one.
+    angle = rounded(0.5 * np.sin(0.01 * np.arange(2000)))
+    printed = np.array([float(f"{value:.{digits}g}") for value in angle])
+    assert printed_digits(printed) == digits
+    assert printed_digits(angle) is None
+    assert printed_digits(np.round(angle, 3)) is None
+    log = log_of()
+    log.y[:, 0] = printed
+    found = {
+        entry.finding.kind: entry.finding.sentence for entry in plant_findings(log, "a", PLANT, plant_facts(PLANT))
+    }
+    assert set(found) == {"few_digits"}
+    assert f"{digits} digits, which leaves up to {0.5 * 10.0**-digits:.2g} rad open" in found["few_digits"]
 
 
 def test_two_recordings_in_one_file_leap_in_all_outputs_at_once() -> None:

@@ -1,0 +1,65 @@
+"""Results that pages state figures of: each is what a command prints for a program, kept in docs/results.
+
+`.venv/bin/python -m tests.docs.results NAME ...` runs the commands of some of them, all without a name, and writes their files anew.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from functools import cache
+from typing import Any
+
+from tests.test_project import ROOT
+
+FOLDER = ROOT / "docs" / "results"
+VELAGIC = ["--plant", "plants/ce150_velagic.toml"]
+# One command a line, in a folder of its own; what the last one prints is the result.
+COMMANDS: dict[str, list[list[str]]] = {
+    "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
+    "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
+    "velagic": [
+        ["experiments", *VELAGIC, "--as-stated"],
+        ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
+    ],
+}
+LONG = ("looked_at", "repetitions", "notes", "correlation", "residuals")  # no page states them
+SERIES = 20  # numbers, of which the first and the last are kept
+
+
+def kept(value: Any) -> Any:
+    """A result without what no page states, and of long series their ends."""
+    if isinstance(value, dict):
+        return {key: kept(entry) for key, entry in value.items() if key not in LONG}
+    if not isinstance(value, list):
+        return value
+    is_series = len(value) > SERIES and all(isinstance(entry, float) for entry in value)
+    return [value[0], value[-1]] if is_series else [kept(entry) for entry in value]
+
+
+def made(name: str) -> str:
+    """The text of a result's file, from its commands."""
+    with tempfile.TemporaryDirectory() as folder:
+        for words in COMMANDS[name]:
+            told = [word.replace("{out}", folder) for word in words]
+            command = [sys.executable, "-m", "twinlaw.command", *told, "--out", folder, "--json"]
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return json.dumps(kept(json.loads(done.stdout)), indent=1) + "\n"
+
+
+@cache
+def result(name: str) -> Any:
+    """What a file of FOLDER holds."""
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def renew(names: Iterable[str]) -> None:
+    """Run, and write."""
+    FOLDER.mkdir(exist_ok=True)
+    for name in names:
+        (FOLDER / f"{name}.json").write_text(made(name), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    renew(sys.argv[1:] or COMMANDS)
