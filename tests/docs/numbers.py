@@ -122,8 +122,12 @@ def agrees(number: str, expression: str) -> bool:
     exact = value(expression)
     if "results." not in expression:
         return abs(float(number) - exact) <= 1e-9 * abs(exact)
-    last_digit = 10.0 ** int(Decimal(number).as_tuple().exponent)
-    return abs(float(number) - exact) <= 0.5001 * last_digit
+    return abs(float(number) - exact) <= 0.5001 * last_digit(number)
+
+
+def last_digit(number: str) -> float:
+    """What one more in the last digit of a number as it is written adds to it."""
+    return 10.0 ** int(Decimal(number).as_tuple().exponent)
 
 
 def _homes(package: str, module: Sequence[str], constant: str) -> list[str]:

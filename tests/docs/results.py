@@ -17,7 +17,12 @@ FOLDER = ROOT / "docs" / "results"
 VELAGIC = ["--plant", "plants/ce150_velagic.toml"]
 # One command a line, in a folder of its own; what the last one prints is the result.
 COMMANDS: dict[str, list[list[str]]] = {
+    "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
     "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
+    "identified": [
+        ["experiments", "--seed", "1"],
+        ["identify", "--truth", "{out}/truth.toml", "{out}"],
+    ],
     "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
     "velagic": [
         ["experiments", *VELAGIC, "--as-stated"],
@@ -39,12 +44,12 @@ def kept(value: Any) -> Any:
 
 
 def made(name: str) -> str:
-    """The text of a result's file, from its commands."""
+    """The text of a result's file, from its commands; what they say goes to the terminal."""
     with tempfile.TemporaryDirectory() as folder:
         for words in COMMANDS[name]:
             told = [word.replace("{out}", folder) for word in words]
             command = [sys.executable, "-m", "twinlaw.command", *told, "--out", folder, "--json"]
-            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+            done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     return json.dumps(kept(json.loads(done.stdout)), indent=1) + "\n"
 
 
