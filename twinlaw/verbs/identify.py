@@ -114,7 +114,7 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.window is not None and not chosen.window > 0.0:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
-    truth = None if chosen.truth is None else load_bound(chosen.truth)
+    truth = None if chosen.truth is None else _truth(chosen.truth, bound)
     inputs = usable_inputs(chosen.files, holdout, bound, chosen.trim)
     wishes = _wishes(chosen, bound, len(inputs.experiments) + bool(inputs.logs))
     result = identify(bound, inputs, wishes, chosen.out)
@@ -134,6 +134,15 @@ def run(chosen: argparse.Namespace) -> int:
     else:
         _tell(chosen, result, known, quality)
     return 0
+
+
+def _truth(path: Path, bound: BoundPlant) -> BoundPlant:
+    """The plant that was recorded; raises BadInput for one of other equations, whose parameters are none of these."""
+    truth = load_bound(path)
+    if truth.nominal.name != bound.nominal.name:
+        got, expected = f"equations of {truth.nominal.name}", f"those of {bound.nominal.name}, as --plant has"
+        raise BadInput("--truth", str(path), got, expected, "give the file of the plant that was recorded")
+    return truth
 
 
 def _wishes(chosen: argparse.Namespace, bound: BoundPlant, fits: int) -> Wishes:

@@ -4,12 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from design.structure import missing
 from identification.experiments.table import KINDS
 from identification.experiments.velagic.figures import responses
 from identification.proof.linear_rotor import against_linear, linear_rotor
 from identification.proof.validation import compare_flights
 from identification.results.result import Identification
 from identification.stages.estimate import Estimate
+from records.errors import BadInput
 from records.experiment import Experiment
 from sim.bind import BoundPlant, bind
 from twinlaw.cli import console
@@ -56,5 +58,10 @@ def proven(result: Identification, truth: BoundPlant | None) -> Proof:
             shown = responses(truth, bind(result.plant))
             plots = figure_plots(shown)
             return Proof([*sections, figure_section(shown, plots)], pictures | plots, {})
-        flights = compare_flights(bind(result.plant), truth)
+        if missing(truth):
+            return Proof(sections, pictures, {})  # no law is designed for such a plant
+        try:
+            flights = compare_flights(bind(result.plant), truth)
+        except BadInput as error:  # what was identified is not lost with it
+            return Proof([*sections, Section("Flight", (f"Not flown: {error}",))], pictures, {})
         return Proof([*sections, flight_section(flights)], pictures, flights.rms)
