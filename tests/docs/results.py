@@ -29,7 +29,14 @@ COMMANDS: dict[str, list[list[str]]] = {
         ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
     ],
 }
-LONG = ("looked_at", "repetitions", "notes", "correlation", "residuals")  # no page states them
+LONG = (
+    "looked_at",
+    "repetitions",
+    "notes",
+    "correlation",
+    "residuals",
+    "cpu_s",
+)  # no page states them, or no two runs alike
 SERIES = 20  # numbers, of which the first and the last are kept
 
 
