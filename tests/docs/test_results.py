@@ -62,6 +62,13 @@ def test_the_coverage_of_60_sets_of_flights_is_what_the_sweep_counted() -> None:
         hold(cells, keys, (1, 1, 1, 1, 100))
 
 
+def test_the_intervals_of_100_rigs_hold_the_truth_as_often_as_the_page_says() -> None:
+    page = (ROOT / "docs" / "identification.md").read_text(encoding="utf-8")
+    told = {name: share for share, names in rows("| inside | parameters |", page) for name in names.split(", ")}
+    assert set(told) == set(result("coverage")["coverage"])
+    hold(list(told.values()), [f"coverage.coverage.{name}" for name in told], (100,) * len(told))
+
+
 def test_the_genetic_algorithm_s_table_is_what_the_identification_wrote() -> None:
     for stage, cells in zip("0000111223", rows("| stage | parameter | the paper"), strict=True):
         name = cells[1].split()[0]
