@@ -8,14 +8,32 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+from records.plant import load_plant, save_plant
 from tests.test_project import ROOT
 
 FOLDER = ROOT / "docs" / "results"
 VELAGIC = ["--plant", "plants/ce150_velagic.toml"]
 # One command a line, in a folder of its own; what the last one prints is the result.
+FRICTION = {"free": "{frictionless}", "dry": "plants/ce150.toml"}
+SWEPT = {"references": ["0.06", "0.15"], "inputs": ["0.5", "0.5"], "larger_references": ["0.12", "0.3"]}
+
+
+def swept(on: str, friction: str) -> list[list[str]]:
+    """The CE150 in its loop, swept and matched beside its linearisation, its friction as stated or taken out."""
+    plant = ["--plant", FRICTION[friction]]
+    what = ["--on", "inputs"] if on == "inputs" else []
+    free = ["--free", "J_E,b_vE,J_A,b_vA", "--band-rad-s", "0.3", "10", "--truth", FRICTION[friction]]
+    return [
+        ["sweep", *plant, "--psi-rad", "-0.15", *what, "--amplitudes", *SWEPT[on]],
+        ["identify", *plant, "--method", "frequency", *free, "{out}/sweep_elevation.csv", "{out}/sweep_azimuth.csv"],
+    ]
+
+
 COMMANDS: dict[str, list[list[str]]] = {
     "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
     "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
@@ -24,6 +42,10 @@ COMMANDS: dict[str, list[list[str]]] = {
         ["identify", "--truth", "{out}/truth.toml", "{out}"],
     ],
     "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
+    "swept_references_free": swept("references", "free"),
+    "swept_inputs_free": swept("inputs", "free"),
+    "swept_larger_references_dry": swept("larger_references", "dry"),
+    "swept_references_dry": swept("references", "dry"),
     "velagic": [
         ["experiments", *VELAGIC, "--as-stated"],
         ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
@@ -54,10 +76,18 @@ def made(name: str) -> str:
     """The text of a result's file, from its commands; what they say goes to the terminal."""
     with tempfile.TemporaryDirectory() as folder:
         for words in COMMANDS[name]:
-            told = [word.replace("{out}", folder) for word in words]
+            told = [word.format(out=folder, frictionless=_frictionless(Path(folder))) for word in words]
             command = [sys.executable, "-m", "twinlaw.command", *told, "--out", folder, "--json"]
             done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     return json.dumps(kept(json.loads(done.stdout)), indent=1) + "\n"
+
+
+def _frictionless(folder: Path) -> Path:
+    """plants/ce150.toml without dry friction, in a folder."""
+    plant = load_plant(ROOT / "plants" / "ce150.toml")
+    without = {name: replace(plant.parameters[name], value=0.0, sd=0.0) for name in ("b_cE", "b_cA")}
+    save_plant(folder / "frictionless.toml", replace(plant, parameters={**plant.parameters, **without}))
+    return folder / "frictionless.toml"
 
 
 @cache
