@@ -34,7 +34,13 @@ def gaps(t_s: Array) -> Rows:
 
 
 def break_findings(log: RunLog, name: str) -> Iterator[Found]:
-    """Notes on the other recordings in the file, and on the stretches without rows, behind which the log goes on as another one."""
+    """Notes on inputs that begin late, on other recordings in the file, and on stretches without rows, behind which the log goes on as
+    another one."""
+    for late in log.late_inputs:
+        sentence = (
+            f"{late.column} begins at {late.begins_s:.6g} s: {in_words(late.rows, 'row')} in front of it left out"
+        )
+        yield Found(Finding("late_input", name, late.column, late.begins_s, late.begins_s, sentence, rows=late.rows))
     restarts = np.searchsorted(log.t_s, [entry.at_s for entry in log.restarts])
     if restarts.size:
         yield _restarted(log, name, restarts)

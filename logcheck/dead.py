@@ -2,10 +2,11 @@
 
 An axis that slows down, rests and leaves its rest starts by less than it moves next. Where the first move behind a stand is far more than
 those after it, the readings between were old. So they were where it came back to where it had been, and no jump shows: an axis that comes
-to rest by an even brake goes three times as far in the second last stretch of time as in the last; one that is cut off, as far.
+to rest by an even brake goes three times as far in the second last stretch of time as in the last; one that is cut off, as far. This is
+asked of positions alone, as nothing brakes a current or a rate, and not of an axis that an input sets going as it moves itself.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,13 +42,19 @@ def read_again(log: RunLog) -> Rows:
     return again
 
 
-def dead_findings(log: RunLog, name: str, steps: Mapping[str, float], begins: Rows) -> Iterator[Found]:
-    """The stands of each output that no axis makes, whose readings are left out; with the rows `begins` (n,) another log begins."""
+def dead_findings(
+    log: RunLog, name: str, steps: Mapping[str, float], begins: Rows, positions: Collection[str] = ()
+) -> Iterator[Found]:
+    """The stands of each output that no axis makes, whose readings are left out; with the rows `begins` (n,) another log begins.
+
+    `positions` are outputs that a mass moves.
+    """
     for column in log.columns.outputs:
         step = steps.get(column, 0.0)
         present = np.flatnonzero(np.isfinite(log.column(column)))
         t_s, values = log.t_s[present], log.column(column)[present]
-        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step, begins[present]))
+        has_mass = column in positions
+        stands = list(_dead(t_s, values, log.u[present], log.sample_period_s, step, begins[present], has_mass))
         if not stands:
             continue
         unread: Rows = np.zeros(len(log.t_s), bool)
@@ -83,9 +90,11 @@ def _ways(stand: Stand, column: str, step: float) -> Iterator[str]:
         yield "where it hardly ever reads the same twice"
 
 
-def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, begins: Rows) -> Iterator[Stand]:
+def _dead(
+    t_s: Array, values: Array, u: Array, period_s: float, step: float, begins: Rows, has_mass: bool
+) -> Iterator[Stand]:
     """Stands of at least DEAD_ROWS rows into which or out of which the column leaps, by far more than it moves there, though its axis was
-    under way, or the inputs u (n, inputs) moved it."""
+    under way, or the inputs u (n, inputs) moved it; of a mass also those on whose sides it goes on as before."""
     moves = np.where(begins[1:], 0.0, np.diff(values))
     own = np.abs(moves[moves != 0.0])
     if not own.size:
@@ -109,10 +118,13 @@ def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, beg
         leaps_in = _is_leap(into, before[-thresholds.AROUND_STAND_ROWS :], least)
         leaps_out = _is_leap(out, after[: thresholds.AROUND_STAND_ROWS], least)
         arrives = _is_under_way(np.abs(arrived), least)
-        driven = bool(np.any(np.ptp(u[begin : end + 1], axis=0) > thresholds.DRIVEN_SHARE * usual_u))
+        driven = _moves_far(u[begin : end + 1], usual_u)
         goes_on = arrives or driven or _is_under_way(after * np.sign(out), least)
         leaps = (leaps_in and (leaps_out or _is_under_way(np.abs(before), least))) or (leaps_out and goes_on)
-        cut_off = not leaps and _is_cut_off(t_s, values, begin, end, way, least, begins)
+        set_going = _moves_far(u[max(begin, end - way) : end + 2], usual_u) and not _moves_far(
+            u[begin : end - way + 1], usual_u
+        )
+        cut_off = has_mass and not leaps and _is_cut_off(t_s, values, begin, end, way, least, begins, set_going)
         if cut_off and not arrives:  # so dense are the rows that a few of them tell no speed
             arrived, arrives = moves[max(0, begin - way) : begin], True
         if leaps or cut_off:
@@ -121,8 +133,18 @@ def _dead(t_s: Array, values: Array, u: Array, period_s: float, step: float, beg
             yield Stand(begin, end, abs(into) * leaps_in, abs(out) * leaps_out, speed)
 
 
-def _is_cut_off(t_s: Array, values: Array, begin: int, end: int, way: int, least: float, begins: Rows) -> bool:
-    """Whether the column is under way up to the stand begin..end, and from it on, as no axis is that comes to rest and leaves it."""
+def _moves_far(u: Array, usual_u: Array) -> bool:
+    """Whether an input (n, inputs) moves by DRIVEN_SHARE of its range in the log."""
+    return len(u) > 0 and bool(np.any(np.ptp(u, axis=0) > thresholds.DRIVEN_SHARE * usual_u))
+
+
+def _is_cut_off(
+    t_s: Array, values: Array, begin: int, end: int, way: int, least: float, begins: Rows, set_going: bool
+) -> bool:
+    """Whether the column is under way up to the stand begin..end, and from it on, as no axis is that comes to rest and leaves it.
+
+    One that an input has `set_going` leaves it as it likes.
+    """
     margin = thresholds.BROKEN_OFF_STEPS * least
     if not values.min() + margin < values[begin] < values.max() - margin:
         return False  # at an end of its range an axis may be stopped
@@ -131,7 +153,7 @@ def _is_cut_off(t_s: Array, values: Array, begin: int, end: int, way: int, least
     alone = thresholds.CUT_OFF_ALONE_STEPS * least, min(rows // 2, way)
     comes = [_evenness(t_s, values, begin, -1, *limits, begins) for limits in (both, alone)]
     goes = _evenness(t_s, values, end + 1, 1, *both, begins)
-    return min(comes[0], goes) > thresholds.EVEN or comes[1] > thresholds.EVEN
+    return (not set_going and min(comes[0], goes) > thresholds.EVEN) or comes[1] > thresholds.EVEN
 
 
 def _evenness(t_s: Array, values: Array, at: int, way: int, far: float, most_rows: int, begins: Rows) -> float:

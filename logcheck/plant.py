@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from logcheck import thresholds
-from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, in_words
+from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
 from logcheck.units import rate_unit, reference_unit, rotor_unit
@@ -188,7 +188,10 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
     held = _phase(values, step)
     own = grid_step(values)
     span = (float(log.t_s[0]), float(log.t_s[-1]))
-    if held < thresholds.OFF_GRID and own == 0.0:
+    digits = printed_digits(values)
+    if digits is not None:
+        yield _few_digits(log, name, column, step, digits)
+    elif held < thresholds.OFF_GRID and own == 0.0:
         sentence = f"{column} does not lie on the encoder's grid of {step:.5g} or on any other: simulated, filtered or interpolated numbers"
         yield Found(Finding("simulated_looking", name, column, *span, sentence))
     elif own > 0.0 and abs(own / step - 1.0) > 0.01 and not 0.99 < own / step - round(own / step) + 1.0 < 1.01:
@@ -201,6 +204,44 @@ def _grid(log: RunLog, name: str, column: str, step: float) -> Iterator[Found]:
                 f"{column} moves in steps of {own:.5g}, not of {step:.5g} as the plant states",
             )
         )
+
+
+def _few_digits(log: RunLog, name: str, column: str, step: float, digits: int) -> Found:
+    """A column printed with few digits: what is rounded by more than its sensor does is left out; where that is most, it is refused."""
+    values = log.column(column)
+    size = np.abs(np.where(np.isfinite(values) & (values != 0.0), values, step))
+    rounded_to = 10.0 ** (np.floor(np.log10(size)) + 1 - digits)
+    coarse: Rows = rounded_to > step * (1.0 + WHOLE)
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    most = f"{float(rounded_to.max()):.2g}"
+    sentence = f"{column} is printed with {in_words(digits, 'digit')}, in steps of up to {most} where its sensor has {step:.5g}"
+    remedy = f"print nine digits, or state {most} as the sensor's resolution in the plant file"
+    if coarse.mean() > thresholds.COARSE_SHARE:
+        return Found(Finding("few_digits", name, column, *span, sentence, REFUSE, 0, "all digits", remedy))
+    if not coarse.any():
+        return Found(
+            Finding("few_digits", name, column, *span, f"{sentence}, and so is rounded twice; print nine digits")
+        )
+    count = int(coarse.sum())
+    told = f"{sentence}: {in_words(count, 'reading')} with coarser ones than that left out; {remedy}"
+    at = log.t_s[coarse]
+    return Found(Finding("few_digits", name, column, float(at[0]), float(at[-1]), told, EXCLUDE, count), coarse)
+
+
+def printed_digits(values: Array) -> int | None:
+    """The significant digits that numbers were printed with; None for more than FEW_DIGITS, and for a fixed number of decimals, a grid."""
+    size = np.abs(values[values != 0.0])
+    if not size.size:
+        return None
+    exponents = np.floor(np.log10(size))
+    for digits in range(1, thresholds.FEW_DIGITS + 1):
+        if _are_whole(size * 10.0 ** (digits - 1 - exponents)):
+            return None if _are_whole(size * 10.0 ** (digits - 1 - exponents.max())) else digits
+    return None
+
+
+def _are_whole(values: Array) -> bool:
+    return bool(np.all(np.abs(values - np.round(values)) < WHOLE))
 
 
 def grid_step(values: Array) -> float:

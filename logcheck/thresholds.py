@@ -88,6 +88,10 @@ JUMPS_RATIO = Limit(
 
 # plant
 FINEST_GRID = Limit(1e5, "steps", "beyond it the step is a number format's")
+FEW_DIGITS = Count(5, "digits", "a float32 has seven; an encoder's steps are all told apart by five in most ranges")
+COARSE_SHARE = Limit(
+    0.5, "share of rows", "rounded by more than the sensor does: what is left would be of small angles alone"
+)
 ON_GRID = Limit(0.97, "mean phase", "1 for numbers on the grid, 0 for any")
 OFF_GRID = Limit(0.6, "mean phase", "1 for numbers on the grid, 0 for any")
 BEYOND_STOP_rad = Limit(0.1, "rad", "offsets and scales of a sensor may carry an angle beyond its stop")

@@ -88,7 +88,7 @@ def value_findings(
     for found in seams:
         begins |= begins if found.begins is None else found.begins
     held = list(held_findings(log, name))
-    yield from held or dead_findings(log, name, steps, begins)
+    yield from held or dead_findings(log, name, steps, begins, positions)
     for column in log.columns.outputs:
         yield from _glitches(log, name, column, steps.get(column, 0.0))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from records.errors import BadInput
+from records.quality import Quality, quality_facts
 from records.reasons import Decision, Note
 from records.text import checks
 from records.text.reading import read_json
@@ -14,6 +15,7 @@ from records.text.reading import read_json
 SCHEMA = "diagnosis/1"
 VERDICTS = ("gap", "no gap", "cannot tell")
 FURTHER = ("error_responses", "verdict_reason", "decisions", "note_records")  # keys that a file may lack
+QUALITY = "quality"  # a key beside the record: the colour that pages show, made from it
 SHARE_TOLERANCE = 1e-6  # how far shares may sum from 1
 T = TypeVar("T")
 
@@ -195,11 +197,12 @@ class Diagnosis:
     note_records: tuple[Note, ...] = ()
 
 
-def diagnosis_text(diagnosis: Diagnosis) -> str:
-    """The record as JSON text in the form of CONTRACT.md; raises BadInput for a number out of its range."""
+def diagnosis_text(diagnosis: Diagnosis, quality: Quality | None = None) -> str:
+    """The record as JSON text in the form of CONTRACT.md, with its colour; raises BadInput for a number out of its range."""
     _check(diagnosis, "diagnosis")
     try:
-        return json.dumps({"schema": SCHEMA, **_plain(diagnosis)}, indent=1, allow_nan=False) + "\n"
+        coloured = {} if quality is None else {QUALITY: quality_facts(quality)}
+        return json.dumps({"schema": SCHEMA, **_plain(diagnosis), **coloured}, indent=1, allow_nan=False) + "\n"
     except ValueError as error:
         raise BadInput("number", "diagnosis", str(error), "finite numbers", "write null for what is unknown") from error
 
@@ -214,7 +217,7 @@ def parse_diagnosis(content: Mapping[str, Any], where: str) -> Diagnosis:
     """A diagnosis from the content of its file; raises BadInput."""
     checks.schema(content, f"{where}: schema", SCHEMA)
     names = [_json_name(field.name) for field in fields(Diagnosis)]
-    checks.keys(content, where, ("schema", *(name for name in names if name not in FURTHER)), FURTHER)
+    checks.keys(content, where, ("schema", *(name for name in names if name not in FURTHER)), (*FURTHER, QUALITY))
     p = content["false_alarm_probability"]
     diagnosis = Diagnosis(
         verdict=checks.text(content["verdict"], f"{where}: verdict"),

@@ -3,6 +3,7 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,15 @@ class LogColumns:
     axes: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class LateInput:
+    """An input that begins at `begins_s`, behind so many rows of a recording in which the outputs alone stand; these are left out."""
+
+    column: str
+    begins_s: float
+    rows: int
+
+
 @dataclass(frozen=True, eq=False)
 class RunLog:
     """A run of n samples: y[k] measured at t_s[k], u[k] commanded from then until t_s[k + 1], after the controller's limits.
@@ -41,7 +51,7 @@ class RunLog:
     Shapes: t_s (n,), u (n, inputs), y (n, outputs; NaN where nothing was measured), `extra` optional columns (n,), `seq` (n,) the
     board's sequence numbers or None; SI units. `table_digest` names the controller table that flew, None where there was none;
     `source` the published recording that the log was imported from, None for a log of this project's own making; `restarts` are where
-    another recording of the same file begins, whose times are counted on.
+    another recording of the same file begins, whose times are counted on; `late_inputs` begin behind a recording's first row.
     """
 
     columns: LogColumns
@@ -56,6 +66,7 @@ class RunLog:
     table_digest: str | None = None
     source: Source | None = None
     restarts: tuple[Restart, ...] = ()
+    late_inputs: tuple[LateInput, ...] = ()
 
     def column(self, name: str) -> Array:
         """The column called `name`, shape (n,); raises KeyError for one that is not there."""
@@ -132,8 +143,9 @@ def facts_of_sidecar(text: str, where: str, columns: LogColumns) -> dict[str, An
 def load_log(path: Path, columns: LogColumns) -> RunLog:
     """Read a run log of the plant that `columns` describes; times, gaps and NaN are kept as they are, and times that begin again count on.
 
-    Raises BadInput naming file, line and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a
-    truncated row, a number that is none, time that does not increase, an input that is not finite.
+    Rows in front of an input's first number are left out, as nobody knows what moved the plant there. Raises BadInput naming file, line
+    and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated row, a number that is none, time
+    that does not increase, an input that is not finite.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = _sidecar(path)
@@ -142,21 +154,44 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     data = {name: rows[:, index] for index, name in enumerate(names)}
     begins = restart_rows(data["t_s"])
     data["t_s"], restarts = on_one_clock(data["t_s"])
-    _check_numbers(data, str(path), columns)
+    kept, late_inputs = _from_the_inputs(data, begins, columns)
+    _check_numbers(data, kept, str(path), columns)
+    seq = counted_on(data["seq"].astype(np.int64), begins)[kept] if "seq" in data else None
+    data = {name: values[kept] for name, values in data.items()}
     return RunLog(
         columns=columns,
         sample_period_s=float(sidecar["sample_period_s"]),
         loop=sidecar["loop"],
         t_s=data["t_s"].copy(),
-        u=np.stack([data[name] for name in columns.inputs], axis=1) if columns.inputs else np.zeros((len(rows), 0)),
+        u=np.stack([data[name] for name in columns.inputs], axis=1)
+        if columns.inputs
+        else np.zeros((int(kept.sum()), 0)),
         y=np.column_stack([data[name] for name in columns.outputs]),
         extra={name: data[name].copy() for name in names if name in columns.optional},
-        seq=counted_on(data["seq"].astype(np.int64), begins) if "seq" in data else None,
+        seq=seq,
         locked=tuple(sidecar["locked"]),
         table_digest=controller,
         source=parse_source(sidecar["source"], f"{sidecar_path}: source") if "source" in sidecar else None,
         restarts=restarts,
+        late_inputs=late_inputs,
     )
+
+
+def _from_the_inputs(
+    data: Mapping[str, Array], begins: NDArray[np.int64], columns: LogColumns
+) -> tuple[NDArray[np.bool_], tuple[LateInput, ...]]:
+    """Rows (n,) but those that stand in front of an input's first number at the head of a recording, and what was left out."""
+    kept = np.ones(len(data["t_s"]), bool)
+    found = []
+    for first, behind in pairwise([0, *begins.tolist(), len(kept)]):
+        known = {name: ~np.isnan(data[name][first:behind]) for name in columns.inputs}
+        rows = {name: int(np.argmax(there)) for name, there in known.items() if there.any()}
+        last = max(rows, key=lambda name: rows[name], default=None)
+        if last is None or not rows[last] or len(rows) < len(known):
+            continue  # what never begins is refused with its line
+        kept[first : first + rows[last]] = False
+        found.append(LateInput(last, float(data["t_s"][first + rows[last]]), rows[last]))
+    return kept, tuple(found)
 
 
 def plant_of_log(path: Path) -> str:
@@ -214,9 +249,10 @@ def _check_columns(names: tuple[str, ...], where: str, columns: LogColumns) -> N
         raise BadInput("header", where, "a column twice", "each column once", "remove the second")
 
 
-def _check_numbers(data: Mapping[str, Array], where: str, columns: LogColumns) -> None:
+def _check_numbers(data: Mapping[str, Array], kept: NDArray[np.bool_], where: str, columns: LogColumns) -> None:
+    """Raise BadInput for a number that cannot be, in an input only where its rows are `kept` (n,)."""
     for name in ("t_s", *columns.inputs, *(["seq"] if "seq" in data else [])):
-        bad = np.flatnonzero(~np.isfinite(data[name]))
+        bad = np.flatnonzero(~np.isfinite(data[name]) & (kept if name in columns.inputs else True))
         if bad.size:
             raise BadInput(
                 f"column {name!r}",

@@ -15,13 +15,17 @@ Array = NDArray[np.float64]
 
 STEADY_S = 1.0  # the error at rest is the mean over this long before the next change of any reference
 SHORTEST_HOLD_S = 3.0  # a reference held for less has no steady part to judge
+SETTLED_RAD = math.radians(
+    1.0
+)  # a step has settled where the angle stays so near; seed 001 calls errors of 0.5 to 1 deg good
 
 
 @dataclass(frozen=True)
 class Tracking:
     """One output over a flight, as its sensor shows it.
 
-    `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `steady_error_rad` the
+    `overshoot` is the largest excess beyond a new reference, as a share of the change that led to it; `settling_s` the longest time
+    from such a change until the angle stays within SETTLED_RAD, None where it does not before the next one; `steady_error_rad` the
     largest |mean error| over the last second of a hold; `mean_error_rad` the mean of |error| over the whole flight; `push_rad` the
     largest |error| in the holds that another output's change began: what the axes do to each other. `activity` is what the output's
     own input did for that over the whole flight.
@@ -30,6 +34,7 @@ class Tracking:
     output: str
     holds: int
     overshoot: float
+    settling_s: float | None
     steady_error_rad: float
     mean_error_rad: float
     push_rad: float
@@ -74,17 +79,39 @@ def tracking(log: RunLog, output: str) -> Tracking:
         float(np.nanmax(np.abs(reference - measured)[hold.begin : hold.end])) for hold in holds[1:] if not hold.change
     ]
     own_input = log.columns.inputs[log.columns.outputs.index(output)]
-    overshoots = [_overshoot(reference, measured, hold) for hold in holds if hold.change]
+    steps = [hold for hold in holds if hold.change]
+    error = reference - measured
+    settling = [settling_s(log.t_s[hold.begin : hold.end], error[hold.begin : hold.end]) for hold in steps]
     return Tracking(
         output=output,
         holds=len(holds),
-        overshoot=max(overshoots, default=0.0),
+        overshoot=max((_overshoot(reference, measured, hold) for hold in steps), default=0.0),
+        settling_s=longest(settling),
         steady_error_rad=max((abs(error) for error in errors), default=0.0),
         mean_error_rad=float(np.nanmean(np.abs(reference - measured))),
         push_rad=max(pushes, default=0.0),
         input=own_input,
         activity=activity(log.t_s, log.column(own_input)),
     )
+
+
+def settling_s(t_s: Array, error_rad: Array) -> float | None:
+    """The time from a step, the first of these rows, until |error| stays within SETTLED_RAD; None where its last reading is outside.
+
+    A row without a reading counts as the one before it.
+    """
+    read = np.flatnonzero(np.isfinite(error_rad))
+    outside = np.flatnonzero(np.abs(error_rad[read]) > SETTLED_RAD)
+    if not outside.size:
+        return 0.0
+    last = int(outside[-1])
+    return None if last == len(read) - 1 else float(t_s[read[last + 1]] - t_s[0])
+
+
+def longest(settling: Sequence[float | None]) -> float | None:
+    """The longest of some times to settle; None where one step does not, 0 where there was none."""
+    times = [time for time in settling if time is not None]
+    return None if len(times) < len(settling) else max(times, default=0.0)
 
 
 def _holds(t_s: Array, references: dict[str, Array], own: Array) -> list[_Hold]:

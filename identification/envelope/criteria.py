@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 WEIGHTS: Mapping[str, float] = MappingProxyType(
     {"points within the margins": 4.0, "three seconds within the margins": 3.0, "fit": 2.0, "correlation": 1.0}
 )
+UNFITTED: Mapping[str, float] = MappingProxyType({name: weight for name, weight in WEIGHTS.items() if name != "fit"})
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,14 @@
 """A study as plain facts for envelope.json: every figure of the tables, and the models themselves."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from identification.envelope.check import FINAL, Check
-from identification.envelope.criteria import Match, passed, score_percent
+from identification.envelope.criteria import UNFITTED, Match, error_margins, passed, score_percent
 from identification.envelope.flights.flight import INPUTS, OUTPUTS, STATES
-from identification.envelope.modes import Mode
+from identification.envelope.modes import DUTCH_ROLL, PHUGOID, Mode
 from identification.envelope.one_condition import ConditionResult, Interpolated
 from identification.envelope.study import Study
 
@@ -49,6 +49,88 @@ def _parts(value: complex | None) -> list[float] | None:
     return None if value is None else [value.real, value.imag]
 
 
+def modes_summary(modes: Sequence[Mode]) -> dict[str, Any]:
+    """Median and worst distance of each mode from the truth, in per cent of its modulus, of all conditions and of those left out."""
+    own, others = [mode for mode in modes if not mode.left_out], [mode for mode in modes if mode.left_out]
+    return {
+        mode_key(name): {
+            "least_squares": _percent(mode.off(mode.least_squares) for mode in own if mode.name == name),
+            "closed_loop": _percent(mode.off(mode.model) for mode in own if mode.name == name),
+            "interpolated": _percent(mode.off(mode.model) for mode in others if mode.name == name),
+        }
+        for name in (DUTCH_ROLL, PHUGOID)
+    }
+
+
+def mode_key(name: str) -> str:
+    """The mode's name as a key: dutch_roll."""
+    return name.lower().replace(" ", "_")
+
+
+def _percent(offs: Iterable[float | None]) -> dict[str, Any] | None:
+    known = [100.0 * off for off in offs if off is not None]
+    if not known:
+        return None
+    return {"conditions": len(known), "median_percent": float(np.median(known)), "worst_percent": max(known)}
+
+
+def validations(found: Study) -> dict[str, Any]:
+    """Of the validation flights: by tuning of the start, and by output equation on measured and on predicted states."""
+    checks = [check for entry in found.conditions for check in entry.checks[1:]]
+    if not checks:
+        return {}
+    return {
+        "starts": {how.replace(" ", "_"): _held(checks, how) for how in checks[0].states},
+        "outputs": _equations([check.outputs for check in checks]),
+        "global": _equations([check.overall for check in checks]),
+        "interpolated_by_nearest": _held([entry.nearest for entry in found.left_out], FINAL),
+    }
+
+
+def open_loop_facts(found: Study, entry: ConditionResult) -> dict[str, Any]:
+    """One step ahead: least and most over the states of one condition, and the most points outside of all flights of the study."""
+    own, whole = entry.checks[0].open_loop, entry.checks[0].open_loop_whole
+    checks = [check for entry in found.conditions for check in entry.checks]
+    return {
+        "condition": entry.condition.name,
+        "fit_percent": _ends([match.fit_percent for match in own]),
+        "fit_with_trim_percent": _ends([match.fit_percent for match in whole]),
+        "correlation_percent": _ends([100.0 * match.correlation for match in own]),
+        "flights": sum(len(check.data.x) for check in checks),
+        "outside_percent": max(match.outside_percent for check in checks for match in check.open_loop),
+    }
+
+
+def _ends(values: Sequence[float]) -> dict[str, float]:
+    return {"least": min(values), "most": max(values)}
+
+
+def _held(checks: Sequence[Check], how: str) -> dict[str, Any]:
+    """How many flights keep the three-second rule after a tuning of the start, and the mean percentage of points outside."""
+    return {
+        "flights": sum(len(check.data.x) for check in checks),
+        "held_three_seconds": sum(check.held[how] for check in checks),
+        "outside_percent": _mean([match.outside_percent for check in checks for match in check.states[how]]),
+    }
+
+
+def _equations(found: Sequence[Mapping[str, Sequence[Match]]]) -> dict[str, Any]:
+    """By output equation: mean error in margins and in how many checks it is the least, points outside, checks held, mean scores."""
+    least = [min(by_way, key=lambda way: error_margins(by_way[way])) for by_way in found]
+    return {
+        way: {
+            "checks": len(found),
+            "error_rms_margins": _mean([error_margins(by_way[way]) for by_way in found]),
+            "least_in": least.count(way),
+            "outside_percent": _mean([match.outside_percent for by_way in found for match in by_way[way]]),
+            "held_three_seconds": sum(passed(by_way[way]) for by_way in found),
+            "score_percent": _mean([score_percent(by_way[way]) for by_way in found]),
+            "score_without_fit_percent": _mean([score_percent(by_way[way], UNFITTED) for by_way in found]),
+        }
+        for way in found[0]
+    }
+
+
 def summary(found: Study) -> dict[str, Any]:
     """How many flights keep the three-second rule after the tuning that the global model uses."""
     groups = {
@@ -56,14 +138,7 @@ def summary(found: Study) -> dict[str, Any]:
         "validation": [check for entry in found.conditions for check in entry.checks[1:]],
         "interpolation": [entry.between for entry in found.left_out],
     }
-    return {
-        name: {
-            "flights": sum(len(check.data.x) for check in checks),
-            "held_three_seconds": sum(check.held[FINAL] for check in checks),
-            "outside_percent": _mean([match.outside_percent for check in checks for match in check.states[FINAL]]),
-        }
-        for name, checks in groups.items()
-    }
+    return {name: _held(checks, FINAL) for name, checks in groups.items()}
 
 
 def _mean(values: Sequence[float]) -> float | None:

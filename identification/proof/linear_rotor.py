@@ -5,7 +5,7 @@
 Figs. 7 and 8 of seed 000 show it beside the polynomial model; it is that model with all higher coefficients 0.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,24 @@ from identification.stages.estimate import Estimate, estimate
 
 Array = NDArray[np.float64]
 KEPT = ("p_b_0", "K", "p_F_1")
+
+
+@dataclass(frozen=True)
+class AgainstLinear:
+    """One channel of a rotor's record: the fit of both models, and by how much the linear one's error is larger, rms over rms."""
+
+    channel: str
+    fit_percent: float
+    linear_fit_percent: float
+    rms_ratio: float
+
+
+def against_linear(polynomial: Estimate, linear: Estimate) -> tuple[AgainstLinear, ...]:
+    """Both models of one record, channel by channel."""
+    return tuple(
+        AgainstLinear(own.channel, 100.0 * own.fit, 100.0 * straight.fit, straight.rms / own.rms)
+        for own, straight in zip(polynomial.residuals, linear.residuals, strict=True)
+    )
 
 
 def linear_rotor(run: Run) -> Estimate:

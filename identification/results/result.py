@@ -53,6 +53,10 @@ class Identification:
     remarks: tuple[str, ...] = ()
     flags: tuple[str, ...] = ()
 
+    def stage_of(self, title: str) -> Estimate:
+        """The stage whose title has these words in it; raises StopIteration where there is none."""
+        return next(stage for told, stage in self.stages if title in told)
+
     @property
     def at_bound(self) -> tuple[str, ...]:
         """Coefficients whose last fit ended at a bound of their range."""

@@ -11,14 +11,16 @@ from controllers.table import CONTROLLERS
 from design.settings import read_settings
 from records.errors import BadInput
 from records.plant import load_plant
+from records.quality import Colour
 from sim.activity import Activity
 from sim.bind import bind
 from sim.equilibrium import equilibrium
 from sim.loop import fly
 from sim.manoeuvres import Leg, manoeuvre
-from sim.tracking import Tracking, left
+from sim.tracking import Tracking, left, longest, settling_s
 from tests.controllers.rows import designed
 from twinlaw.command import main
+from twinlaw.pages.run.tracking import flight_quality
 
 CE150 = bind(load_plant(Path("plants/ce150.toml")))
 
@@ -68,9 +70,25 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
 
 
 def test_a_flight_that_left_its_references_is_told() -> None:
-    near = Tracking("psi_rad", 3, 0.2, 0.02, 0.01, 0.3, "u_M_V", Activity(4.0, 10.0))
+    near = Tracking("psi_rad", 3, 0.2, 1.5, 0.02, 0.01, 0.3, "u_M_V", Activity(4.0, 10.0))
     far, wild = replace(near, steady_error_rad=0.25), replace(near, overshoot=1.5)
     assert left([near]) == ()
     assert left([near, far]) == ("psi_rad by 17.2 deg",)
     assert left([wild, replace(near, steady_error_rad=float("nan"))]) != ()
     assert len(left([wild, replace(near, steady_error_rad=float("nan"))])) == 2
+
+
+def test_a_step_that_never_stays_near_its_reference_is_told_and_red() -> None:
+    # Truth: off by 2 deg until 0.5 s, then by 0.5 deg; with a row that leaves again at the end it has not settled. A lost reading tells
+    # nothing.
+    t_s = np.arange(0.0, 2.0, 0.1)
+    error_rad = np.radians(np.where(t_s < 0.45, 2.0, 0.5))
+    assert settling_s(t_s, error_rad) == pytest.approx(0.5)
+    assert settling_s(t_s, np.zeros(20)) == 0.0
+    error_rad[-2:] = np.radians(-2.0), np.nan
+    assert settling_s(t_s, error_rad) is None
+    assert longest([0.5, None]) is None
+    assert longest([0.5, 1.5]) == 1.5
+    steady = Tracking("psi_rad", 3, 0.02, None, 0.001, 0.01, 0.3, "u_M_V", Activity(4.0, 10.0))
+    assert flight_quality([steady]).colour is Colour.RED
+    assert flight_quality([replace(steady, settling_s=1.5)]).colour is Colour.GREEN

@@ -10,6 +10,8 @@ Left of = stands a number as the page writes it, right of it an expression witho
 - `PACKAGE.NAME` or `PACKAGE.MODULE.NAME`, a constant of a package, in any of its folders, or a field of one; the module where two differ;
 - `protocol.NAME`, a constant of the serial line's declaration;
 - `PLANT.section.key` of plants/PLANT.toml;
+- `results.NAME.key...` of docs/results/NAME.json, which a command wrote (tests/docs/results.py); a page rounds it, and may round others of
+  its kind alike;
 - len, min, max of these.
 
 A comment speaks of the text between the headings about it.
@@ -19,6 +21,7 @@ import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cache
 from importlib import import_module
 from operator import attrgetter
@@ -27,6 +30,7 @@ from typing import Any
 import numpy as np
 
 from records.protocol import PROTOCOL
+from tests.docs.results import result
 from tests.test_project import ROOT
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
@@ -85,6 +89,8 @@ def _resolved(name: str) -> Any:
     head, *rest = name.split(".")
     if head == "protocol":
         return PROTOCOL.constant(rest[0])
+    if head == "results":
+        return reached(result(rest[0]), rest[1:])
     if (ROOT / "plants" / f"{head}.toml").is_file():
         found = _plant(head)
         for key in rest:
@@ -97,6 +103,31 @@ def _resolved(name: str) -> Any:
     assert values, f"{name}: no module has it"
     assert all(np.array_equal(values[0], other) for other in values), f"{name}: name the module, as two differ"
     return values[0]
+
+
+def reached(found: Any, keys: Sequence[str]) -> Any:
+    """What lies in a result under one key after the other; in a list, a place, or the entry of that name."""
+    for key in keys:
+        if not isinstance(found, list):
+            found = found[key]
+        elif key.isdigit():
+            found = found[int(key)]
+        else:
+            found = next(entry for entry in found if entry["name"] == key)
+    return found
+
+
+def agrees(number: str, expression: str) -> bool:
+    """Whether a page's number is what its expression gives: to all digits, or, of a result, to those that the page has."""
+    exact = value(expression)
+    if "results." not in expression:
+        return abs(float(number) - exact) <= 1e-9 * abs(exact)
+    return abs(float(number) - exact) <= 0.5001 * last_digit(number)
+
+
+def last_digit(number: str) -> float:
+    """What one more in the last digit of a number as it is written adds to it."""
+    return 10.0 ** int(Decimal(number).as_tuple().exponent)
 
 
 def _homes(package: str, module: Sequence[str], constant: str) -> list[str]:

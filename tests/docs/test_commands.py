@@ -34,7 +34,8 @@ NOT_TRIED = {
 # What is smaller here than on the page, so that it takes a minute or two at most.
 SMALLER = {
     "--repetitions (100|60|17)": "--repetitions 1",
-    r"--seed \d+ --cases \d{2,3}": "--seed 3 --cases 1 --kinds nominal",
+    r"--rig real --seed \d+ --cases \d{2,3}": "--rig real --seed 3 --cases 1 --kinds nominal",
+    r"--seed \d+ --cases \d{2,3}": "--seed 3 --cases 1 --kinds single",
     r"--cases \d{2,3}": "--cases 1",
     "--cases 2 --workers": "--cases 1 --workers",
     "--constant ALARM UNKNOWN --factors 0.7 1.4": "--constant ALARM --factors 1.4",

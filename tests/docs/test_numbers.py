@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.docs.commands import PAGES
-from tests.docs.numbers import held, numbers, scopes, value
+from tests.docs.numbers import agrees, held, numbers, scopes, value
 
 # Pages whose every number, but for counting and for what mathematics gives, is one of the code's.
 OF_THE_CODE = ("docs/diagnosis.md", "docs/log-check.md")
@@ -20,7 +20,7 @@ HELD = {page: list(held(page)) for page in PAGES}
 def test_a_page_says_what_the_code_holds(page: str) -> None:
     for entry in HELD[page]:
         assert entry.number in numbers(entry.text), f"{entry.number} stands in no text beside {entry.expression}"
-        assert float(entry.number) == pytest.approx(value(entry.expression), rel=1e-9), entry.expression
+        assert agrees(entry.number, entry.expression), (entry.number, entry.expression, value(entry.expression))
 
 
 @pytest.mark.parametrize("page", OF_THE_CODE)

@@ -1,10 +1,18 @@
 """The README against the program: its output, its plot, its verbs, its commands."""
 
+import math
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from records.plant import load_plant
+from records.table import load_table
+from sim.bind import bind
+from sim.equilibrium import equilibrium
+from sim.loop import fly_law
+from sim.manoeuvres import Leg, manoeuvre, on_encoder_steps
 from tests.docs import readme
 from twinlaw.verbs import VERBS
 
@@ -36,6 +44,34 @@ def test_the_plot_is_labelled_as_the_run_s(ran: tuple[Path, str]) -> None:
         re.findall(r"<text[^>]*>([^<]*)<", text) for text in (readme.PLOT.read_text("utf-8"), readme.plot(ran[0]))
     ]
     assert labels[0] == labels[1], RENEW
+
+
+def test_what_it_says_of_the_axes_is_what_the_table_flies(ran: tuple[Path, str]) -> None:
+    # Truth: the flight's push of the elevation, and steps of both axes at all delays that the page speaks of; to the digits of the page.
+    said = re.search(
+        r"pushes the resting elevation by ([\d.]+) deg, and begun within\s+(\d+) s of .* up to (\d+) %", PAGE
+    )
+    assert said is not None
+    pushed_deg, within_s, percent = map(float, said.groups())
+    pushed = re.search(r"^psi_rad .*? ([\d.]+) deg +u_M_V", ran[1], flags=re.MULTILINE)
+    assert pushed is not None
+    assert float(pushed[1]) == pytest.approx(pushed_deg, abs=0.05)
+    steps = [(-30.0, -20.0), (-20.0, -10.0), (10.0, 20.0), (20.0, 30.0), (-20.0, -30.0)]
+    delays = np.arange(0.0, within_s + 0.1, 0.25).tolist()
+    worst = max(_overshoot(ran[0] / "controller.json", step, delay_s) for step in steps for delay_s in delays)
+    assert 100.0 * worst == pytest.approx(percent, abs=0.5)
+
+
+def _overshoot(table: Path, step_deg: tuple[float, float], delay_s: float) -> float:
+    """Of a step of the elevation, as a share of it, where the azimuth goes from 60 to 0 deg so much later."""
+    bound = bind(load_plant(readme.ROOT / "plants" / "ce150.toml"))
+    axes = ((Leg(0.0, step_deg[0]), Leg(1.0, step_deg[1])), (Leg(0.0, 60.0), Leg(1.0 + delay_s, 0.0)))
+    legs = [on_encoder_steps(axis, step_rad) for axis, step_rad in zip(axes, bound.encoder_steps, strict=True)]
+    x0 = equilibrium(bound, math.radians(legs[0][0].angle_deg)).x0.copy()
+    x0[[str(state) for state in bound.model.states].index("phi_rad")] = math.radians(legs[1][0].angle_deg)
+    log = fly_law(bound, load_table(table), manoeuvre("both", x0, 6.0 + delay_s, 0.01, legs))
+    beyond_deg = np.sign(step_deg[1] - step_deg[0]) * (np.degrees(log.y[:, 0]) - legs[0][1].angle_deg)
+    return float(np.max(beyond_deg)) / abs(step_deg[1] - step_deg[0])
 
 
 def test_every_verb_has_a_row() -> None:

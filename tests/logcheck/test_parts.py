@@ -10,7 +10,7 @@ from logcheck.held import held_findings
 from logcheck.inputs import input_findings
 from logcheck.locked import locked_findings
 from logcheck.motion import motion_findings
-from logcheck.plant import grid_step, plant_facts, plant_findings
+from logcheck.plant import grid_step, plant_facts, plant_findings, printed_digits
 from logcheck.seams import seam_findings
 from logcheck.stamps import timing, timing_findings
 from logcheck.units import rate_unit, reference_unit
@@ -111,6 +111,26 @@ def test_degrees_are_no_radians_and_a_grid_is_found_by_its_step() -> None:
     found = list(plant_findings(log, "a", PLANT, plant_facts(PLANT)))
     assert REFUSE in kinds(found).values()
     assert any("degrees" in entry.finding.sentence for entry in found)
+
+
+@pytest.mark.parametrize(("digits", "severity"), [(2, REFUSE), (3, EXCLUDE), (4, NOTE)])
+def test_readings_printed_with_few_digits_are_told_and_the_coarse_ones_left_out(digits: int, severity: str) -> None:
+    # Truth: an encoder's angles of 1.2 rad at most. With three digits those above 1 rad stand in steps of 0.01, the others of 0.001.
+    angle = rounded(1.2 * np.sin(0.01 * np.arange(2000)))
+    printed = np.array([float(f"{value:.{digits}g}") for value in angle])
+    assert printed_digits(printed) == digits
+    assert printed_digits(angle) is None
+    assert printed_digits(np.round(angle, 3)) is None
+    log = log_of()
+    log.y[:, 1] = printed
+    (found,) = [
+        found for found in plant_findings(log, "a", PLANT, plant_facts(PLANT)) if found.finding.column == "phi_rad"
+    ]
+    assert (found.finding.kind, found.finding.severity) == ("few_digits", severity)
+    assert f"printed with {digits} digits, in steps of up to {10.0 ** (1 - digits):.2g}" in found.finding.sentence
+    if severity == EXCLUDE:
+        assert found.excluded is not None
+        assert np.array_equal(found.excluded, np.abs(printed) >= 1.0)
 
 
 def test_two_recordings_in_one_file_leap_in_all_outputs_at_once() -> None:

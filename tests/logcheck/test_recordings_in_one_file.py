@@ -14,6 +14,9 @@ from recordings.datasets.library import IMPORTERS, import_record, records
 from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
 from records.restarts import restart_rows
+from sim.columns import log_columns
+from sim.manoeuvres import stir
+from sim.simulate import simulate
 from tests.logcheck.test_parts import PLANT, STEP_RAD, STEPS, log_of, rounded
 from tests.plants import bound
 
@@ -72,6 +75,32 @@ def test_sequence_numbers_that_begin_again_begin_another_log_and_a_counter_at_it
     assert restart_rows(np.arange(9.0)).size == 0
 
 
+def test_rows_in_front_of_an_input_s_first_number_are_left_out_in_each_recording(tmp_path: Path) -> None:
+    """Truth: u_T_V begins 1.2 s behind the outputs, in the second recording 0.3 s; both are told, and no other row is lost."""
+    log = log_of(1000)
+    path = in_one_file(tmp_path, log, log)
+    lines = path.read_text().splitlines()
+    late = [*range(120), *range(1000, 1030)]
+    for row in late:
+        cells = lines[row + 1].split(",")
+        lines[row + 1] = ",".join([*cells[:2], "", *cells[3:]])
+    path.write_text("\n".join(lines) + "\n")
+    read = load_log(path, log.columns)
+    assert len(read.t_s) == 2000 - len(late)
+    assert np.isfinite(read.u).all()
+    assert begins(read) == [880]
+    told = {entry.kind: entry.sentence for entry in examine([read], PLANT, names=["log"]).findings}
+    assert set(told) == {"late_input", "restart"}
+    assert [(late.column, late.begins_s, late.rows) for late in read.late_inputs] == [
+        ("u_T_V", 1.2, 120),
+        ("u_T_V", 11.3, 30),
+    ]
+    lines[500] = lines[500].replace(lines[500].split(",")[1], "nan", 1)
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(BadInput, match="line 501"):
+        load_log(path, log.columns)
+
+
 def second_run(log: RunLog, row: int) -> RunLog:
     """The log up to a row, at which the azimuth is back where it began, and then from its first row on: the rig started again."""
     rows = np.r_[0:row, 0 : len(log.t_s) - row]
@@ -109,17 +138,29 @@ def test_readings_that_stop_and_go_on_within_four_counts_of_there_are_left_out(p
     psi = rounded(0.5 * np.sin(2.5 * t_s))
     plain = log_of(len(t_s))
     log = replace(plain, t_s=t_s, sample_period_s=period_s, y=np.column_stack([psi, plain.y[:, 1]]))
-    assert list(dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))) == []
+    assert list(dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool), POSITIONS)) == []
     start_s = (2.0 * np.pi + 0.4) / 2.5
     unread = (t_s > start_s) & (t_s < start_s + (np.pi - 0.8) / 2.5)  # from 0.4 rad of phase up and down again
     first = int(np.argmax(unread))
     log.y[unread, 0] = psi[first]
     assert abs(psi[unread.nonzero()[0][-1] + 1] - psi[first]) < 4.0 * STEP_RAD + 0.5 * 2.5 * period_s
-    (found,) = dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool))
+    (found,) = dead_findings(log, "a", STEPS, np.zeros(len(t_s), bool), POSITIONS)
     assert found.excluded is not None
     assert found.excluded[unread].mean() > 0.9
     assert found.excluded.sum() <= unread.sum() + 1
     assert "/s just before" in found.finding.sentence
+
+
+@pytest.mark.parametrize("plant", ["maglev_coil", "aeroshield"])
+def test_a_current_that_settles_and_an_arm_that_an_input_sets_going_are_read(plant: str) -> None:
+    # Truth: a simulated run without noise, every reading of it sound; the input's steps set off all that moves.
+    rig = bound(plant)
+    moved = stir(rig)
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    assert y is not None
+    step = rig.plant.sensors[next(iter(rig.model.outputs))]
+    log = RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, step * np.round(y / step))
+    assert {entry.kind for entry in examine([log], rig, names=["log"]).findings} <= {"saturated"}
 
 
 @pytest.mark.soak

@@ -18,6 +18,7 @@ from records.diagnosis import (
     parse_diagnosis,
 )
 from records.errors import BadInput
+from records.quality import MISFIT, Quality
 
 RMS = {"psi_rad": 0.01, "phi_rad": 0.02}
 LOOP = ClosedLoop({**RMS, "u_M_V": 0.3}, RMS, RMS, RMS, None, None, ("nominal",), ("hold",))
@@ -40,6 +41,9 @@ WHOLE = Diagnosis(
 )
 def test_what_is_written_is_read_back(diagnosis: Diagnosis) -> None:
     assert parse_diagnosis(json.loads(diagnosis_text(diagnosis)), "file") == diagnosis
+    coloured = json.loads(diagnosis_text(diagnosis, Quality((MISFIT.look("psi_rad", 7.0),))))
+    assert coloured["quality"]["colour"] == "red"
+    assert parse_diagnosis(coloured, "file") == diagnosis
 
 
 def test_a_file_without_the_further_keys_of_shrinkage_is_read() -> None:

@@ -1,4 +1,4 @@
-"""A quantity of a log's column as a person reads it: with its unit, angles in degrees."""
+"""Quantities as a person reads them: of a log's column with its unit, angles in degrees; times to settle."""
 
 import math
 
@@ -11,3 +11,8 @@ def measured(value: float, column: str, digits: int = 3) -> str:
     if unit.startswith("rad"):
         value, unit = math.degrees(value), unit.replace("rad", "deg")
     return f"{value:.{digits}g} {unit}".rstrip()
+
+
+def settling_text(time_s: float | None) -> str:
+    """A time to settle, in s."""
+    return "never" if time_s is None else f"{time_s:.2f} s"

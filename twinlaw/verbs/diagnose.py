@@ -16,6 +16,7 @@ from records.diagnosis import diagnosis_text
 from records.errors import BadInput
 from records.files import write_atomic
 from twinlaw.cli import console, options
+from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.diagnose.summary import summary_text
 from twinlaw.pages.diagnose.why import why_text
@@ -52,7 +53,7 @@ def run(chosen: argparse.Namespace) -> int:
             raise BadInput("run log", str(path), "a folder", "a log", remedy)
     result = diagnose_logs(chosen.plant, chosen.logs, holdout, chosen.out)
     if chosen.json:
-        told = diagnosis_text(result.diagnosis)
+        told = diagnosis_text(result.diagnosis, diagnosis_quality(result.diagnosis))
     elif chosen.why:
         told = why_text(result.diagnosis)
     else:

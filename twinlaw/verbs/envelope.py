@@ -20,7 +20,7 @@ from identification.envelope.flights.flight_file import load_flights, save_fligh
 from identification.envelope.flights.starts import NONE, load_starts
 from identification.envelope.modes import modes_of
 from identification.envelope.quality import envelope_quality
-from identification.envelope.record import facts, modes_facts, summary
+from identification.envelope.record import facts, modes_facts, modes_summary, open_loop_facts, summary, validations
 from identification.envelope.state_equation.free_run import Model
 from identification.envelope.study import Study, study
 from identification.envelope.truth.figures import drawn
@@ -80,15 +80,22 @@ def run(chosen: argparse.Namespace) -> int:
         found = study(flights, chosen.forgetting, each, save, starts)
     tries, modes = tried(found, starts), modes_of(found, exact)
     quality = envelope_quality(found)
-    content = {**facts(found), "quality": quality_facts(quality), "modes": modes_facts(modes)}
+    drawn_one = shown(found, chosen.show)
+    means = {
+        "open_loop": open_loop_facts(found, drawn_one),
+        "validations": validations(found),
+        "modes_off": modes_summary(modes),
+    }
+    content = {**facts(found), **means, "quality": quality_facts(quality), "modes": modes_facts(modes)}
     write_atomic(path, json.dumps(content, indent=1) + "\n")
     with console.stage("drawing the report"):
         write_atomic(chosen.out / "report.html", page_text(envelope_page(found, origin, tries, chosen.show, modes)))
     shutil.rmtree(kept, ignore_errors=True)
     if chosen.json:
-        print(json.dumps({**summary(found), "quality": quality_facts(quality), "notes": list(notes_of(found))}))
+        print(
+            json.dumps({**summary(found), **means, "quality": quality_facts(quality), "notes": list(notes_of(found))})
+        )
         return 0
-    drawn_one = shown(found, chosen.show)
     print(f"{verdict(summary(found))}\n{quality_sentence(quality)}")
     for flight in tries:
         print(f"\n{_shown(by_hand(flight))}")

@@ -43,7 +43,7 @@ from twinlaw.pages.quality import quality_sentence
 from twinlaw.workflows.identify.by_time import Wishes, identify
 from twinlaw.workflows.identify.columns import usable_inputs
 from twinlaw.workflows.identify.inputs import free_names, read_limits
-from twinlaw.workflows.identify.proof import proven
+from twinlaw.workflows.identify.proof import linear_rotors, proof_facts, proven
 from twinlaw.workflows.reading import load_bound
 
 
@@ -114,25 +114,35 @@ def run(chosen: argparse.Namespace) -> int:
     if chosen.window is not None and not chosen.window > 0.0:
         raise BadInput("--window", "command line", f"{chosen.window:g}", "a time above 0 s", "give seconds")
     bound = load_bound(chosen.plant)
-    truth = None if chosen.truth is None else load_bound(chosen.truth)
+    truth = None if chosen.truth is None else _truth(chosen.truth, bound)
     inputs = usable_inputs(chosen.files, holdout, bound, chosen.trim)
     wishes = _wishes(chosen, bound, len(inputs.experiments) + bool(inputs.logs))
     result = identify(bound, inputs, wishes, chosen.out)
     known = None if truth is None else true_values(truth)
-    sections, pictures = proven(result, truth)
-    for name, picture in pictures.items():
+    linear, proof = linear_rotors(inputs.experiments, bound), proven(result, truth)
+    for name, picture in proof.pictures.items():
         write_atomic(chosen.out / f"fig-{name}.svg", picture)
     write_atomic(
-        chosen.out / "report.html", page_text(identify_page(bound, result, inputs.experiments, sections, known))
+        chosen.out / "report.html", page_text(identify_page(result, inputs.experiments, linear, proof.sections, known))
     )
     quality = identification_quality(result, known or {})
-    content = facts(result) | {"quality": quality_facts(quality)} | ({} if known is None else {"truth": dict(known)})
+    content = facts(result) | {"quality": quality_facts(quality)} | proof_facts(result, linear, proof)
+    content |= {} if known is None else {"truth": dict(known)}
     write_atomic(chosen.out / "identification.json", json.dumps(content, indent=1) + "\n")
     if chosen.json:
         print(json.dumps(content))
     else:
         _tell(chosen, result, known, quality)
     return 0
+
+
+def _truth(path: Path, bound: BoundPlant) -> BoundPlant:
+    """The plant that was recorded; raises BadInput for one of other equations, whose parameters are none of these."""
+    truth = load_bound(path)
+    if truth.nominal.name != bound.nominal.name:
+        got, expected = f"equations of {truth.nominal.name}", f"those of {bound.nominal.name}, as --plant has"
+        raise BadInput("--truth", str(path), got, expected, "give the file of the plant that was recorded")
+    return truth
 
 
 def _wishes(chosen: argparse.Namespace, bound: BoundPlant, fits: int) -> Wishes:

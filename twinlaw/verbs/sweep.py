@@ -132,32 +132,53 @@ def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
     jobs = [Job(f"flights {seed}", repeat, FlightOrder(*order, seed)) for seed in seeds]
     path, crew = chosen.out / "coverage.json", sweeping.crew_of(chosen)
-    found, facts = repeated("flights identified", jobs, crew, path, Repetition, _coverage_facts)
+    found, facts = repeated(
+        "flights identified", jobs, crew, path, Repetition, lambda done: _coverage_facts(plant, done)
+    )
     if chosen.json:
-        print(json.dumps({key: facts[key] for key in ("coverage", "least", "mean")}))
+        print(json.dumps({key: facts[key] for key in ("sets", "coverage", "least", "mean", "parameters")}))
         return 0
     print(
-        console.table(_coverage_rows(plant, found), ("parameter", "true", "mean", "scatter", "mean sd", "within 95 %"))
+        console.table(
+            _coverage_rows(facts["parameters"]), ("parameter", "true", "mean", "scatter", "mean sd", "within 95 %")
+        )
     )
     print(f"\n{len(found)} sets of flights; least {facts['least']:.0%}, mean {facts['mean']:.1%}")
     return 0
 
 
-def _coverage_facts(found: Sequence[Repetition]) -> dict[str, Any]:
+def _coverage_facts(plant: Plant, found: Sequence[Repetition]) -> dict[str, Any]:
+    """`parameters`: mean and scatter of the estimates, mean of the sd that each states, and the share whose interval holds the truth."""
     shares = coverage(found)
     return {
+        "sets": len(found),
         "coverage": dict(shares),
         "least": min(shares.values()),
         "mean": sum(shares.values()) / len(shares),
+        "parameters": {name: _scattered(plant, name, found) | {"inside": share} for name, share in shares.items()},
         "repetitions": [asdict(entry) for entry in found],
     }
 
 
-def _coverage_rows(plant: Plant, found: Sequence[Repetition]) -> list[tuple[str, ...]]:
-    rows: list[tuple[str, ...]] = []
-    for name, share in coverage(found).items():
-        values = np.array([entry.value[name] for entry in found])
-        sd = float(np.mean([entry.sd[name] for entry in found]))
-        true = plant.parameters[name].values[0]
-        rows.append((name, f"{true:.5g}", f"{values.mean():.5g}", f"{values.std():.2g}", f"{sd:.2g}", f"{share:.0%}"))
-    return rows
+def _scattered(plant: Plant, name: str, found: Sequence[Repetition]) -> dict[str, float]:
+    values = np.array([entry.value[name] for entry in found])
+    return {
+        "true": plant.parameters[name].values[0],
+        "mean": float(values.mean()),
+        "scatter": float(values.std()),
+        "stated": float(np.mean([entry.sd[name] for entry in found])),
+    }
+
+
+def _coverage_rows(parameters: Mapping[str, Mapping[str, float]]) -> list[tuple[str, ...]]:
+    return [
+        (
+            name,
+            f"{own['true']:.5g}",
+            f"{own['mean']:.5g}",
+            f"{own['scatter']:.2g}",
+            f"{own['stated']:.2g}",
+            f"{own['inside']:.0%}",
+        )
+        for name, own in parameters.items()
+    ]

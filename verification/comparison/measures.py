@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.activity import activity
+from sim.tracking import longest, settling_s
 
 Array = NDArray[np.float64]
 
-BAND_RAD = np.radians(1.0)  # seed 001 calls its errors of 0.5 to 1 deg good
 STEADY_S = 2.0
 LEAST_STEP_RAD = np.radians(2.0)
 
@@ -51,13 +51,13 @@ def merit(t_s: Array, reference_rad: Array, y_rad: Array, u_V: Array, axis: int)
     before = np.concatenate([[y[0]], reference])
     steps = [(begin, end, float(reference[begin] - before[begin])) for begin, end in holds]
     steps = [entry for entry in steps if abs(entry[2]) >= LEAST_STEP_RAD]
-    settling = [_settling_s(error[begin:end], period_s) for begin, end, _ in steps]
+    settling = [settling_s(t_s[begin:end], error[begin:end]) for begin, end, _ in steps]
     calm = [error[begin + round(CALM_S / period_s) : end] for begin, end in holds]
     late = slice(holds[0][1] if len(holds) > 1 else 0, None)
     busy = activity(t_s[late], u[late])
     return Merit(
         overshoot=max((_overshoot(error[begin:end], step) for begin, end, step in steps), default=0.0),
-        settling_s=None if None in settling else max((time for time in settling if time is not None), default=0.0),
+        settling_s=longest(settling),
         steady_error_rad=max(
             abs(float(np.mean(error[max(begin, end - round(STEADY_S / period_s)) : end]))) for begin, end in holds
         ),
@@ -76,11 +76,3 @@ def _holds(reference_rad: Array) -> list[tuple[int, int]]:
 
 def _overshoot(error_rad: Array, step_rad: float) -> float:
     return float(max(np.max(-np.sign(step_rad) * error_rad), 0.0) / abs(step_rad))
-
-
-def _settling_s(error_rad: Array, period_s: float) -> float | None:
-    outside = np.flatnonzero(np.abs(error_rad) > BAND_RAD)
-    if not outside.size:
-        return 0.0
-    last = int(outside[-1]) + 1
-    return None if last == len(error_rad) else last * period_s

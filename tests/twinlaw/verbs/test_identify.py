@@ -14,10 +14,12 @@ from identification.proof import monte_carlo
 from identification.proof.bench import task
 from identification.search import genetic, methods
 from identification.search.methods import METHODS
-from records.log import load_log, save_log
+from records.log import RunLog, load_log, save_log
 from records.plant import load_plant
 from sim.bind import bind
 from sim.columns import log_columns
+from sim.manoeuvres import stir
+from sim.simulate import simulate
 from tests.angles import few_angles
 from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
@@ -309,3 +311,19 @@ def test_a_log_with_a_trim_of_its_inputs_is_fitted_and_another_predicted(tmp_pat
     assert min(test["fit"] for test in told["holdout"]) > 0.95
     assert main(["identify", "--out", str(tmp_path / "out"), "--trim", "70", "80", files[0]]) == 2
     assert "a part of 0 s to 39.99 s" in capsys.readouterr().err
+
+
+def test_the_truth_of_a_plant_without_a_law_is_told_and_that_of_another_plant_refused(tmp_path, capsys):
+    # Truth: the log is of the plant file's own numbers, without noise, so K is found within a per cent of them.
+    rig = bind(load_plant(Path("plants/aeroshield.toml")))
+    moved = stir(rig)
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    save_log(tmp_path / "log.csv", RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, y))
+    asked = ["identify", "--plant", "plants/aeroshield.toml", "--window", "2", "--free", "K", "--out", str(tmp_path)]
+    assert main([*asked, "--truth", "plants/aeroshield.toml", "--json", str(tmp_path / "log.csv")]) == 0
+    told = json.loads(capsys.readouterr().out)
+    (found,) = [entry for entry in told["estimates"] if entry["name"] == "K"]
+    assert found["value"] == pytest.approx(told["truth"]["K"], rel=0.01)
+    assert (tmp_path / "report.html").is_file()
+    assert main([*asked, "--truth", "plants/emps.toml", str(tmp_path / "log.csv")]) == 2
+    assert "equations of emps" in capsys.readouterr().err

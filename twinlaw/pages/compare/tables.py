@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from records.board import STM32G071
 from twinlaw.pages.compare.comparison import Compared, spread_of
 from twinlaw.pages.compare.quality import axis_looks, controller_quality
+from twinlaw.pages.measured import settling_text
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of, quality_sentence
 from verification.comparison.eq26 import FormError
@@ -102,7 +103,7 @@ def figure_rows(rows: Sequence[Compared], figure: str, axis: str) -> list[Row]:
 def _merit(merit: Merit) -> Row:
     return (
         f"{100.0 * merit.overshoot:.1f} %",
-        _settling(merit.settling_s),
+        settling_text(merit.settling_s),
         f"{math.degrees(merit.steady_error_rad):.2f} deg",
         f"{math.degrees(merit.largest_error_rad):.2f} deg",
         f"{math.degrees(merit.iae_rad_s):.0f} deg s",
@@ -110,10 +111,6 @@ def _merit(merit: Merit) -> Row:
         f"{merit.travel_V_s:.2f} V/s",
         f"{merit.reversals_1_s:.1f} /s",
     )
-
-
-def _settling(time_s: float | None) -> str:
-    return "never" if time_s is None else f"{time_s:.2f} s"
 
 
 def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
@@ -126,7 +123,7 @@ def spread_rows(rows: Sequence[Compared], axis: str) -> list[Row]:
                 row.row.name,
                 f"{runs - found.unsettled} of {runs}",
                 f"{100.0 * found.worst_overshoot:.1f} %",
-                _settling(found.worst_settling_s),
+                settling_text(found.worst_settling_s),
                 f"{math.degrees(found.worst_steady_error_rad):.2f} deg",
                 f"{math.degrees(found.median_iae_rad_s):.0f} / {math.degrees(found.worst_iae_rad_s):.0f} deg s",
                 f"{found.worst_swing_V:.2f} V",

@@ -1,12 +1,14 @@
 """The models themselves: A, B, C and D by condition, and their modes beside those of the exact derivatives."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from identification.envelope.flights.flight import INPUTS, OUTPUTS, STATES
 from identification.envelope.modes import DUTCH_ROLL, PHUGOID, Mode
 from identification.envelope.one_condition import ConditionResult, Interpolated
+from identification.envelope.record import mode_key, modes_summary
 from records.text.units import label
 from twinlaw.pages.page import Table
 from twinlaw.pages.plots import BLACK, BLUE, GREEN, ORANGE, RED, Curve, Panel, grid
@@ -40,20 +42,28 @@ def _share(off: float | None) -> str:
 
 def modes_off(found: Sequence[Mode]) -> Table:
     """Median and worst distance from the truth, over its modulus: the table of docs/seeds.md."""
-    own, others = [mode for mode in found if not mode.left_out], [mode for mode in found if mode.left_out]
-    groups = {
-        f"least squares, {len(own) // 2} conditions": [(mode.name, mode.off(mode.least_squares)) for mode in own],
-        f"closed loop, {len(own) // 2} conditions": [(mode.name, mode.off(mode.model)) for mode in own],
-        f"interpolated, {len(others) // 2} left out": [(mode.name, mode.off(mode.model)) for mode in others],
-    }
-    groups = {title: pairs for title, pairs in groups.items() if pairs}
-    rows = [(name, *(_median_and_worst([off for of, off in pairs if of == name and off is not None]) for pairs in groups.values()))
-            for name in (DUTCH_ROLL, PHUGOID)]  # fmt: skip
-    return Table(rows, ("distance from the truth over its modulus", *groups))
+    return modes_table(modes_summary(found))
 
 
-def _median_and_worst(offs: Sequence[float]) -> str:
-    return f"median {100.0 * np.median(offs):.2g} %, worst {100.0 * max(offs):.2g} %" if offs else ""
+def modes_table(off: Mapping[str, Any]) -> Table:
+    """The same from the facts of `modes_summary`."""
+    groups = [key for key, value in off[mode_key(DUTCH_ROLL)].items() if value is not None]
+    counts = {key: off[mode_key(DUTCH_ROLL)][key]["conditions"] for key in groups}
+    heading = [f"{OFF[key]}, {counts[key]} {'left out' if key == 'interpolated' else 'conditions'}" for key in groups]
+    rows = [(name, *(_median_and_worst(off[mode_key(name)][key]) for key in groups)) for name in (DUTCH_ROLL, PHUGOID)]
+    return Table(rows, ("distance from the truth over its modulus", *heading))
+
+
+OFF = {"least_squares": "least squares", "closed_loop": "closed loop", "interpolated": "interpolated"}
+
+
+def _median_and_worst(off: Mapping[str, float]) -> str:
+    return f"median {_two_digits(off['median_percent'])} %, worst {_two_digits(off['worst_percent'])} %"
+
+
+def _two_digits(value: float) -> str:
+    """Two digits, or all in front of the point."""
+    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
 
 
 def matrices(entry: ConditionResult | Interpolated) -> Table:

@@ -6,7 +6,15 @@ import numpy as np
 
 from identification.envelope.by_hand import Tried
 from identification.envelope.check import FINAL, Check
-from identification.envelope.criteria import WEIGHTS, Match, error_margins, outside_percent, passed, score_percent
+from identification.envelope.criteria import (
+    UNFITTED,
+    WEIGHTS,
+    Match,
+    error_margins,
+    outside_percent,
+    passed,
+    score_percent,
+)
 from identification.envelope.flights.flight import OUTPUTS, STATES
 from identification.envelope.flights.multistep import DOUBLET, PULSE, STEPS_2311, STEPS_3211, band_Hz, spectrum
 from identification.envelope.one_condition import ConditionResult
@@ -22,7 +30,6 @@ THESIS_FIT = (99.21, 99.51, 97.17, 99.42, 99.19, 99.55, 99.49, 99.38)
 THESIS_CORRELATION = (99.99, 100.0, 99.84, 99.99, 99.99, 100.0, 100.0, 99.99)
 
 INPUTS = {"2-3-1-1": STEPS_2311, "3-2-1-1": STEPS_3211, "doublet": DOUBLET, "pulse": PULSE}
-UNFITTED = {name: weight for name, weight in WEIGHTS.items() if name != "fit"}
 Ways = Callable[[Check], Mapping[str, Sequence[Match]]]
 
 

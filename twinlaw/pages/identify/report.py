@@ -5,13 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from identification.experiments.table import KINDS
-from identification.proof.linear_rotor import linear_rotor, readings_by
+from identification.proof.linear_rotor import against_linear, readings_by
 from identification.proof.validation import Comparison
 from identification.results.quality import identification_quality
 from identification.results.result import Identification
 from identification.stages.estimate import Estimate
 from records.experiment import Experiment
-from sim.bind import BoundPlant
 from twinlaw.pages.identify.residuals import fit_section
 from twinlaw.pages.identify.summary import (
     AID_HEADING,
@@ -32,18 +31,20 @@ SHOWN_S = 15.0
 
 
 def identify_page(
-    bound: BoundPlant,
     result: Identification,
     experiments: tuple[Experiment, ...],
+    linear: Mapping[str, Estimate],
     further: Sequence[Section] = (),
     truth: Mapping[str, float] | None = None,
 ) -> Page:
-    """The whole page; `further` sections come last, and the `truth` beside the estimates where it is known."""
+    """The whole page; `linear` are the manual's rotors by experiment, `further` sections come last, and the `truth` stands beside the
+    estimates where it is known.
+    """
     told = sum(entry.identified for entry in result.estimates)
     quality = identification_quality(result, truth or {})
     sections = [_estimates(result, truth), *_correlation(result), *_fits(result)]
     by_kind = {experiment.kind: experiment for experiment in experiments}
-    sections += [_rotor(bound, by_kind[kind], result) for kind in ROTORS if kind in by_kind]
+    sections += [_rotor(kind, result, estimate) for kind, estimate in linear.items()]
     if "gravity" in by_kind:
         sections.append(_gravity(by_kind["gravity"], result))
     sections += [fit_section(title, stage) for title, stage in result.stages]
@@ -88,15 +89,14 @@ def _fits(result: Identification) -> list[Section]:
     return [Section("Fits", (sentence,), (Table(rows, FIT_HEADING),))] if rows else []
 
 
-def _rotor(bound: BoundPlant, experiment: Experiment, result: Identification) -> Section:
+def _rotor(kind: str, result: Identification, linear: Estimate) -> Section:
     """Speed and thrust over time: measured, polynomial model, the manual's linear one."""
-    name, figure = ROTORS[experiment.kind]
-    stage = next(entry for title, entry in result.stages if KINDS[experiment.kind].title in title)
-    linear = linear_rotor(KINDS[experiment.kind].run(experiment, bound))
+    name, figure = ROTORS[kind]
+    stage = result.stage_of(KINDS[kind].title)
     panels = [_rotor_panel(stage, linear, number, label) for number, label in ((0, "speed [rad/s]"), (1, "thrust [N]"))]
     rows = [
-        (test.channel, f"{100 * test.fit:.2f} %", f"{100 * straight.fit:.2f} %", f"{straight.rms / test.rms:.1f}")
-        for test, straight in zip(stage.residuals, linear.residuals, strict=True)
+        (own.channel, f"{own.fit_percent:.2f} %", f"{own.linear_fit_percent:.2f} %", f"{own.rms_ratio:.1f}")
+        for own in against_linear(stage, linear)
     ]
     heading = ("channel", "polynomial fit", "linear fit", "linear rms / polynomial rms")
     return Section(

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from records.quality import OVERSHOOT, STEADY_ERROR, Look, Quality
+from records.quality import OVERSHOOT, STEADY_ERROR, Colour, Look, Quality, flag
 from sim.tracking import Tracking
+from twinlaw.pages.measured import settling_text
 from twinlaw.pages.page import Row
 from twinlaw.pages.quality import colour_of
 
@@ -14,6 +15,7 @@ TRACKING_HEADING: Row = (
     "tracking",
     "holds",
     "overshoot",
+    "settling",
     "steady error",
     "mean |error|",
     "pushed by the other axis",
@@ -25,12 +27,15 @@ TRACKING_HEADING: Row = (
 
 
 def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
-    """One row per output: worst overshoot, worst mean error at rest, mean error, push of the other axis; its input's activity."""
+    """One row per output: worst overshoot, longest time to settle, worst mean error at rest, mean error, push of the other axis; its
+    input's activity.
+    """
     return [
         (
             entry.output,
             str(entry.holds),
             f"{100 * entry.overshoot:.1f} %",
+            settling_text(entry.settling_s),
             f"{math.degrees(entry.steady_error_rad):.3f} deg",
             f"{math.degrees(entry.mean_error_rad):.2f} deg",
             f"{math.degrees(entry.push_rad):.2f} deg",
@@ -50,6 +55,7 @@ def tracking_looks(entry: Tracking) -> tuple[Look, ...]:
     return (
         OVERSHOOT.look(entry.output, 100.0 * entry.overshoot),
         STEADY_ERROR.look(entry.output, math.degrees(entry.steady_error_rad)),
+        *([flag(f"{entry.output} has a step that does not settle", Colour.RED)] if entry.settling_s is None else []),
     )
 
 

@@ -16,6 +16,7 @@ from records.plant import plant_files
 from records.text.log_csv import rows_text
 from records.text.units import unit_suffix
 from sim.added_effects import library
+from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import moved_most
 from twinlaw.pages.page import Page, page_text
 
@@ -29,7 +30,7 @@ def result_files(result: Result, logs: Sequence[str]) -> Mapping[str, str]:
     return {
         **predictions,
         **plant_files(result.plant),
-        ANSWER: diagnosis_text(result.diagnosis),
+        ANSWER: diagnosis_text(result.diagnosis, diagnosis_quality(result.diagnosis)),
         "report.html": page_text(_page(result, logs)),
     }
 

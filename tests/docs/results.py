@@ -1,0 +1,107 @@
+"""Results that pages state figures of: each is what a command prints for a program, kept in docs/results.
+
+`.venv/bin/python -m tests.docs.results NAME ...` runs the commands of some of them, all without a name, and writes their files anew.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from records.plant import load_plant, save_plant
+from tests.test_project import ROOT
+
+FOLDER = ROOT / "docs" / "results"
+VELAGIC = ["--plant", "plants/ce150_velagic.toml"]
+# One command a line, in a folder of its own; what the last one prints is the result.
+FRICTION = {"free": "{frictionless}", "dry": "plants/ce150.toml"}
+SWEPT = {"references": ["0.06", "0.15"], "inputs": ["0.5", "0.5"], "larger_references": ["0.12", "0.3"]}
+
+
+def swept(on: str, friction: str) -> list[list[str]]:
+    """The CE150 in its loop, swept and matched beside its linearisation, its friction as stated or taken out."""
+    plant = ["--plant", FRICTION[friction]]
+    what = ["--on", "inputs"] if on == "inputs" else []
+    free = ["--free", "J_E,b_vE,J_A,b_vA", "--band-rad-s", "0.3", "10", "--truth", FRICTION[friction]]
+    return [
+        ["sweep", *plant, "--psi-rad", "-0.15", *what, "--amplitudes", *SWEPT[on]],
+        ["identify", *plant, "--method", "frequency", *free, "{out}/sweep_elevation.csv", "{out}/sweep_azimuth.csv"],
+    ]
+
+
+COMMANDS: dict[str, list[list[str]]] = {
+    "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
+    "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
+    "identified": [
+        ["experiments", "--seed", "1"],
+        ["identify", "--truth", "{out}/truth.toml", "{out}"],
+    ],
+    "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
+    "swept_references_free": swept("references", "free"),
+    "swept_inputs_free": swept("inputs", "free"),
+    "swept_larger_references_dry": swept("larger_references", "dry"),
+    "swept_references_dry": swept("references", "dry"),
+    "velagic": [
+        ["experiments", *VELAGIC, "--as-stated"],
+        ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
+    ],
+}
+LONG = (
+    "looked_at",
+    "repetitions",
+    "notes",
+    "correlation",
+    "residuals",
+    "cpu_s",
+)  # no page states them, or no two runs alike
+SERIES = 20  # numbers, of which the first and the last are kept
+
+
+def kept(value: Any) -> Any:
+    """A result without what no page states, and of long series their ends."""
+    if isinstance(value, dict):
+        return {key: kept(entry) for key, entry in value.items() if key not in LONG}
+    if not isinstance(value, list):
+        return value
+    is_series = len(value) > SERIES and all(isinstance(entry, float) for entry in value)
+    return [value[0], value[-1]] if is_series else [kept(entry) for entry in value]
+
+
+def made(name: str) -> str:
+    """The text of a result's file, from its commands; what they say goes to the terminal."""
+    with tempfile.TemporaryDirectory() as folder:
+        for words in COMMANDS[name]:
+            told = [word.format(out=folder, frictionless=_frictionless(Path(folder))) for word in words]
+            command = [sys.executable, "-m", "twinlaw.command", *told, "--out", folder, "--json"]
+            done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
+    return json.dumps(kept(json.loads(done.stdout)), indent=1) + "\n"
+
+
+def _frictionless(folder: Path) -> Path:
+    """plants/ce150.toml without dry friction, in a folder."""
+    plant = load_plant(ROOT / "plants" / "ce150.toml")
+    without = {name: replace(plant.parameters[name], value=0.0, sd=0.0) for name in ("b_cE", "b_cA")}
+    save_plant(folder / "frictionless.toml", replace(plant, parameters={**plant.parameters, **without}))
+    return folder / "frictionless.toml"
+
+
+@cache
+def result(name: str) -> Any:
+    """What a file of FOLDER holds."""
+    return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def renew(names: Iterable[str]) -> None:
+    """Run, and write."""
+    FOLDER.mkdir(exist_ok=True)
+    for name in names:
+        (FOLDER / f"{name}.json").write_text(made(name), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    renew(sys.argv[1:] or COMMANDS)
