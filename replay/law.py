@@ -184,7 +184,7 @@ class ReplayLaw:
         return v_V, self.outputs(inputs[:behind]) + w_V
 
     def _address(self, array: NDArray[Any] | None) -> Any:
-        return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+        return self.ffi.NULL if array is None else self.ffi.from_buffer(array)
 
 
 def channel_agrees(channel: Channel, own_V: Array, logged_V: Array, slack_V: Array) -> bool:
