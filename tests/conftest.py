@@ -31,6 +31,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """In a fresh checkout one worker imports everything after the other: the first compiles it, the second finds it compiled."""
+    gc.disable()
     compiled = CACHE_DIR / "compiled"
     if "PYTEST_XDIST_WORKER" not in os.environ or compiled.exists():
         return (yield)
@@ -47,6 +48,7 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000)  # objects, where 700 are usual: equations are trees of many small ones
+    gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
