@@ -1,6 +1,8 @@
 """What a serial protocol is made of: scalars, fields, messages, enumerations, and the hash that names a declaration."""
 
 import hashlib
+import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,10 +50,16 @@ class Message:
     meaning: str
     fields: tuple[Field, ...] = ()
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Payload bytes on the line."""
         return sum(field.size for field in self.fields)
+
+    @cached_property
+    def layout(self) -> struct.Struct:
+        """The payload on the line: bytes from and to the fields' values in their order."""
+        codes = (part.wire_type.struct_code if part.count == 1 else f"{part.count}s" for part in self.fields)
+        return struct.Struct("<" + "".join(codes))
 
 
 @dataclass(frozen=True)
@@ -109,7 +117,16 @@ class Protocol:
 
     def message(self, name: str) -> Message:
         """The message called `name`; raises KeyError when there is none."""
-        return {message.name: message for message in self.messages}[name]
+        return self._by_name[name]
+
+    @cached_property
+    def by_code(self) -> Mapping[int, Message]:
+        """Each message by its type code."""
+        return {message.code: message for message in self.messages}
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, Message]:
+        return {message.name: message for message in self.messages}
 
     def enumeration(self, name: str) -> Enumeration:
         """The enumeration called `name`; raises KeyError when there is none."""

@@ -142,7 +142,7 @@ class ReplayLaw:
         """Raises BadInput for a table that no law can be made from."""
         self.ffi, self._lib = _library(setup.arithmetic)
         self.number = number_type(setup.arithmetic)
-        self._law = _law(_Numbers.of(setup))
+        self._law = _law(setup)
         self._channel = _channel(setup.arithmetic, setup.channel)
 
     def start(self, angles_rad: Array) -> Any:
@@ -184,7 +184,7 @@ class ReplayLaw:
         return v_V, self.outputs(inputs[:behind]) + w_V
 
     def _address(self, array: NDArray[Any] | None) -> Any:
-        return self.ffi.NULL if array is None else self.ffi.cast("void *", array.ctypes.data)
+        return self.ffi.NULL if array is None else self.ffi.from_buffer(array)
 
 
 def channel_agrees(channel: Channel, own_V: Array, logged_V: Array, slack_V: Array) -> bool:
@@ -210,38 +210,17 @@ def _library(arithmetic: str) -> tuple[Any, Any]:
 
 @dataclass(frozen=True)
 class _Numbers:
-    """All of a setup that the C's law is made from; two tables of the same numbers are one here."""
+    """All of a table that the C's law is made from; two tables of the same numbers are one here."""
 
     elevation: AxisLaw
     azimuth: AxisLaw
     sample_period_s: float
     psi_min_rad: float
     psi_max_rad: float
-    arithmetic: str
-    schedule: int
-    windup: int
-    raw_feedforward: bool
-    prefilter_poles: int | None
-    prefilter_gains: Gains | None
-    overflow: Overflow
 
     @classmethod
-    def of(cls, setup: Setup) -> "_Numbers":
-        table = setup.table
-        return cls(
-            table.elevation,
-            table.azimuth,
-            table.sample_period_s,
-            table.psi_min_rad,
-            table.psi_max_rad,
-            setup.arithmetic,
-            setup.schedule,
-            setup.windup,
-            setup.raw_feedforward,
-            setup.prefilter_poles,
-            setup.prefilter_gains,
-            setup.overflow,
-        )
+    def of(cls, table: ControllerTable) -> "_Numbers":
+        return cls(table.elevation, table.azimuth, table.sample_period_s, table.psi_min_rad, table.psi_max_rad)
 
     @property
     def table(self) -> ControllerTable:
@@ -257,55 +236,53 @@ class _Numbers:
         )
 
 
-# The C reads laws and channels only. A search pairs some hundred changes, so the same ones come back thousands of times.
+def _law(setup: Setup) -> Any:
+    """The C's law: its table's numbers, then what the setup changes in a copy of them."""
+    ffi, _ = _library(setup.arithmetic)
+    law = ffi.new("replay_law *", _table_law(_Numbers.of(setup.table), setup.arithmetic)[0])
+    for axis, gain in zip(law.axis, setup.prefilter_gains or (None, None), strict=True):
+        if gain is not None:
+            axis.prefilter_gain, axis.prefilter_poles = gain, 2
+        if setup.prefilter_poles is not None and axis.prefilter_poles:
+            axis.prefilter_poles = setup.prefilter_poles
+    law.schedule, law.windup = setup.schedule, setup.windup
+    law.feedforward_of_raw_reference = setup.raw_feedforward
+    law.overflow, law.overflow_at = setup.overflow.kind, setup.overflow.at
+    law.overflow_low_V, law.overflow_span_V = setup.overflow.low_V, setup.overflow.span_V
+    return law
+
+
+# A search pairs some hundred changes, most of them of no number in the table: the same tables come back thousands of times.
 @lru_cache(maxsize=1024)
-def _law(numbers: _Numbers) -> Any:
-    ffi, _ = _library(numbers.arithmetic)
-    return ffi.new("replay_law *", _law_fields(numbers))
+def _table_law(numbers: _Numbers, arithmetic: str) -> Any:
+    ffi, _ = _library(arithmetic)
+    constants = law_constants(numbers.table, np.float32 if arithmetic == FLOAT32 else np.float64)
+    fields = {
+        "axis": [_axis_fields(axis) for axis in (constants.elevation, constants.azimuth)],
+        "psi_min_rad": constants.psi_min_rad,
+        "psi_max_rad": constants.psi_max_rad,
+        "least_schedule_rad": constants.least_schedule_rad,
+        "plausible_V": constants.plausible_V,
+    }
+    return ffi.new("replay_law *", fields)
 
 
+# The C only reads it.
 @lru_cache(maxsize=1024)
 def _channel(arithmetic: str, channel: Channel) -> Any:
     ffi, _ = _library(arithmetic)
     return ffi.new("replay_channel *", asdict(channel))
 
 
-def _law_fields(setup: _Numbers) -> dict[str, Any]:
-    number = np.float32 if setup.arithmetic == FLOAT32 else np.float64
-    constants = law_constants(setup.table, number)
-    gains = setup.prefilter_gains or (None, None)
-    axes = (constants.elevation, constants.azimuth)
-    return {
-        "axis": [
-            _axis_fields(axis, setup.prefilter_poles, None if gain is None else number(gain))
-            for axis, gain in zip(axes, gains, strict=True)
-        ],
-        "psi_min_rad": constants.psi_min_rad,
-        "psi_max_rad": constants.psi_max_rad,
-        "least_schedule_rad": constants.least_schedule_rad,
-        "plausible_V": constants.plausible_V,
-        "schedule": setup.schedule,
-        "windup": setup.windup,
-        "feedforward_of_raw_reference": int(setup.raw_feedforward),
-        "overflow": setup.overflow.kind,
-        "overflow_at": setup.overflow.at,
-        "overflow_low_V": setup.overflow.low_V,
-        "overflow_span_V": setup.overflow.span_V,
-    }
-
-
-def _axis_fields(axis: AxisConstants[Any], poles: int | None, gain: Any) -> dict[str, Any]:
-    gain = axis.prefilter_gain if gain is None else gain
-    if gain is None:
-        poles = 0
+def _axis_fields(axis: AxisConstants[Any]) -> dict[str, Any]:
     scalars = ("u_min_V", "u_max_V", "u_safe_V", "reference_min_rad", "reference_max_rad")
     return {
         "q": [_polynomial(row) for row in axis.q_V_rad],
         "p": [_polynomial(row) for row in (*axis.p, ())[:4]],
         "a": [_polynomial(row) for row in axis.a],
         "u_ff": _polynomial(axis.feedforward_V),
-        "prefilter_poles": 2 if poles is None else poles,
-        "prefilter_gain": 1.0 if gain is None else gain,
+        "prefilter_poles": 0 if axis.prefilter_gain is None else 2,
+        "prefilter_gain": 1.0 if axis.prefilter_gain is None else axis.prefilter_gain,
         **{name: getattr(axis, name) for name in scalars},
     }
 

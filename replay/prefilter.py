@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import ControllerTable
+from records.table import ControllerTable, lag_gain
 from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import AXES, ReplayLaw, Setup
-from replay.variants import Variant
+from replay.variants import Variant, prefilter_gains
 
 Array = NDArray[np.float64]
 
 GRID = 71
-GOLDEN_STEPS = 60
+GOLDEN_STEPS = 36  # leave 1e-8 of a time constant: what is written has six digits at most
 SPAN = 1500  # samples behind the reference's first move that the fit looks at
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
@@ -67,7 +67,8 @@ def _misfit(
 ) -> float:
     """Mean error of one input [V] over the window with this axis' time constant."""
     constants_s = tuple(constant_s if index == axis else other for index, other in enumerate(others_s))
-    setup = _with_constants(Setup(table), constants_s)
+    filtered = _with_constants(Setup(table), constants_s).table
+    setup = Setup(table, prefilter_gains=prefilter_gains(filtered, lag_gain))
     return float(np.nanmean(np.abs(ReplayLaw(setup).outputs(given)[:, axis] - logged[:, axis])))
 
 
@@ -77,10 +78,15 @@ def _fitted(misfit: Callable[[float], float]) -> float:
     errors = [misfit(10.0**exponent) for exponent in exponents]
     best = int(np.argmin(errors))
     low, high = exponents[max(best - 1, 0)], exponents[min(best + 1, GRID - 1)]
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = misfit(10.0**left), misfit(10.0**right)
     for _ in range(GOLDEN_STEPS):
-        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        if misfit(10.0**left) <= misfit(10.0**right):
-            high = right
+        if at_left <= at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = misfit(10.0**left)
         else:
-            low = left
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = misfit(10.0**right)
     return float(10.0 ** ((low + high) / 2.0))

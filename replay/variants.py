@@ -110,7 +110,7 @@ def _references(table: ControllerTable) -> Iterator[Variant]:
     without: Mapping[str, Polynomial] = dict.fromkeys(AXES, (0.0,))
     yield Variant("no_feedforward", "feedforward", "has no feed-forward", partial(_feedforward, by_axis=without))
     for name, gain in (("T_s/T", _euler_gain), ("T_s/(T + T_s)", _backward_gain)):
-        gains = _gains(table, gain)
+        gains = prefilter_gains(table, gain)
         sentence = f"filters its references with the gain {name}"
         yield Variant("prefilter_gain", "prefilter", sentence, partial(replace, prefilter_gains=gains))
 
@@ -121,7 +121,7 @@ def _feedforward(setup: Setup, by_axis: Mapping[str, Polynomial]) -> Setup:
     return setup
 
 
-def _gains(table: ControllerTable, gain: Callable[[float, float], float]) -> Gains:
+def prefilter_gains(table: ControllerTable, gain: Callable[[float, float], float]) -> Gains:
     """b of both axes by the rule `gain` of time constant and sample period; None where there is no filter."""
     constants_s = [getattr(table, axis).prefilter_time_constant_s for axis in AXES]
     first, second = (gain(value, table.sample_period_s) if value > 0.0 else None for value in constants_s)
@@ -284,7 +284,7 @@ def _round_table(setup: Setup, to: Round, extent: int) -> Setup:
     setup = replace(setup, table=replace(setup.table, **axes))
     if extent < 3:
         return setup
-    return replace(setup, prefilter_gains=_gains(setup.table, lambda T, T_s: to(-math.expm1(-T_s / T))))
+    return replace(setup, prefilter_gains=prefilter_gains(setup.table, lambda T, T_s: to(-math.expm1(-T_s / T))))
 
 
 @lru_cache(maxsize=512)  # a pair with a change that is none of the numbers rounds the table's own

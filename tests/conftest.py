@@ -1,6 +1,7 @@
 """What all tests share: one thread for the linear algebra, as for `twinlaw` itself, no soaks unasked, and one run of the whole chain."""
 
 import fcntl
+import gc
 import os
 from collections.abc import Generator
 from pathlib import Path
@@ -30,6 +31,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """In a fresh checkout one worker imports everything after the other: the first compiles it, the second finds it compiled."""
+    gc.disable()
     compiled = CACHE_DIR / "compiled"
     if "PYTEST_XDIST_WORKER" not in os.environ or compiled.exists():
         return (yield)
@@ -39,6 +41,14 @@ def pytest_collection() -> Generator[None, object, object]:
         found = yield
         compiled.touch()
         return found
+
+
+def pytest_collection_finish() -> None:
+    """All that was imported stays until the end: who looks for rubbish need not walk through it again and again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000)  # objects, where 700 are usual: equations are trees of many small ones
+    gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -36,7 +36,7 @@ def bin_dir(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An environment with the wheel and what it depends on, but without the checkout; the wheel's files cannot be written."""
     home = tmp_path_factory.mktemp("environment")
     venv.create(home, with_pip=False, symlinks=True)
-    pip = [sys.executable, "-m", "pip", "--python", str(home / "bin" / "python"), "install", "--quiet"]
+    pip = [sys.executable, "-m", "pip", "--python", str(home / "bin" / "python"), "install", "--quiet", "--no-compile"]
     subprocess.run([*pip, "--no-deps", "--no-index", str(wheel)], capture_output=True, check=True)
     site = next((home / "lib").glob("python*/site-packages"))
     # The .pth files of a folder that is named in one are not read: that of the checkout stays out.

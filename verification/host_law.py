@@ -53,21 +53,24 @@ class HostLaw:
         self._places = _places(texts["law.h"]) if arithmetic == "fixed" else None
         self._ffi, self._lib = load_shared(_DECLARATIONS, library)
         self.state_words = int(self._lib.law_batch_state_words())
-        self._state = self.start(self._angles(0.0, 0.0))
+        word = "int32_t" if arithmetic == "fixed" else "float"
+        self._given, self._answered = self._ffi.new(f"{word}[4]"), self._ffi.new(f"{word}[2]")
+        self.reset(0.0, 0.0)
 
     def reset(self, psi_rad: float, phi_rad: float) -> None:
         """Start afresh at these angles."""
         self._state = self.start(self._angles(psi_rad, phi_rad))
+        self._remembered = self._pointer(self._state)
 
     def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
         """One sample; returns (u_M_V, u_T_V) within their limits."""
-        inputs = self._angles(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
-        self._state, outputs = self.run(self._state, inputs[np.newaxis])
+        angles_rad = (psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
+        self._given[0:4] = angles_rad if self._places is None else self._words(angles_rad)
+        self._lib.law_batch_run(1, 1, self._remembered, self._given, self._answered)
+        main, tail = self._answered
         if self._places is None:
-            u_M_V, u_T_V = outputs.view(np.float32)[0, 0].tolist()
-        else:
-            u_M_V, u_T_V = (value_of(word, self._places.voltage) for word in outputs.view(np.int32)[0, 0].tolist())
-        return u_M_V, u_T_V
+            return main, tail
+        return value_of(main, self._places.voltage), value_of(tail, self._places.voltage)
 
     def start(self, angles: Bits) -> Bits:
         """States at rest, bits [lanes, words], for angles psi, phi as bits [lanes, 2]."""
@@ -106,13 +109,17 @@ class HostLaw:
     def _angles(self, *angles_rad: float) -> Bits:
         if self._places is None:
             return np.array([angles_rad], dtype=np.float32).view(np.uint32)
-        return np.array([[word_of(angle, self._places.angle) % 2**32 for angle in angles_rad]], dtype=np.uint32)
+        return np.array([self._words(angles_rad)], dtype=np.int32).view(np.uint32)
+
+    def _words(self, angles_rad: Sequence[float]) -> list[int]:
+        assert self._places is not None
+        return [word_of(angle, self._places.angle) for angle in angles_rad]
 
     def _pointer(self, array: NDArray[Any]) -> Any:
         # The C would read a strided view, or numbers of another width, as if they were dense 32-bit words.
         if not array.flags["C_CONTIGUOUS"] or array.itemsize != 4:
             raise ValueError(f"arrays for the C must be contiguous and of 32-bit words, not {array.dtype}")
-        return self._ffi.cast("void *", array.ctypes.data)
+        return self._ffi.from_buffer(array)
 
 
 def host_law(table: ControllerTable, arithmetic: str = "float32") -> HostLaw:

@@ -54,6 +54,7 @@ class EmulatedBoard:
         machine = self._lib.emulator_create(self.image.flash, len(self.image.flash), list(config.unique_id))
         self._finalizer = weakref.finalize(self, self._lib.emulator_destroy, machine)
         self._machine = machine
+        self._status_place = self._ffi.new("machine_status *")
         self._calls = Caller((self._ffi, self._lib), machine, config.chip)
         limit = self.image.symbols.get("_stack_limit") if config.check_stack_limit else None
         self._lib.emulator_configure(
@@ -109,8 +110,8 @@ class EmulatedBoard:
         return stop
 
     def _run(self, limit_cycle: int, limit_ps: int, host_bytes: int) -> Stop:
-        if host_bytes and self._status().host_bytes >= host_bytes:
-            return Stop(StopKind.HOST_BYTES, self._status().pc, 0, 0, self.image)
+        if host_bytes and (status := self._status()).host_bytes >= host_bytes:
+            return Stop(StopKind.HOST_BYTES, status.pc, 0, 0, self.image)
         self._lib.emulator_run(self._machine, limit_cycle, limit_ps, host_bytes)
         return self.last_stop
 
@@ -121,9 +122,9 @@ class EmulatedBoard:
         return Stop(StopKind(status.stop_kind), status.stop_pc, status.stop_address, status.stop_detail, self.image)
 
     def _status(self) -> Any:
-        status = self._ffi.new("machine_status *")
-        self._lib.emulator_status(self._machine, status)
-        return status
+        """The machine's status as it is now, in the same place each time."""
+        self._lib.emulator_status(self._machine, self._status_place)
+        return self._status_place
 
     @property
     def time_s(self) -> float:

@@ -3,10 +3,10 @@
 import struct
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
+from records.wire import CRC_SIZE, HEADER_SIZE, Message, Protocol
 from rig.link.cobs import cobs_decode, cobs_encode
 
 Value = int | bytes
@@ -107,7 +107,7 @@ class FrameReceiver:
 def encode_frame(protocol: Protocol, name: str, sequence: int, values: Mapping[str, Value]) -> bytes:
     """The bytes on the line of message `name`, delimiter included; all fields must be given, and no others."""
     message = protocol.message(name)
-    payload = struct.pack(_format(message.fields), *(values[part.name] for part in message.fields))
+    payload = message.layout.pack(*(values[part.name] for part in message.fields))
     content = struct.pack("<BBH", protocol.version, message.code, sequence & 0xFFFF) + payload
     return cobs_encode(content + struct.pack("<I", zlib.crc32(content))) + DELIMITER
 
@@ -125,22 +125,17 @@ def parse_content(protocol: Protocol, content: bytes) -> Frame | None:
 def foreign(protocol: Protocol, content: bytes, types: frozenset[int] | None = None) -> str | None:
     """The name of what is foreign about checked `content` (header and payload), None for a frame of the protocol."""
     version, code, _ = struct.unpack_from("<BBH", content)
-    size = next((message.size for message in protocol.messages if message.code == code), None)
+    message = protocol.by_code.get(code)
     if version != protocol.version:
         return "wrong_version"
-    if size is None or (types is not None and code not in types):
+    if message is None or (types is not None and code not in types):
         return "unknown_type"
-    return None if len(content) == HEADER_SIZE + size else "wrong_length"
+    return None if len(content) == HEADER_SIZE + message.size else "wrong_length"
 
 
 def _unpacked(protocol: Protocol, content: bytes) -> Frame:
     _, code, sequence = struct.unpack_from("<BBH", content)
-    message = next(message for message in protocol.messages if message.code == code)
-    values = struct.unpack_from(_format(message.fields), content, HEADER_SIZE)
+    message = protocol.by_code[code]
+    values = message.layout.unpack_from(content, HEADER_SIZE)
     names = [part.name for part in message.fields]
     return Frame(message, sequence, dict(zip(names, values, strict=True)))
-
-
-def _format(fields: Iterable[Field]) -> str:
-    codes = (part.wire_type.struct_code if part.count == 1 else f"{part.count}s" for part in fields)
-    return "<" + "".join(codes)

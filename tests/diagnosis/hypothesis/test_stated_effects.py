@@ -17,13 +17,13 @@ from diagnosis.result import Result
 from diagnosis.search.retune import retune
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import RIG, SPRING, Fly
+from tests.diagnosis.conftest import RIG, SPRING, SPRUNG_SECONDS, Fly
 
 DRAG = "elevation.quadratic_drag"
 
 
 def diagnosed_again(sprung: Result, fly: Fly, effects: Mapping[str, Mapping[str, float]]) -> Result:
-    logs = [fly(seed, effects, rig_seed=RIG) for seed in (13, 14)]
+    logs = [fly(seed, effects, SPRUNG_SECONDS, rig_seed=RIG) for seed in (13, 14)]
     return diagnose(bind(sprung.plant), Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 

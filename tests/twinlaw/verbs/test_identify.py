@@ -114,10 +114,10 @@ def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder,
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
-    """Twenty seconds of flight, and the two coefficients to estimate from it."""
+    """Twelve seconds of flight, and the two coefficients to estimate from it."""
     path = tmp_path_factory.mktemp("flown") / "flight.csv"
     log = task(bind(load_plant(Path("plants/ce150.toml")))).log
-    save_log(path, replace(log, t_s=log.t_s[:2000], u=log.u[:2000], y=log.y[:2000]))
+    save_log(path, replace(log, t_s=log.t_s[:1200], u=log.u[:1200], y=log.y[:1200]))
     return ["--free", "J_A,b_vA", str(path)]
 
 
@@ -181,7 +181,7 @@ def test_rows_that_the_look_leaves_out_do_not_reach_the_fit(flown, tmp_path, cap
     found = {}
     for name, amount in (("leaps", 1.5), ("unread", np.nan)):
         y = log.y.copy()
-        y[[300, 700, 1100], 1] += amount
+        y[[300, 500, 900], 1] += amount
         save_log(tmp_path / f"{name}.csv", replace(log, y=y))
         options = ["--free", "J_A,b_vA", "--window", "2", "--json", "--out", str(tmp_path / "out")]
         assert main(["identify", *options, str(tmp_path / f"{name}.csv")]) == 0
@@ -198,7 +198,7 @@ def test_a_log_given_twice_under_two_names_is_refused(flown, tmp_path, capsys):
         shutil.copy(Path(flown[-1]).with_suffix(suffix), tmp_path / f"copy{suffix}")
     assert main(["identify", "--out", str(tmp_path / "out"), *flown, str(tmp_path / "copy.csv")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "copy: log: got 2000 rows stand in flight too; left out here, expected a row that can be used" in line
+    assert "copy: log: got 1200 rows stand in flight too; left out here, expected a row that can be used" in line
     assert not (tmp_path / "out").exists()
 
 

@@ -35,7 +35,6 @@ def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> None:
     if not logs:
         return
     library = effect_library(without_effects(bound) if bound.effects else bound)
-    library.prepare()
     case, where = make_case(library, list(logs.values()), stated=bound), ", ".join(logs)
     demand_wiring(case, plain_fit(case), plain_fit, where)
     demand_rows(case, where, (LATE, EARLY))
