@@ -12,6 +12,7 @@ from design.operating_points import equilibria, grid
 from design.settings import DesignSettings
 from design.table import frame_entries
 from records.law_table import AxisTable, LawTable
+from records.table import AXES, Schedule
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
@@ -61,9 +62,7 @@ def law_table(controller: str, points: Points, axes: dict[str, AxisTable[G]], or
         controller=controller,
         plant=points.bound.plant.name,
         sample_period_s=points.settings.sample_period_s,
-        psi_min_rad=points.settings.psi_min_rad,
-        psi_max_rad=points.settings.psi_max_rad,
-        elevation=axes["elevation"],
-        azimuth=axes["azimuth"],
+        schedule=Schedule("elevation", points.settings.psi_min_rad, points.settings.psi_max_rad),
+        axes=tuple(axes[name] for name in AXES),
         origin=origin,
     )

@@ -34,7 +34,8 @@ class Subsystem:
 
 
 SUBSYSTEMS: Mapping[str, Subsystem] = {
-    loop.axis: Subsystem((loop.rotor_speed, loop.output, loop.rate), loop.input, loop.output) for loop in LOOPS
+    loop.axis: Subsystem((rotor_speed, loop.output, f"{loop.symbol}_dot_rad_s"), loop.input, loop.output)
+    for loop, rotor_speed in zip(LOOPS, ("omega_M_rad_s", "omega_T_rad_s"), strict=True)
 }
 
 

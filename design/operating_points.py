@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from design.both_axes import BothAxes
 from design.direct_form import DeltaForm, to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
@@ -14,7 +15,7 @@ from design.pole_placement import FREE_DEGREES, Placement, characteristic, place
 from design.refine import refined
 from design.settings import AxisSettings, DesignSettings
 from design.transfer import TransferFunction, transfer_function
-from records.table import AXES, BothAxes
+from records.table import AXES
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
+from design.both_axes import BothAxes
 from design.coupled import coupled_poles
 from design.direct_form import DeltaForm
 from design.discretise import sample
@@ -18,7 +19,7 @@ from design.operating_points import DesignPoints, equilibria
 from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
 from design.settings import DesignSettings
-from records.table import AXES, BothAxes, ControllerTable, Polynomial
+from records.table import AXES, ControllerTable, Polynomial
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]

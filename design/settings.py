@@ -30,11 +30,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from design.both_axes import BothAxes
 from design.pole_placement import FREE_DEGREES, ORDER
 from design.schedule import Degrees
 from design.structure import demand_helicopter
 from records.errors import BadInput
-from records.table import AXES, BothAxes
+from records.table import AXES
 from records.text import checks
 from sim.bind import BoundPlant
 

@@ -16,7 +16,7 @@ from design.settings import DesignSettings
 from records.errors import BadInput
 from records.loops import LOOPS
 from records.plant import plant_digest
-from records.table import AXES, AxisLaw, ControllerTable, short
+from records.table import AXES, AxisLaw, ControllerTable, Schedule, short
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
@@ -74,10 +74,8 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
     return ControllerTable(
         plant=bound.plant.name,
         sample_period_s=settings.sample_period_s,
-        psi_min_rad=settings.psi_min_rad,
-        psi_max_rad=settings.psi_max_rad,
-        elevation=axis_law(bound, settings, points, "elevation"),
-        azimuth=axis_law(bound, settings, points, "azimuth"),
+        schedule=Schedule("elevation", settings.psi_min_rad, settings.psi_max_rad),
+        axes=tuple(axis_law(bound, settings, points, axis) for axis in AXES),
         origin=_origin(bound, settings, points),
     )
 

@@ -54,11 +54,7 @@ def _moved(settings: DesignSettings, axis: str, factor: float) -> AxisSettings:
 
 def _point(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, factor: float) -> TradePoint:
     points = design_points(bound, settings)
-    moved = replace(
-        table,
-        elevation=axis_law(bound, settings, points, "elevation"),
-        azimuth=axis_law(bound, settings, points, "azimuth"),
-    )
+    moved = replace(table, axes=tuple(axis_law(bound, settings, points, axis) for axis in AXES))
     log = fly_law(bound, moved, flight(bound, settings.sample_period_s))
     return TradePoint(
         factor=factor,

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from codegen.law_constants import AxisConstants, law_constants
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable
+from records.table import AxisLaw, ControllerTable, Schedule, changed_axis
 from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
 Gains = tuple[float | None, float | None]
 
-AXES = ("elevation", "azimuth")
 ROOM = 12  # coefficients of a polynomial, as in firmware_replay.c
 SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE = range(4)
 WINDUP_OBSERVER, WINDUP_NONE, WINDUP_CLAMP, WINDUP_FREEZE = range(4)
@@ -131,8 +130,7 @@ class Setup:
 
     def with_axis(self, name: str, **change: object) -> "Setup":
         """The setup with fields of the table's axis `name` replaced."""
-        axis = replace(getattr(self.table, name), **change)
-        return replace(self, table=replace(self.table, **{name: axis}))
+        return replace(self, table=changed_axis(self.table, name, **change))
 
 
 class ReplayLaw:
@@ -212,11 +210,9 @@ def _library(arithmetic: str) -> tuple[Any, Any]:
 class _Numbers:
     """All of a setup that the C's law is made from; two tables of the same numbers are one here."""
 
-    elevation: AxisLaw
-    azimuth: AxisLaw
+    axes: tuple[AxisLaw, ...]
     sample_period_s: float
-    psi_min_rad: float
-    psi_max_rad: float
+    table_schedule: Schedule | None
     arithmetic: str
     schedule: int
     windup: int
@@ -229,11 +225,9 @@ class _Numbers:
     def of(cls, setup: Setup) -> "_Numbers":
         table = setup.table
         return cls(
-            table.elevation,
-            table.azimuth,
+            table.axes,
             table.sample_period_s,
-            table.psi_min_rad,
-            table.psi_max_rad,
+            table.schedule,
             setup.arithmetic,
             setup.schedule,
             setup.windup,
@@ -249,11 +243,8 @@ class _Numbers:
         return ControllerTable(
             plant="",
             sample_period_s=self.sample_period_s,
-            psi_min_rad=self.psi_min_rad,
-            psi_max_rad=self.psi_max_rad,
-            elevation=self.elevation,
-            azimuth=self.azimuth,
-            origin={},
+            schedule=self.table_schedule,
+            axes=self.axes,
         )
 
 
@@ -274,14 +265,14 @@ def _law_fields(setup: _Numbers) -> dict[str, Any]:
     number = np.float32 if setup.arithmetic == FLOAT32 else np.float64
     constants = law_constants(setup.table, number)
     gains = setup.prefilter_gains or (None, None)
-    axes = (constants.elevation, constants.azimuth)
+    assert constants.schedule is not None
     return {
         "axis": [
             _axis_fields(axis, setup.prefilter_poles, None if gain is None else number(gain))
-            for axis, gain in zip(axes, gains, strict=True)
+            for axis, gain in zip(constants.axes, gains, strict=True)
         ],
-        "psi_min_rad": constants.psi_min_rad,
-        "psi_max_rad": constants.psi_max_rad,
+        "psi_min_rad": constants.schedule.min_rad,
+        "psi_max_rad": constants.schedule.max_rad,
         "least_schedule_rad": constants.least_schedule_rad,
         "plausible_V": constants.plausible_V,
         "schedule": setup.schedule,

@@ -21,17 +21,17 @@ Array = NDArray[np.float64]
 
 
 class Controller(Protocol):
-    """What can fly the two-axis helicopter: a float law, its twin, compiled C, an emulated or a real board.
+    """What can fly a plant: a float law, its twin, compiled C, an emulated or a real board.
 
     `step` is called once per sample, in order; all angles in rad, the inputs in V after the controller's own limits.
     """
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
-        """Start anew at rest at these angles."""
+    def reset(self, *angles_rad: float) -> None:
+        """Start anew at rest at these angles, one a loop."""
         ...
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """Take one sample's references and measured angles; return (u_M_V, u_T_V)."""
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """Take one sample's references, then measured angles, of all loops; return the loops' voltages."""
         ...
 
 

@@ -4,9 +4,8 @@ The sensitivity of a designed coefficient to a parameter is d ln(coefficient) / 
 level, by central differences of the whole design: the parameters that it names are those that the coefficient rests on.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -106,14 +105,15 @@ def _points(table: ControllerTable, constant: Constant) -> Iterator[PointTrace]:
     if constant.letter not in ("q", "p", "u_ff"):
         return
     for index, point in enumerate(table.origin["operating_points"]):
-        designed = _designed(table.origin, constant, index)
+        designed = _designed(table, constant, index)
         fitted = float(polyval(point["psi_rad"], constant.polynomial))
         yield PointTrace(point["psi_rad"], tuple(point["u0_V"]), designed, fitted)
 
 
-def _designed(origin: Mapping[str, Any], constant: Constant, point: int) -> float:
+def _designed(table: ControllerTable, constant: Constant, point: int) -> float:
+    origin = table.origin
     if constant.letter == "u_ff":
-        return float(origin["operating_points"][point]["u0_V"][AXES.index(constant.axis)])
+        return float(origin["operating_points"][point]["u0_V"][table.index(constant.axis)])
     group = "q_V_rad" if constant.letter == "q" else "p"
     return float(origin[constant.axis][group][point][constant.index])
 

@@ -13,11 +13,12 @@ NO_ROLL_OFF: Polynomial = ()  # p_3 of an axis without
 def law_struct(kernel: Kernel, table: ControllerTable) -> Any:
     """The C struct `law_table`; raises BadInput when a polynomial has more coefficients than it has room for."""
     result = kernel.ffi.new("law_table *")
-    axes = (table.elevation, table.azimuth)
+    axes, schedule = table.axes, table.schedule
+    assert schedule is not None
     rows = [row for axis in axes for row in (*axis.q_V_rad, *(*axis.p, NO_ROLL_OFF)[:4])]
     result.coefficients = _checked(max(len(row) for row in rows))
     result.feedforward_coefficients = _checked(max(len(axis.feedforward_V) for axis in axes))
-    result.psi_min_rad, result.psi_max_rad = table.psi_min_rad, table.psi_max_rad
+    result.psi_min_rad, result.psi_max_rad = schedule.min_rad, schedule.max_rad
     for column, row in enumerate(rows):
         for power, coefficient in enumerate(row):
             result.scheduled[power][column] = coefficient

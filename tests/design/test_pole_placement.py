@@ -134,7 +134,7 @@ def test_eq_26_solved_in_float32_as_on_a_microcontroller_is_unstable_at_many_ang
 
 @pytest.mark.parametrize(("decimals", "slowest_rad_s"), [(3, -2.5), (2, 0.08)])
 def test_direct_form_rounded_to_decimals_has_the_published_slowest_pole(decimals, slowest_rad_s):
-    schedule = schedule_of(table_for(settings_for((EQ8, "q3_zero"))).elevation)
+    schedule = schedule_of(table_for(settings_for((EQ8, "q3_zero"))).axes[0])
     found = []
     for psi_rad in wide_angles():
         form = to_direct(evaluate(schedule, psi_rad))

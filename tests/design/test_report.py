@@ -126,7 +126,7 @@ def test_origin_leads_from_a_coefficient_back_to_its_operating_point():
     assert origin["operating_points"][middle]["psi_rad"] == pytest.approx(0.0, abs=1e-12)
     assert origin["operating_points"][middle]["u0_V"][0] == pytest.approx(5.607, abs=1e-3)
     designed_q = origin["elevation"]["q_V_rad"][middle]
-    fitted_q = [row[0] for row in table.elevation.q_V_rad]
+    fitted_q = [row[0] for row in table.axes[0].q_V_rad]
     np.testing.assert_allclose(fitted_q, designed_q, rtol=1e-2)
 
 

@@ -84,4 +84,4 @@ def test_a_table_with_a_roll_off_is_read_back_as_it_was_written(tmp_path) -> Non
     (tmp_path / "controller.json").write_text(table_text(table))
     read: ControllerTable = load_table(tmp_path / "controller.json")
     assert read.digest == table.digest
-    assert len(read.elevation.p) == 4
+    assert len(read.axes[0].p) == 4

@@ -54,15 +54,15 @@ def test_sums_of_fits_are_fits_of_sums_although_single_coefficients_are_off_by_f
 
 
 def test_integral_action_and_the_missing_q3_are_exactly_zero_at_every_angle():
-    integral = schedule_of(table_for(settings_for()).elevation)
-    without = schedule_of(table_for(settings_for(elevation=(equal(-8.0), "q3_zero"))).elevation)
+    integral = schedule_of(table_for(settings_for()).axes[0])
+    without = schedule_of(table_for(settings_for(elevation=(equal(-8.0), "q3_zero"))).axes[0])
     assert integral.p[0] == (0.0,) * 4
     assert without.q[3] == (0.0,) * 4
     assert without.p[0][0] != 0.0
 
 
 def test_azimuth_does_not_know_up_from_down_and_its_polynomials_are_even():
-    law = table_for(settings_for()).azimuth
+    law = table_for(settings_for()).axes[1]
     for row in (*law.q_V_rad, *law.p, law.feedforward_V):
         assert row[1::2] == (0.0,) * len(row[1::2])
 
@@ -70,7 +70,7 @@ def test_azimuth_does_not_know_up_from_down_and_its_polynomials_are_even():
 def test_feedforward_misses_the_equilibrium_by_the_published_millivolts():
     table, points = table_for(settings_for()), design_points(helicopter(), base_settings())
     voltages = np.array([point.u0 for point in points.equilibria])
-    for column, (law, error_mV) in enumerate(((table.elevation, 2.9), (table.azimuth, 1.8))):
+    for column, (law, error_mV) in enumerate(((table.axes[0], 2.9), (table.axes[1], 1.8))):
         fitted = np.polynomial.polynomial.polyval(points.psi_rad, law.feedforward_V)
         assert 1e3 * np.max(np.abs(fitted - voltages[:, column])) == pytest.approx(error_mV, abs=0.06)
 

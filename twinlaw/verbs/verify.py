@@ -18,10 +18,9 @@ from twinlaw.pages.run.checks import verification_rows
 from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import table_poles
 from twinlaw.workflows.chain.proving import with_proofs
-from twinlaw.workflows.chain.verifying import STEPS, demand, recorded_replay, verify_table
+from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
 from twinlaw.workflows.reading import load_bound
 from verification.proofs import Subject
-from verification.ranges import Motion
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +50,7 @@ def run(chosen: argparse.Namespace) -> int:
         bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
     )
     if chosen.proofs:
-        motion = Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim"))
+        motion = motion_of(bound)
         generated = {**law, **protocol_source(PROTOCOL)}
         subject = Subject(table, generated, image.elf, motion, chosen.arithmetic, chosen.all)
         verification = with_proofs(verification, subject)

@@ -51,7 +51,7 @@ def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path)
         image = build_firmware(texts, place)
     twin, host = row.twin(table), HostLaw(texts)
     target = TargetLaw(EmulatedBoard(image.elf), state_words=twin.state_words)
-    stimuli = standard_stimuli(table, wanted.steps, state_words=twin.state_words)
+    stimuli = standard_stimuli(table, wanted.steps, words=twin.state_words)
     with stage(f"{name}: stepping twin, host and target side by side"):
         equality = tuple(compare(one, other, stimuli).equality for one, other in ((twin, host), (host, target)))
         mismatches = host.self_test() + target.self_test()

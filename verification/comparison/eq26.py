@@ -70,11 +70,10 @@ def plain(settings: DesignSettings, axis: str) -> Solver:
 def closed(table: LawTable[Any], axis: str) -> Solver:
     """The board's arithmetic."""
     law = numbers_of(table, np.float32)
+    numbers = law.axes[table.index(axis)]
 
     def solve(transfer: TransferFunction, psi_rad: float) -> DeltaForm:
-        found = [
-            float(value) for value in vars(EQUATIONS.placed(law, getattr(law, axis), np.float32(psi_rad))).values()
-        ]
+        found = [float(value) for value in vars(EQUATIONS.placed(law, numbers, np.float32(psi_rad))).values()]
         return DeltaForm(np.array(found[:4]), np.array([0.0, *found[4:]]))
 
     return solve

@@ -23,7 +23,7 @@ from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
-from verification.ranges import Motion
+from verification.ranges import FASTEST_RAD_S, Motion
 from verification.replay import Replay, replay_of, replayed_equality
 from verification.static_bound import kept_bound
 from verification.stimuli import Stimulus
@@ -92,7 +92,7 @@ def _check(
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
     with stage(f"proving a bound on rounding in {arithmetic}"):
-        rounding = chosen.bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
+        rounding = chosen.bound(table, motion_of(bound))
     with stage("bounding cycles and stack from the image"):
         cost = kept_bound(image.elf, "law_step")
     tests = (("host", host.self_test()), ("target", target.self_test()))
@@ -111,6 +111,11 @@ def _check(
             cycles_budget=round((table.sample_period_s - TICK_RESERVE_S) * STM32G071.clock_hz),
         ),
     )
+
+
+def motion_of(bound: BoundPlant) -> Motion:
+    """The stops of the helicopter, and rates that hold for it."""
+    return Motion((bound.parameter("Psi_lim"), bound.parameter("Phi_lim")), (FASTEST_RAD_S, FASTEST_RAD_S))
 
 
 def demand(verification: Verification) -> None:
