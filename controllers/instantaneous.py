@@ -157,7 +157,7 @@ def _model(points: Points, axis: str) -> AxisModel:
         stiffness=float(load / inertia * Ts_s**2) if axis == "elevation" else 0.0,
         damping=float(value[rotor.damping][0] / inertia * Ts_s),
         target=_plain(np.poly(poles).real[:0:-1]),
-        observer=observer(wishes.observer_pole),
+        observer=observer(wishes.observer_pole, 3),
     )
 
 
@@ -185,8 +185,8 @@ def _check(points: Points, table: LawTable[InstantaneousGains]) -> None:
     """In double precision the board's design must be that of the design stage, from the plant's own equations, at every operating point."""
     for point in points.equilibria:
         for name in AXES:
-            wishes, Ts_s = points.settings.axis(name).without_roll_off, points.settings.sample_period_s
-            delta = design_point(points.bound, point, name, wishes, Ts_s).delta
+            wishes = points.settings.axis(name).without_roll_off
+            delta = design_point(points.bound, point, points.settings, wishes, point.psi_rad).delta
             found = EQUATIONS.placed(table, table.axis(name), point.psi_rad)
             wanted = np.array([*delta.q, *delta.p[1:]])
             apart = np.max(np.abs(np.array(list(vars(found).values())) / wanted - 1.0))

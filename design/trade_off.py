@@ -37,9 +37,7 @@ def trade_off(bound: BoundPlant, settings: DesignSettings, table: ControllerTabl
         return ()
     points = []
     for factor in FACTORS:
-        moved = replace(
-            settings, elevation=_moved(settings, "elevation", factor), azimuth=_moved(settings, "azimuth", factor)
-        )
+        moved = replace(settings, axes=tuple(_moved(settings, axis, factor) for axis in AXES))
         try:
             points.append(_point(bound, moved, table, factor))
         except BadInput:  # a controller that is unstable itself
@@ -69,6 +67,6 @@ def _sensitivity(table: ControllerTable, points: DesignPoints, axis: str) -> flo
     schedule = schedule_of(table.axis(axis))
     loops = [
         open_loop(design.plant, evaluate(schedule, float(psi)))
-        for psi, design in zip(points.psi_rad, points.axis(axis), strict=True)
+        for psi, design in zip(points.psi_rad, points.axes[AXES.index(axis)], strict=True)
     ]
     return max(margins(loop).sensitivity for loop in loops)

@@ -7,13 +7,13 @@ from design.direct_form import to_direct
 from design.operating_points import design_points
 from design.schedule import Degrees, fit, fit_error, fit_schedule, schedule_of
 from design.table import observer
-from records.table import SHORT_BITS
+from records.table import AXES, SHORT_BITS
 from tests.design.helicopter import AZ_DOM, DOM2, base_settings, equal, helicopter, settings_for, table_for
 
 
 def designs(axis, poles, free_degree):
     points = design_points(helicopter(), settings_for(**{axis: (poles, free_degree)}))
-    return points.psi_rad, [design.delta for design in points.axis(axis)]
+    return points.psi_rad, [design.delta for design in points.axes[AXES.index(axis)]]
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_fit_reproduces_a_polynomial_of_its_degree_and_drops_rounding():
 
 @pytest.mark.parametrize("pole", [0.0, 0.5, 0.9])
 def test_observer_is_a_triple_pole(pole):
-    a_0, a_1, a_2 = observer(pole)
+    a_0, a_1, a_2 = observer(pole, 3)
     for z in (0.3 + 0.4j, -0.8 + 0.1j, 1.0 + 0.0j):
         delta = 1.0 - 1.0 / z
         found = 1.0 - (1.0 - a_0 + a_1 * delta + a_2 * delta**2) / z
