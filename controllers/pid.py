@@ -106,7 +106,7 @@ def _origin(axis: str, tuning: Tuning) -> dict[str, Any]:
 
 def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
     Ts_s = points.settings.sample_period_s
-    low_V, high_V = limits_V(points.bound, points.settings.loop(axis))
+    low_V, high_V = limits_V(points.bound, points.settings.loop(axis), points.settings.axis(axis))
     return PidGains(
         k_p_V_rad=tuning.k_p,
         k_i_Ts_V_rad=tuning.k_i * Ts_s,

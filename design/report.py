@@ -75,8 +75,8 @@ class DesignReport:
     """All axes over the scheduling angles psi_rad (angles,): the operating points and at least 200 angles between them.
 
     points_rad (points,) are the operating points alone, `angle` names the axis that they are of. `arithmetic` is that of the law that
-    flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of all its loops closed on the whole plant, and `coupled` its worst. `coupling` is what the loops do to one another
-    at each operating point.
+    flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of all its loops closed on the whole plant, and `coupled` its worst.
+    `coupling` is what the loops do to one another at each operating point.
     """
 
     arithmetic: str

@@ -21,6 +21,8 @@ prefilter_time_constant_s = 0.4      0 = none
 observer_pole = 0.9                  triple pole in z of the anti-windup observer
 reference_min_rad = -0.698           references outside are clamped
 reference_max_rad = 0.698
+u_min_V = 0.0                        narrower limits than the plant's: for a thrust that does not turn round with its voltage
+u_max_V = 10.0
 
 [design.margins]                     a table that falls below them anywhere in the range is refused
 max_sensitivity = 6.0
@@ -35,7 +37,7 @@ from typing import Any
 
 from design.pole_placement import FREE_DEGREES
 from design.schedule import Degrees
-from design.structure import loops_of, measured_axis
+from design.structure import loops_of, stops
 from records.errors import BadInput
 from records.loops import LOOPS, Loop
 from records.table import ORDERS, Schedule
@@ -112,7 +114,8 @@ _SHARE, _AZIMUTH_SHARE = 8.0 / 9.0, 12.0 / 13.0
 class AxisSettings:
     """Wishes for the law of the loop `axis`; poles in rad/s of the continuous plane, `observer_pole` in z.
 
-    `coefficient_degree` is that of the fits of its q_i, None where it is the whole table's.
+    `coefficient_degree` is that of the fits of its q_i, None where it is the whole table's; `u_min_V` and `u_max_V` are None where the
+    law may command all that the plant's input takes.
     """
 
     axis: str
@@ -124,6 +127,8 @@ class AxisSettings:
     observer_pole: float
     reference_min_rad: float
     reference_max_rad: float
+    u_min_V: float | None = None
+    u_max_V: float | None = None
 
     @property
     def placed_rad_s(self) -> tuple[complex, ...]:
@@ -235,7 +240,7 @@ def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str)
 
 def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
     low_key, high_key = f"{loop.symbol}_min_rad", f"{loop.symbol}_max_rad"
-    stops_rad = _stops(bound, loop)
+    stops_rad = stops(bound, loop)
     default = _within(stops_rad, _SHARE)
     low, high = (_range_end(section, key, default, end, where) for end, key in enumerate((low_key, high_key)))
     _check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range")
@@ -248,13 +253,6 @@ def _range_end(
     if key not in section and default is None:
         raise BadInput(f"key {key!r}", where, "nothing", "a number, as this axis has no stops", f"add {key}")
     return checks.number(section.get(key, default[end] if default else None), f"{where}.{key}")
-
-
-def _stops(bound: BoundPlant, loop: Loop) -> tuple[float, float]:
-    """The hard stops of the measured axis [rad], infinite where there are none."""
-    axis = measured_axis(bound.model, loop)
-    low, high = (None, None) if axis is None else (axis.lower, axis.upper)
-    return -math.inf if low is None else bound.number(low), math.inf if high is None else bound.number(high)
 
 
 def _within(stops_rad: tuple[float, float], share: float) -> tuple[float, float] | None:
@@ -297,7 +295,7 @@ def _axis(
     wished = tuple(name for name in AxisSettings.__dataclass_fields__ if name != "axis")
     is_known = bound.model.name in KNOWN_POLES and axis in AXIS_DEFAULTS
     checks.keys(section, where, () if is_known else ("poles_rad_s",), (*wished, "output", "input"))
-    stops_rad = _stops(bound, loop)
+    stops_rad = stops(bound, loop)
     if schedule is not None and schedule.axis == axis:
         reference_rad: tuple[float, float] | None = (schedule.min_rad, schedule.max_rad)
     else:
@@ -325,6 +323,7 @@ def _axis(
         observer_pole=_observer_pole(_entry(section, "observer_pole", defaults), f"{where}.observer_pole"),
         reference_min_rad=low,
         reference_max_rad=high,
+        **{name: checks.number(section[name], f"{where}.{name}") for name in ("u_min_V", "u_max_V") if name in section},
     )
 
 

@@ -1,5 +1,6 @@
 """Which loops a plant's law is to close, and which plants have the helicopter's, by the names of their columns."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -52,6 +53,13 @@ def measured_axis(model: Model, loop: Loop) -> Axis | None:
     """The axis whose position the loop measures; None where it measures something else."""
     (measured,) = (expression for output, expression in model.outputs.items() if str(output) == loop.output)
     return next((axis for axis in model.axes if axis.position is not None and axis.position == measured), None)
+
+
+def stops(bound: BoundPlant, loop: Loop) -> tuple[float, float]:
+    """The hard stops of the measured axis [rad], infinite where there are none."""
+    axis = measured_axis(bound.model, loop)
+    low, high = (None, None) if axis is None else (axis.lower, axis.upper)
+    return -math.inf if low is None else bound.number(low), math.inf if high is None else bound.number(high)
 
 
 def missing(bound: BoundPlant) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from design.operating_points import DesignPoints, design_points, rest_V
 from design.report import DesignReport, make_report
 from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
-from design.settings import DesignSettings
+from design.settings import AxisSettings, DesignSettings
 from records.errors import BadInput
 from records.loops import Loop
 from records.plant import plant_digest
@@ -96,7 +96,7 @@ def frame_entries(
 ) -> dict[str, Any]:
     """What every controller's table states of an axis, by field: eq (28) fitted over psi_rad (points,), limits, ranges, encoder step."""
     wishes, loop = settings.axis(axis), settings.loop(axis)
-    u_min_V, u_max_V = limits_V(bound, loop)
+    u_min_V, u_max_V = limits_V(bound, loop, wishes)
     return {
         "feedforward_V": stored_fit(psi_rad, rest_V(bound, equilibria, loop), settings.feedforward_degree),
         "prefilter_time_constant_s": wishes.prefilter_time_constant_s,
@@ -109,13 +109,23 @@ def frame_entries(
     }
 
 
-def limits_V(bound: BoundPlant, loop: Loop) -> tuple[float, float]:
-    """Least and largest voltage of the loop's input; raises BadInput where it has no limit, as then it has no anti-windup either."""
+def limits_V(bound: BoundPlant, loop: Loop, wishes: AxisSettings) -> tuple[float, float]:
+    """Least and largest voltage of the loop's input: the plant's, or narrower ones that are wished for.
+
+    Raises BadInput where it has no limit, as then it has no anti-windup either, and for limits beyond the plant's.
+    """
     (variable,) = (symbol for symbol in bound.model.inputs if symbol.name == loop.input)
-    low, high = bound.limits(variable)
+    least, most = bound.limits(variable)
+    low = least if wishes.u_min_V is None else wishes.u_min_V
+    high = most if wishes.u_max_V is None else wishes.u_max_V
+    where = f"plant {bound.plant.name!r}: {loop.input}"
     if not (math.isfinite(low) and math.isfinite(high)):
-        where = f"plant {bound.plant.name!r}: {loop.input}"
-        raise BadInput("input limits", where, f"{low:g} to {high:g} V", "two numbers", "state them in the equations")
+        remedy = "state them in the equations, or as u_min_V and u_max_V of the loop"
+        raise BadInput("input limits", where, f"{low:g} to {high:g} V", "two numbers", remedy)
+    if not least <= low < high <= most:
+        raise BadInput(
+            "input limits", where, f"{low:g} to {high:g} V", f"within {least:g} to {most:g} V", "narrow them"
+        )
     return low, high
 
 

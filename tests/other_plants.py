@@ -1,5 +1,6 @@
 """Plants that are no helicopter, with wishes for their controllers: what the forward chain is tried on."""
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ from records.plant import load_plant
 from sim.bind import BoundPlant, bind
 
 NEW_PLANT = Path(__file__).parents[1] / "docs" / "new-plant.md"
+PLANTS = Path(__file__).parents[1] / "plants"
 
 AEROSHIELD: dict[str, Any] = {
     "schedule": "theta_rad",
@@ -15,7 +17,7 @@ AEROSHIELD: dict[str, Any] = {
     "theta_max_rad": 0.7,
     "operating_points": 9,
     "coefficient_degree": 2,
-    "arm": {"poles_rad_s": [-4, -5, -9, -12], "prefilter_time_constant_s": 0.2},
+    "arm": {"poles_rad_s": [-4, -5, -9, -12], "prefilter_time_constant_s": 0.35},
 }
 QUANSER: dict[str, Any] = {
     "schedule": "theta_rad",
@@ -26,15 +28,17 @@ QUANSER: dict[str, Any] = {
         "output": "theta_rad",
         "input": "u_M_V",
         "poles_rad_s": [-2, -2.5, -4, -5],
-        "prefilter_time_constant_s": 0.3,
+        "prefilter_time_constant_s": 0.5,
+        "u_min_V": 0.5,
     },
     "yaw": {
         "output": "psi_rad",
         "input": "u_T_V",
         "poles_rad_s": [-1.5, -2, -4, -5],
-        "prefilter_time_constant_s": 0.4,
-        "reference_min_rad": -1.0,
-        "reference_max_rad": 1.0,
+        "prefilter_time_constant_s": 0.6,
+        "reference_min_rad": -0.5,
+        "reference_max_rad": 0.5,
+        "u_min_V": 0.5,
     },
 }
 MOTOR: dict[str, Any] = {
@@ -50,11 +54,13 @@ INVERTED_ARM: dict[str, Any] = {
     "sample_period_s": 0.005,
     "arm": {
         "poles_rad_s": [-3, -6, -9, -12],
-        "prefilter_time_constant_s": 0.2,
+        "prefilter_time_constant_s": 0.6,
         "reference_min_rad": -0.2,
         "reference_max_rad": 0.2,
     },
 }
+
+WISHES = {"aeroshield": AEROSHIELD, "quanser_aero": QUANSER, "motor": MOTOR, "inverted_arm": INVERTED_ARM}
 
 _ARM = '''"""An arm that stands on its hinge, driven by a motor: J theta'' = k u + m g l sin(theta) - b theta'."""
 
@@ -122,3 +128,19 @@ def _arm() -> dict[str, str]:
         f'schema = "plant/1"\nequations = "inverted_arm.py"\n{sections}[sensors.theta_rad]\nresolution_rad = 1.0e-3\n'
     )
     return {"inverted_arm.py": _ARM, "plant.toml": toml}
+
+
+def plant_file(name: str, folder: Path) -> Path:
+    """A plant's file in `folder` with its wishes as [design]: the project's own, or one of those written here."""
+    design = "\n" + _toml(WISHES[name], "design")
+    if name in ("motor", "inverted_arm"):
+        return written_file(name, folder, design)
+    (folder / f"{name}.toml").write_text((PLANTS / f"{name}.toml").read_text() + design)
+    return folder / f"{name}.toml"
+
+
+def _toml(section: dict[str, Any], title: str) -> str:
+    """A table of TOML: its values, then its own tables."""
+    own = "".join(f"{key} = {json.dumps(value)}\n" for key, value in section.items() if not isinstance(value, dict))
+    inner = "".join(_toml(value, f"{title}.{key}") for key, value in section.items() if isinstance(value, dict))
+    return f"[{title}]\n{own}\n{inner}"

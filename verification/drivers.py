@@ -1,6 +1,7 @@
 """C that calls a law of any loops from outside: a template of verification/templates filled with the loops."""
 
 from functools import cache
+from typing import Any
 
 import jinja2
 
@@ -9,9 +10,9 @@ from records.loops import Loop
 from toolchain.host import CText
 
 
-def driver(name: str, loops: tuple[Loop, ...]) -> CText:
-    """The driver `name`, a file of C."""
-    return CText(name, _environment().get_template(f"{name}.j2").render(loops=loops))
+def driver(name: str, loops: tuple[Loop, ...], **further: Any) -> CText:
+    """The driver `name`, a file of C; `further` is what its template takes besides."""
+    return CText(name, _environment().get_template(f"{name}.j2").render(loops=loops, **further))
 
 
 @cache

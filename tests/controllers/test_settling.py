@@ -20,6 +20,7 @@ from sim.loop import fly
 from sim.manoeuvres import Leg, manoeuvre
 from sim.tracking import Tracking, left, longest, settling_s
 from tests.controllers.rows import designed
+from tests.other_plants import AEROSHIELD
 from twinlaw.command import main
 from twinlaw.pages.run.tracking import flight_quality
 
@@ -66,8 +67,11 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
     for row in CONTROLLERS.values():
         assert "ce150" in row.plants
     aeroshield = bind(load_plant(Path("plants/aeroshield.toml")))
-    with pytest.raises(BadInput, match="without the input u_M_V"):
-        read_settings(aeroshield)
+    wished = bind(replace(aeroshield.plant, design=AEROSHIELD))
+    settings = read_settings(wished)
+    for name in set(CONTROLLERS) - {"scheduled"}:
+        with pytest.raises(BadInput, match=r"without the input u_M_V.*this controller"):
+            CONTROLLERS[name].design(wished, settings)
 
 
 def test_a_flight_that_left_its_references_is_told() -> None:
