@@ -10,6 +10,7 @@ from design.schedule import evaluate, schedule_of
 from design.settings import AxisSettings, DesignSettings
 from design.table import axis_law
 from records.errors import BadInput
+from records.loops import LOOPS
 from records.table import AXES, ControllerTable
 from sim.bind import BoundPlant
 from sim.loop import fly_law
@@ -32,8 +33,8 @@ class TradePoint:
 
 
 def trade_off(bound: BoundPlant, settings: DesignSettings, table: ControllerTable) -> tuple[TradePoint, ...]:
-    """The points of FACTORS that can be designed for, from slow to fast; none without a roll-off on both axes."""
-    if not all(settings.axis(axis).roll_off_pole_rad_s for axis in AXES):
+    """The points of FACTORS that can be designed for, from slow to fast; none without a roll-off on both axes of a helicopter."""
+    if settings.loops != LOOPS or not all(settings.axis(axis).roll_off_pole_rad_s for axis in AXES):
         return ()
     points = []
     for factor in FACTORS:
