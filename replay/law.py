@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from codegen.law_constants import AxisConstants, law_constants
 from records.errors import BadInput
 from records.table import AxisLaw, ControllerTable, Schedule, changed_axis
+from sim.kernel.law import is_kernel_s
 from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
@@ -265,7 +266,12 @@ def _law_fields(setup: _Numbers) -> dict[str, Any]:
     number = np.float32 if setup.arithmetic == FLOAT32 else np.float64
     constants = law_constants(setup.table, number)
     gains = setup.prefilter_gains or (None, None)
-    assert constants.schedule is not None
+    if constants.schedule is None or not is_kernel_s(setup.table):
+        got = f"loops {', '.join(loop.axis for loop in setup.table.loops)} of up to {setup.table.order} states"
+        expected = "the helicopter's two of three, which a firmware is run again for"
+        raise BadInput(
+            "controller table", "replay", got, expected, "replay it through twin and C: `twinlaw verify --log`"
+        )
     return {
         "axis": [
             _axis_fields(axis, setup.prefilter_poles, None if gain is None else number(gain))
