@@ -41,7 +41,7 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     for axis in arms:
         _check_stops(bound, axis, positions.get(axis.position, 0.0))
     x = np.array([positions.get(state, 0.0) for state in model.states])
-    commands = np.array([bound.commands(variable) for variable in model.inputs])
+    commands = np.array([bound.commands(variable) for variable in model.inputs]).reshape(-1, 2)
     starts = (commands @ np.array([1.0 - share, share]) for share in STARTS)
     found = next(filter(None, (_solve(bound, *_begin(bound, x, u, positions_rad)) for u in starts)), None)
     if found is None:
