@@ -11,36 +11,8 @@ from sim.bind import BoundPlant, bind
 NEW_PLANT = Path(__file__).parents[1] / "docs" / "new-plant.md"
 PLANTS = Path(__file__).parents[1] / "plants"
 
-AEROSHIELD: dict[str, Any] = {
-    "schedule": "theta_rad",
-    "theta_min_rad": 0.1,
-    "theta_max_rad": 0.7,
-    "operating_points": 9,
-    "coefficient_degree": 2,
-    "arm": {"poles_rad_s": [-4, -5, -9, -12], "prefilter_time_constant_s": 0.35},
-}
-QUANSER: dict[str, Any] = {
-    "schedule": "theta_rad",
-    "theta_min_rad": 0.1,
-    "theta_max_rad": 0.5,
-    "operating_points": 9,
-    "pitch": {
-        "output": "theta_rad",
-        "input": "u_M_V",
-        "poles_rad_s": [-2, -2.5, -4, -5],
-        "prefilter_time_constant_s": 0.5,
-        "u_min_V": 0.5,
-    },
-    "yaw": {
-        "output": "psi_rad",
-        "input": "u_T_V",
-        "poles_rad_s": [-1.5, -2, -4, -5],
-        "prefilter_time_constant_s": 0.6,
-        "reference_min_rad": -0.5,
-        "reference_max_rad": 0.5,
-        "u_min_V": 0.5,
-    },
-}
+# The project's own files say what is wished for.
+AEROSHIELD, QUANSER = (dict(load_plant(PLANTS / f"{name}.toml").design) for name in ("aeroshield", "quanser_aero"))
 MOTOR: dict[str, Any] = {
     "sample_period_s": 0.001,
     "shaft": {
@@ -131,12 +103,10 @@ def _arm() -> dict[str, str]:
 
 
 def plant_file(name: str, folder: Path) -> Path:
-    """A plant's file in `folder` with its wishes as [design]: the project's own, or one of those written here."""
-    design = "\n" + _toml(WISHES[name], "design")
-    if name in ("motor", "inverted_arm"):
-        return written_file(name, folder, design)
-    (folder / f"{name}.toml").write_text((PLANTS / f"{name}.toml").read_text() + design)
-    return folder / f"{name}.toml"
+    """A plant's file: the project's own, or one of those written here, in `folder`, with its wishes as [design]."""
+    if name not in ("motor", "inverted_arm"):
+        return PLANTS / f"{name}.toml"
+    return written_file(name, folder, "\n" + _toml(WISHES[name], "design"))
 
 
 def _toml(section: dict[str, Any], title: str) -> str:

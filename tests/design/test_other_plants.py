@@ -56,6 +56,18 @@ def test_the_other_pairing_of_these_rotors_is_refused_by_its_relative_gain() -> 
         designed(plant("quanser_aero"), exchanged)
 
 
+def test_a_helicopter_whose_rotors_turn_both_axes_is_refused_by_its_relative_gain() -> None:
+    """Truth: the coupled loop has a pole at +1.8 rad/s there, with each axis' own margins in order; two rotor lags make four states."""
+    poles = {
+        "elevation": {"poles_rad_s": [-3, -4.5, -8, -10, -12, -15, -16, -20]},
+        "azimuth": {"poles_rad_s": [-2.5, -3, -4, -4.5, -5, -7, -20, -24]},
+    }
+    with pytest.raises(
+        BadInput, match=r"elevation at psi = -35\.0 deg: relative gain from u_M_V to psi_rad: got -1\.14"
+    ):
+        designed(plant("ce150_velagic"), {**poles, "coefficient_degree": 4})
+
+
 def test_loops_whose_coupling_leaves_no_margin_are_refused_in_words() -> None:
     tight = {**QUANSER, "margins": {"max_sensitivity": 2.0}}
     with pytest.raises(BadInput, match=r"coupled margin.*with the other loops closed"):
