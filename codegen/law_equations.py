@@ -114,16 +114,14 @@ def moved(state: Any, e_rad: tuple[Any, ...], q_V_rad: Sequence[Any], p: Sequenc
 
     None leaves a term out; an axis may have fewer coefficients than the state has differences.
     """
-    terms = [(c, e, +1) for c, e in zip(q_V_rad, e_rad, strict=False)]
+    terms = [(c, e, True) for c, e in zip(q_V_rad, e_rad, strict=False)]
     for coefficients, names in ((p, state.S), (a, state.W)):
-        terms += [
-            (c, getattr(state, name), -1 if index == 0 else +1)
-            for index, (c, name) in enumerate(zip(coefficients, names, strict=False))
-        ]
-    products = [(c * x, sign) for c, x, sign in terms if c is not None]
+        pairs = zip(coefficients, names, strict=False)
+        terms += [(c, getattr(state, name), index > 0) for index, (c, name) in enumerate(pairs)]
+    products = [(c * x, is_added) for c, x, is_added in terms if c is not None]
     move_V = products[0][0]
-    for product_V, sign in products[1:]:
-        move_V = move_V + product_V if sign > 0 else move_V - product_V
+    for product_V, is_added in products[1:]:
+        move_V = move_V + product_V if is_added else move_V - product_V
     return move_V
 
 
