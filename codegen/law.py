@@ -10,16 +10,17 @@ import numpy as np
 
 from codegen.fixed.context import fixed_context
 from codegen.fixed.twin import FixedTwin
-from codegen.law_equations import AXIS_STATE_FIELDS, LAST_ACCEPTED_FIELDS
-from codegen.law_frame import without_vanishing_powers
-from codegen.law_terms import PREFIXES, UNITS, array_name, coefficients
+from codegen.law_equations import axis_state
+from codegen.law_frame import last_accepted, schedule_ranges, without_vanishing_powers
+from codegen.law_terms import UNITS, Names, array_name, coefficients
 from codegen.numbers import c_float32
 from codegen.operations import operation_count
-from codegen.self_test import self_test
+from codegen.self_test import SelfTest, self_test
 from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.table import AXES, LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.loops import Loop
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
 ARITHMETIC_CODES = {"float32": 0, "fixed": 1}
 
@@ -46,11 +47,13 @@ class Term:
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis as the template sees it; `angle` and `voltage` are the prefixes of its limits in law.h."""
+    """One axis as the template sees it: its names, its numbers in the table, and the C expressions made of them."""
 
-    name: str
+    loop: Loop
     angle: str
     voltage: str
+    suffix: str
+    numbers: Any
     filter: str
     prefilter_gain: float
     prefilter_time_constant_s: float
@@ -58,9 +61,25 @@ class Axis:
     terms: tuple[Term, ...]
 
     @property
+    def name(self) -> str:
+        """The loop's."""
+        return self.loop.axis
+
+    @property
     def scheduled(self) -> bool:
-        """True when any coefficient varies with psi."""
+        """True when any coefficient varies with the scheduling angle."""
         return any("schedule_rad" in term.value for term in self.terms)
+
+
+@dataclass(frozen=True)
+class ScheduleNames:
+    """The scheduling angle as the template sees it: its axis, its symbol, the prefix of its limits, and these [rad]."""
+
+    axis: str
+    symbol: str
+    angle: str
+    min_rad: float
+    max_rad: float
 
 
 def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
@@ -120,22 +139,34 @@ def shared_context(table: FlownTable, arithmetic: str) -> dict[str, Any]:
         "sample_period_us": round(table.sample_period_s * 1e6),
         "pwm_ticks": PWM_TICKS,
         "full_scale_V": FULL_SCALE_V,
+        "loops": table.loops,
+        "whose": {1: f"the {table.loops[0].axis}", 2: "both axes"}.get(len(table.loops), "all axes"),
+        "schedule": _schedule_names(table),
+        "last_accepted_fields": last_accepted(table.loops),
     }
 
 
-def frame_context(table: Any, axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
+def _schedule_names(table: FlownTable) -> ScheduleNames | None:
+    schedule = table.schedule
+    if schedule is None:
+        return None
+    loop = table.loops[table.index(schedule.axis)]
+    return ScheduleNames(loop.axis, loop.symbol, Names(loop).angle, schedule.min_rad, schedule.max_rad)
+
+
+def test_context(table: FlownTable, test: SelfTest) -> dict[str, Any]:
+    """What law_self_test.c.j2 takes besides."""
+    return {"test": test, "tested": list(zip(table.loops, test.loops, strict=True))}
+
+
+def frame_context(axes: Sequence[Axis], axis_state_fields: Sequence[str]) -> dict[str, Any]:
     """What law_frame.c.j2 takes of the table of any float32 law."""
     return {
         "half_ticks_per_V": 2.0 * PWM_TICKS / FULL_SCALE_V,
         "plausible_V": PLAUSIBLE_V,
         "least_schedule_rad": LEAST_SCHEDULE_RAD,
-        "psi_min_rad": table.psi_min_rad,
-        "psi_max_rad": table.psi_max_rad,
-        "elevation": table.elevation,
-        "azimuth": table.azimuth,
         "axis_state_fields": axis_state_fields,
         "axis_state_note": "",
-        "last_accepted_fields": LAST_ACCEPTED_FIELDS,
         "axes": axes,
         "filters": {axis.filter for axis in axes},
     }
@@ -143,19 +174,21 @@ def frame_context(table: Any, axes: Sequence[Axis], axis_state_fields: Sequence[
 
 def _float32_context(table: ControllerTable) -> dict[str, Any]:
     count = operation_count(table)  # refuses an unusable table before anything is made from it
-    arrays = tuple(array for name in AXES for array in _arrays(table, name))
-    axes = tuple(frame_axis(table, name, tuple(_terms(name, table.axis(name)))) for name in AXES)
-    return frame_context(table, axes, AXIS_STATE_FIELDS) | {
+    arrays = tuple(array for loop in table.loops for array in _arrays(table, loop.axis))
+    axes = tuple(frame_axis(table, loop, tuple(_terms(loop.axis, table.axis(loop.axis)))) for loop in table.loops)
+    return {
+        **frame_context(axes, tuple(axis_state(table.order).__dataclass_fields__)),
         "axis_state_note": "; the index is the power of delta = 1 - z^-1",
+        "powers": list(range(table.order + 1)),
         "arrays": arrays,
         "degrees": sorted({len(array.coefficients) - 1 for array in arrays} - {0}),
         "operations": f"{count.products} products, {count.sums} sums a step.",
-        "test": self_test(table, Float32Twin(table)),
+        **test_context(table, self_test(table, Float32Twin(table))),
     }
 
 
 def _fixed_context(table: ControllerTable) -> dict[str, Any]:
-    return {**fixed_context(table), "test": self_test(table, FixedTwin(table))}
+    return {**fixed_context(table), **test_context(table, self_test(table, FixedTwin(table)))}
 
 
 _CONTEXTS = {"float32": _float32_context, "fixed": _fixed_context}
@@ -165,21 +198,27 @@ _TEMPLATES = {
 }
 
 
-def frame_axis(table: Any, name: str, terms: tuple[Term, ...] = ()) -> Axis:
+def frame_axis(table: FlownTable, loop: Loop, terms: tuple[Term, ...] = ()) -> Axis:
     """One axis of any float32 table as the frame's template sees it."""
-    axis = table.axis(name)
-    angle, voltage = PREFIXES[name]
+    axis, names = table.axis(loop.axis), Names(loop)
     time_constant_s = axis.prefilter_time_constant_s
     return Axis(
-        name=name,
-        angle=angle,
-        voltage=voltage,
+        loop=loop,
+        angle=names.angle,
+        voltage=names.voltage,
+        suffix=names.suffix,
+        numbers=axis,
         filter="take_reference" if time_constant_s == 0.0 else "prefilter",
         prefilter_gain=axis.prefilter_gain(table.sample_period_s),
         prefilter_time_constant_s=time_constant_s,
-        feedforward=_value(array_name(name, "u_ff_V"), axis.feedforward_V, "self->elevation.reference_2_rad"),
+        feedforward=_value(array_name(loop.axis, "u_ff_V"), axis.feedforward_V, region_text(table)),
         terms=terms,
     )
+
+
+def region_text(table: FlownTable) -> str:
+    """The C expression of the filtered reference of the scheduling angle, which the feed-forward is of."""
+    return "0.0f" if table.schedule is None else f"self->{table.schedule.axis}.reference_2_rad"
 
 
 def _terms(name: str, law: AxisLaw) -> list[Term]:
@@ -195,9 +234,8 @@ def _terms(name: str, law: AxisLaw) -> list[Term]:
 
 def _arrays(table: ControllerTable, name: str) -> list[Array]:
     law = table.axis(name)
-    psi_rad = (table.psi_min_rad, table.psi_max_rad)
-    named = [(array_name(name, entry.name), entry.polynomial, entry.unit, psi_rad) for entry in coefficients(law)]
-    reference_rad = (table.elevation.reference_min_rad, table.elevation.reference_max_rad)
+    over_rad, reference_rad = schedule_ranges(table)
+    named = [(array_name(name, entry.name), entry.polynomial, entry.unit, over_rad) for entry in coefficients(law)]
     named.append((array_name(name, "u_ff_V"), law.feedforward_V, UNITS["u_ff"], reference_rad))
     return [
         Array(array, without_vanishing_powers(polynomial), unit, _range_text(polynomial, over_rad))

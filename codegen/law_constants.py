@@ -34,10 +34,9 @@ class AxisConstants(AxisFrame[N]):
 
 @dataclass(frozen=True)
 class LawConstants(LawNumbers[N]):
-    """Numbers of both axes of the scheduled law."""
+    """Numbers of all axes of the scheduled law, and the most states of any."""
 
-    elevation: AxisConstants[N]
-    azimuth: AxisConstants[N]
+    order: int
 
 
 def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawConstants[N]:
@@ -47,10 +46,8 @@ def law_constants(table: ControllerTable, number: Callable[[float], N]) -> LawCo
     or voltages beyond PLAUSIBLE_V (so beyond float32's range as well) within reach.
     """
     _refuse_unusable(table)
-    elevation, azimuth = (
-        _axis_constants(axis, table.sample_period_s, number) for axis in (table.elevation, table.azimuth)
-    )
-    return LawConstants(elevation=elevation, azimuth=azimuth, **range_numbers(table, number))
+    axes = tuple(_axis_constants(axis, table.sample_period_s, number) for axis in table.axes)
+    return LawConstants(axes=axes, order=table.order, **range_numbers(table, number))
 
 
 def _axis_constants(axis: AxisLaw, sample_period_s: float, number: Callable[[float], N]) -> AxisConstants[N]:
@@ -75,20 +72,32 @@ def _refuse_unusable(table: ControllerTable) -> None:
             "whole microseconds, as the board's timer counts them",
             "choose another sample period and design the table again",
         )
-    for name, axis in (("elevation", table.elevation), ("azimuth", table.azimuth)):
-        psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
-        gains = [polynomial_bound(polynomial, psi_rad) for polynomial in axis.q_V_rad]
-        if not any(gains):
-            raise _unusable(name, "every q is zero", "an axis with feedback")
-        # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
-        span_V = axis.u_max_V - axis.u_min_V
-        feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
-        recursion = sum(polynomial_bound(p, psi_rad) * 2.0**power for power, p in enumerate(axis.p))
-        recursion_V = (recursion + 4.0 * sum(map(abs, axis.a))) * span_V
-        reference_rad = max(abs(table.elevation.reference_min_rad), abs(table.elevation.reference_max_rad))
-        reached_V = feedback_V + recursion_V + span_V + polynomial_bound(axis.feedforward_V, reference_rad)
-        if not reached_V < PLAUSIBLE_V:
-            raise _unusable(name, f"voltages of up to {reached_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
+    for loop, axis in zip(table.loops, table.axes, strict=True):
+        _refuse_unusable_axis(table, loop.axis, axis)
+
+
+def _refuse_unusable_axis(table: ControllerTable, name: str, axis: AxisLaw) -> None:
+    polynomials = (*axis.q_V_rad, *axis.p, axis.feedforward_V)
+    if table.schedule is None and any(len(without_vanishing_powers(row)) > 1 for row in polynomials):
+        raise _unusable(name, "coefficients that vary without a schedule", "constants, or a scheduling angle")
+    psi_rad = table.widest_schedule_rad
+    gains = [polynomial_bound(polynomial, psi_rad) for polynomial in axis.q_V_rad]
+    if not any(gains):
+        raise _unusable(name, "every q is zero", "an axis with feedback")
+    # delta^i of an error within +-W reaches 2^i W; s and w stay within the span of the limits.
+    span_V = axis.u_max_V - axis.u_min_V
+    feedback_V = sum(gain * 2.0**power * WIDEST_ERROR_RAD for power, gain in enumerate(gains))
+    recursion = sum(polynomial_bound(p, psi_rad) * 2.0**power for power, p in enumerate(axis.p))
+    recursion_V = (recursion + 2.0 ** (axis.order - 1) * sum(map(abs, axis.a))) * span_V
+    reached_V = feedback_V + recursion_V + span_V + polynomial_bound(axis.feedforward_V, widest_region_rad(table))
+    if not reached_V < PLAUSIBLE_V:
+        raise _unusable(name, f"voltages of up to {reached_V:.3g} V", f"less than {PLAUSIBLE_V:g} V")
+
+
+def widest_region_rad(table: ControllerTable) -> float:
+    """The largest reference of the scheduling angle, which the feed-forward is of; 0 without a schedule."""
+    axis = table.scheduled
+    return 0.0 if axis is None else max(abs(axis.reference_min_rad), abs(axis.reference_max_rad))
 
 
 def _unusable(axis: str, got: str, expected: str) -> BadInput:

@@ -4,13 +4,14 @@ Functions, names, and the order of every operation are those of templates/law_fr
 few decisions. Numbers are `N`: Python floats make a float law, NumPy float32 its exact twin, balls with errors a proof.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, Polynomial
+from records.loops import Loop
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, Polynomial, Table
 
 N = TypeVar("N")
 
@@ -42,35 +43,30 @@ class Arithmetic(Protocol[N]):
 
 @dataclass(frozen=True)
 class LawState(Generic[N]):
-    """Both axes and the last accepted measurements and references."""
+    """What each axis remembers, and the last accepted measurements and references, all in the order of the table's loops."""
 
-    elevation: Any
-    azimuth: Any
-    psi_rad: N
-    phi_rad: N
-    psi_ref_rad: N
-    phi_ref_rad: N
+    axes: tuple[Any, ...]
+    angles_rad: tuple[N, ...]
+    references_rad: tuple[N, ...]
 
 
 @dataclass(frozen=True)
 class LawInput(Generic[N]):
-    """References and measured angles of one step."""
+    """References and measured angles of one step, in the order of the table's loops."""
 
-    psi_ref_rad: N
-    phi_ref_rad: N
-    psi_rad: N
-    phi_rad: N
+    references_rad: tuple[N, ...]
+    angles_rad: tuple[N, ...]
 
-
-@dataclass(frozen=True)
-class LawOutput(Generic[N]):
-    """Voltages of one step, within their limits."""
-
-    u_M_V: N
-    u_T_V: N
+    @classmethod
+    def of(cls, numbers: Sequence[N]) -> "LawInput[N]":
+        """From the references, then the angles, of all loops."""
+        count = len(numbers) // 2
+        return cls(tuple(numbers[:count]), tuple(numbers[count:]))
 
 
-LAST_ACCEPTED_FIELDS = tuple(field.name for field in fields(LawState))[2:]
+def last_accepted(loops: tuple[Loop, ...]) -> tuple[str, ...]:
+    """The names in the C of what a state holds besides its axes."""
+    return (*(loop.output for loop in loops), *(loop.reference for loop in loops))
 
 
 @dataclass(frozen=True)
@@ -87,13 +83,20 @@ class AxisFrame(Generic[N]):
 
 
 @dataclass(frozen=True)
-class LawNumbers(Generic[N]):
-    """Numbers of both axes, the scheduling range and its least angle [rad], zero and the plausible feedback voltage [V]."""
+class ScheduleNumbers(Generic[N]):
+    """Which loop's angle the coefficients are of, and its range [rad]."""
 
-    elevation: Any
-    azimuth: Any
-    psi_min_rad: N
-    psi_max_rad: N
+    index: int
+    min_rad: N
+    max_rad: N
+
+
+@dataclass(frozen=True)
+class LawNumbers(Generic[N]):
+    """Numbers of all axes, the schedule and its least angle [rad], zero and the plausible feedback voltage [V]."""
+
+    axes: tuple[Any, ...]
+    schedule: ScheduleNumbers[N] | None
     least_schedule_rad: N
     zero: N
     plausible_V: N
@@ -101,7 +104,7 @@ class LawNumbers(Generic[N]):
 
 @dataclass(frozen=True)
 class Sample(Generic[N]):
-    """What one axis is given in one sample: accepted angle, scheduling elevation, filtered elevation reference, feed-forward."""
+    """What one axis is given in one sample: accepted angle, scheduling angle, its filtered reference, feed-forward."""
 
     angle_rad: N
     schedule_rad: N
@@ -139,15 +142,30 @@ def frame_numbers(axis: Any, sample_period_s: float, number: Callable[[float], N
     }
 
 
-def range_numbers(table: Any, number: Callable[[float], N]) -> dict[str, Any]:
+def range_numbers(table: Table[Any], number: Callable[[float], N]) -> dict[str, Any]:
     """The fields of LawNumbers besides its axes."""
     return {
-        "psi_min_rad": number(table.psi_min_rad),
-        "psi_max_rad": number(table.psi_max_rad),
+        "schedule": schedule_numbers(table, number),
         "least_schedule_rad": number(LEAST_SCHEDULE_RAD),
         "zero": number(0.0),
         "plausible_V": number(PLAUSIBLE_V),
     }
+
+
+def schedule_numbers(table: Table[Any], number: Callable[[float], N]) -> ScheduleNumbers[N] | None:
+    """The schedule's numbers; None without one."""
+    schedule = table.schedule
+    if schedule is None:
+        return None
+    return ScheduleNumbers(table.index(schedule.axis), number(schedule.min_rad), number(schedule.max_rad))
+
+
+def schedule_ranges(table: Table[Any]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The ranges of the scheduling angle and of its reference [rad]."""
+    schedule, axis = table.schedule, table.scheduled
+    if schedule is None or axis is None:
+        return (0.0, 0.0), (0.0, 0.0)
+    return (schedule.min_rad, schedule.max_rad), (axis.reference_min_rad, axis.reference_max_rad)
 
 
 def without_vanishing_powers(polynomial: Polynomial) -> Polynomial:
@@ -161,62 +179,78 @@ def polynomial_bound(polynomial: Polynomial, widest: float) -> float:
     return sum(abs(c) * widest**power for power, c in enumerate(polynomial))
 
 
-def state_of_words(words: Any, axis_state: Callable[..., Any]) -> LawState[Any]:
+def state_of_words(words: Any, axis_state: Callable[..., Any], loops: int) -> LawState[Any]:
     """A state from its numbers in the order of the C structure, for axes that remember an `axis_state`; `words[i]` is number i."""
     count = len(fields(axis_state))  # type: ignore[arg-type]
-    return LawState(
-        axis_state(*(words[index] for index in range(count))),
-        axis_state(*(words[index] for index in range(count, 2 * count))),
-        *(words[index] for index in range(2 * count, 2 * count + len(LAST_ACCEPTED_FIELDS))),
+    axes = tuple(axis_state(*(words[at + index] for index in range(count))) for at in range(0, loops * count, count))
+    angles, references = (
+        tuple(words[at + index] for index in range(loops)) for at in (loops * count, loops * (count + 1))
     )
+    return LawState(axes, angles, references)
+
+
+def state_size(axis_state: Callable[..., Any], loops: int) -> int:
+    """Numbers of such a state."""
+    return loops * (len(fields(axis_state)) + 2)  # type: ignore[arg-type]
 
 
 def words_from_state(state: LawState[N]) -> Iterator[N]:
     """The numbers of a state in the order of the C structure."""
-    for axis in (state.elevation, state.azimuth):
+    for axis in state.axes:
         yield from (getattr(axis, field.name) for field in fields(axis))
-    yield from (getattr(state, name) for name in LAST_ACCEPTED_FIELDS)
+    yield from (*state.angles_rad, *state.references_rad)
 
 
 def law_reset(
-    equations: AxisEquations, law: LawNumbers[N], arithmetic: Arithmetic[N], psi_rad: N, phi_rad: N
+    equations: AxisEquations, law: LawNumbers[N], arithmetic: Arithmetic[N], angles_rad: Sequence[N]
 ) -> LawState[N]:
     """The state at rest at these angles: the reference filters start there, the feedback at zero."""
-    psi_rad = arithmetic.finite_or(psi_rad, law.zero)
-    phi_rad = arithmetic.finite_or(phi_rad, law.zero)
-    schedule_rad = scheduled(law, arithmetic, psi_rad)
-    elevation = _at_rest(equations, law, law.elevation, arithmetic, psi_rad, schedule_rad)
-    azimuth = _at_rest(equations, law, law.azimuth, arithmetic, phi_rad, schedule_rad)
-    return LawState(elevation, azimuth, psi_rad, phi_rad, elevation.reference_2_rad, azimuth.reference_2_rad)
+    accepted_rad = tuple(arithmetic.finite_or(angle_rad, law.zero) for angle_rad in angles_rad)
+    schedule_rad = scheduled(law, arithmetic, accepted_rad)
+    axes = tuple(
+        _at_rest(equations, law, axis, arithmetic, angle_rad, schedule_rad)
+        for axis, angle_rad in zip(law.axes, accepted_rad, strict=True)
+    )
+    return LawState(axes, accepted_rad, tuple(axis.reference_2_rad for axis in axes))
 
 
 def law_step(
     equations: AxisEquations, law: LawNumbers[N], arithmetic: Arithmetic[N], state: LawState[N], given: LawInput[N]
-) -> tuple[LawState[N], LawOutput[N]]:
-    """One sample of both axes: the new state and the limited voltages."""
-    psi_rad = arithmetic.finite_or(given.psi_rad, state.psi_rad)
-    phi_rad = arithmetic.finite_or(given.phi_rad, state.phi_rad)
-    psi_ref_rad = arithmetic.finite_or(given.psi_ref_rad, state.psi_ref_rad)
-    phi_ref_rad = arithmetic.finite_or(given.phi_ref_rad, state.phi_ref_rad)
-    schedule_rad = scheduled(law, arithmetic, psi_rad)
-
-    elevation = prefilter(law.elevation, arithmetic, state.elevation, psi_ref_rad)
-    azimuth = prefilter(law.azimuth, arithmetic, state.azimuth, phi_ref_rad)
-    region_rad = elevation.reference_2_rad
-    u_M_ff_V = polynomial(law.elevation.feedforward_V, region_rad, law.zero)
-    u_T_ff_V = polynomial(law.azimuth.feedforward_V, region_rad, law.zero)
-
-    step = equations.axis_step
-    psi = Sample(psi_rad, schedule_rad, region_rad, u_M_ff_V)
-    phi = Sample(phi_rad, schedule_rad, region_rad, u_T_ff_V)
-    elevation, u_M_V = step(law, law.elevation, arithmetic, elevation, psi)
-    azimuth, u_T_V = step(law, law.azimuth, arithmetic, azimuth, phi)
-    return LawState(elevation, azimuth, psi_rad, phi_rad, psi_ref_rad, phi_ref_rad), LawOutput(u_M_V, u_T_V)
+) -> tuple[LawState[N], tuple[N, ...]]:
+    """One sample of all axes: the new state and the limited voltages."""
+    angles_rad = _accepted(arithmetic, given.angles_rad, state.angles_rad)
+    references_rad = _accepted(arithmetic, given.references_rad, state.references_rad)
+    schedule_rad = scheduled(law, arithmetic, angles_rad)
+    filtered = [
+        prefilter(axis, arithmetic, remembered, reference_rad)
+        for axis, remembered, reference_rad in zip(law.axes, state.axes, references_rad, strict=True)
+    ]
+    region_rad = region(law, filtered)
+    feedforwards_V = [polynomial(axis.feedforward_V, region_rad, law.zero) for axis in law.axes]
+    stepped = [
+        equations.axis_step(law, axis, arithmetic, remembered, Sample(angle_rad, schedule_rad, region_rad, u_ff_V))
+        for axis, remembered, angle_rad, u_ff_V in zip(law.axes, filtered, angles_rad, feedforwards_V, strict=True)
+    ]
+    axes, voltages_V = zip(*stepped, strict=True)
+    return LawState(axes, angles_rad, references_rad), voltages_V
 
 
-def scheduled(law: LawNumbers[N], arithmetic: Arithmetic[N], psi_rad: N) -> N:
-    """The elevation that the coefficients are of: within the schedule's range, zero where next to it."""
-    return arithmetic.settle(arithmetic.clamp(psi_rad, law.psi_min_rad, law.psi_max_rad), law.least_schedule_rad)
+def _accepted(arithmetic: Arithmetic[N], values: Sequence[N], last: Sequence[N]) -> tuple[N, ...]:
+    return tuple(arithmetic.finite_or(value, before) for value, before in zip(values, last, strict=True))
+
+
+def scheduled(law: LawNumbers[N], arithmetic: Arithmetic[N], angles_rad: Sequence[N]) -> N:
+    """The angle that the coefficients are of: within the schedule's range, zero where next to it, or without a schedule."""
+    schedule = law.schedule
+    if schedule is None:
+        return law.zero
+    held_rad = arithmetic.clamp(angles_rad[schedule.index], schedule.min_rad, schedule.max_rad)
+    return arithmetic.settle(held_rad, law.least_schedule_rad)
+
+
+def region(law: LawNumbers[N], filtered: Sequence[Any]) -> Any:
+    """The filtered reference of the scheduling angle, which the feed-forward is of; zero without a schedule."""
+    return law.zero if law.schedule is None else filtered[law.schedule.index].reference_2_rad
 
 
 def prefilter(axis: AxisFrame[N], arithmetic: Arithmetic[N], state: Any, reference_rad: N) -> Any:

@@ -3,22 +3,17 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from records.loops import Loop
 from records.table import AxisLaw, Polynomial
 
-# What each coefficient multiplies, by the power of delta: the error, s and w (records/table.py).
-FACTORS: Mapping[str, tuple[str, ...]] = {
-    "q": ("e_0_rad", "e_1_rad", "e_2_rad", "e_3_rad"),
-    "p": ("s_0_V", "s_1_V", "s_2_V", "s_3_V"),
-    "a": ("w_0_V", "w_1_V", "w_2_V"),
-}
+# What each letter's coefficients multiply, by the power of delta: the error, s and w (records/table.py).
+FACTORS: Mapping[str, str] = {"q": "e_{}_rad", "p": "s_{}_V", "a": "w_{}_V"}
 UNITS: Mapping[str, str] = {"q": "V/rad", "p": "1", "a": "1", "u_ff": "V"}
-# The prefixes of an axis' angle and voltage in the C's names.
-PREFIXES: Mapping[str, tuple[str, str]] = {"elevation": ("PSI", "U_M"), "azimuth": ("PHI", "U_T")}
 
 
 @dataclass(frozen=True)
 class Coefficient:
-    """One coefficient of v's move, a polynomial in the elevation [rad] in ascending powers.
+    """One coefficient of v's move, a polynomial in the scheduling angle [rad] in ascending powers.
 
     `letter` is q, p or a of records/table.py, `index` the power of delta that it belongs to.
     """
@@ -40,7 +35,7 @@ class Coefficient:
     @property
     def factor(self) -> str:
         """What it multiplies."""
-        return FACTORS[self.letter][self.index]
+        return FACTORS[self.letter].format(self.index)
 
     @property
     def unit(self) -> str:
@@ -57,3 +52,26 @@ def coefficients(law: AxisLaw) -> tuple[Coefficient, ...]:
 def array_name(axis: str, coefficient: str) -> str:
     """The C array of a coefficient or of the feed-forward: elevation_q_0_V_rad, azimuth_p_1, elevation_u_ff_V."""
     return f"{axis}_{coefficient}_V_rad" if coefficient.startswith("q_") else f"{axis}_{coefficient}"
+
+
+@dataclass(frozen=True)
+class Names:
+    """A loop's names in the C: the prefixes of its angle's and its voltage's macros, and what tells its voltages' variables apart."""
+
+    loop: Loop
+
+    @property
+    def angle(self) -> str:
+        """PSI"""
+        return self.loop.symbol.upper()
+
+    @property
+    def voltage(self) -> str:
+        """U_M"""
+        return self.loop.voltage.upper()
+
+    @property
+    def suffix(self) -> str:
+        """_M of u_M; nothing of u alone."""
+        name = self.loop.voltage.removeprefix("u")
+        return name if name.startswith("_") or not name else f"_{name}"

@@ -3,13 +3,14 @@
 from dataclasses import dataclass, field
 
 from codegen.law_constants import law_constants
-from codegen.law_equations import STATE_WORDS, LawInput, law_step, state_from_words
+from codegen.law_equations import law_step, state_from_words, state_words
+from codegen.law_frame import LawInput
 from records.table import ControllerTable
 
 
 @dataclass
 class OperationCount:
-    """Products and sums (differences included) of one step of both axes, in the unsaturated and the saturated case alike."""
+    """Products and sums (differences included) of one step of all axes, in the unsaturated and the saturated case alike."""
 
     products: int = 0
     sums: int = 0
@@ -60,5 +61,6 @@ def operation_count(table: ControllerTable) -> OperationCount:
     count = OperationCount()
     number = _Counted(count)
     law = law_constants(table, lambda _: number)
-    law_step(law, _NoDecisions(), state_from_words([number] * STATE_WORDS), LawInput(number, number, number, number))
+    state = state_from_words(table, [number] * state_words(table))
+    law_step(law, _NoDecisions(), state, LawInput.of([number] * (2 * len(table.loops))))
     return count

@@ -1,6 +1,6 @@
 """The fixed sequence of the emitted self-test, and what the twin answers to it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import nan
 from typing import Protocol, SupportsFloat
@@ -16,7 +16,15 @@ INCREMENT = 1013904223
 WIDEST_SPAN_COUNTS = 30000
 MOVE_RAD = 0.02
 
-Given = tuple[float, float, float, float]
+
+@dataclass(frozen=True)
+class LoopTest:
+    """Of one loop: how far its counts wander, by how many at a time, and the expected bits of its first and last voltage."""
+
+    span_counts: int
+    move_counts: int
+    first: int
+    last: int
 
 
 @dataclass(frozen=True)
@@ -29,12 +37,7 @@ class SelfTest:
     seed: int
     multiplier: int
     increment: int
-    psi_span_counts: int
-    phi_span_counts: int
-    psi_move_counts: int
-    phi_move_counts: int
-    first: tuple[int, int]
-    last: tuple[int, int]
+    loops: tuple[LoopTest, ...]
     checksum: int
     missing: int
 
@@ -42,23 +45,17 @@ class SelfTest:
 class Twin(Protocol):
     """What the self-test asks of a twin; angles and voltages in rad and V, exactly what their words stand for."""
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start at rest at these angles."""
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample: u_M_V, u_T_V."""
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles: the voltages."""
 
-    def angle_from_counts_psi(self, counts: int) -> SupportsFloat:
-        """Elevation [rad] of an encoder count."""
+    def angle_from_counts(self, loop: int, counts: int) -> SupportsFloat:
+        """Angle [rad] of an encoder count of the loop at this place."""
 
-    def angle_from_counts_phi(self, counts: int) -> SupportsFloat:
-        """Azimuth [rad] of an encoder count."""
-
-    def duty_main(self, u_V: float) -> int:
-        """Signed PWM ticks of the main rotor's voltage."""
-
-    def duty_tail(self, u_V: float) -> int:
-        """Signed PWM ticks of the tail rotor's voltage."""
+    def duty(self, loop: int, u_V: float) -> int:
+        """Signed PWM ticks of a voltage of the loop at this place."""
 
     def voltage_word(self, u_V: float) -> int:
         """The 32 bits of a voltage."""
@@ -70,10 +67,10 @@ class Twin(Protocol):
 
 def self_test(table: FlownTable, twin: Twin) -> SelfTest:
     """The self-test of `table`, its expected results computed by the twin of the arithmetic in question."""
-    twin.reset(0.0, 0.0)
-    spans = (_span(table.elevation), _span(table.azimuth))
-    moves = (_move(table.elevation), _move(table.azimuth))
+    twin.reset(*[0.0] * len(table.loops))
+    spans, moves = [_span(axis) for axis in table.axes], [_move(axis) for axis in table.axes]
     outputs = [twin.step(*given) for given in _sequence(twin, spans, moves)]
+    ends = zip(*([twin.voltage_word(u_V) for u_V in outputs[step]] for step in (0, -1)), strict=True)
     return SelfTest(
         steps=STEPS,
         reference_every=REFERENCE_EVERY,
@@ -81,22 +78,17 @@ def self_test(table: FlownTable, twin: Twin) -> SelfTest:
         seed=SEED,
         multiplier=MULTIPLIER,
         increment=INCREMENT,
-        psi_span_counts=spans[0],
-        phi_span_counts=spans[1],
-        psi_move_counts=moves[0],
-        phi_move_counts=moves[1],
-        first=(twin.voltage_word(outputs[0][0]), twin.voltage_word(outputs[0][1])),
-        last=(twin.voltage_word(outputs[-1][0]), twin.voltage_word(outputs[-1][1])),
+        loops=tuple(LoopTest(span, move, *words) for span, move, words in zip(spans, moves, ends, strict=True)),
         checksum=_checksum(twin, outputs),
         missing=twin.missing_word,
     )
 
 
-def _sequence(twin: Twin, spans: tuple[int, int], moves: tuple[int, int]) -> Iterator[Given]:
-    """References and angles, number by number as in law_self_test.c."""
+def _sequence(twin: Twin, spans: Sequence[int], moves: Sequence[int]) -> Iterator[tuple[float, ...]]:
+    """References and angles, number by number as in law_self_test.c; the measurement that is missing is the first loop's."""
     seed = SEED
-    psi_counts = phi_counts = 0
-    references: tuple[SupportsFloat, SupportsFloat] = (0.0, 0.0)
+    counts = [0] * len(spans)
+    references_rad = [0.0] * len(spans)
 
     def random_count(span: int) -> int:
         nonlocal seed
@@ -105,21 +97,24 @@ def _sequence(twin: Twin, spans: tuple[int, int], moves: tuple[int, int]) -> Ite
 
     for step in range(STEPS):
         if step % REFERENCE_EVERY == 0:
-            psi_ref_rad = twin.angle_from_counts_psi(random_count(spans[0]))
-            references = (psi_ref_rad, twin.angle_from_counts_phi(random_count(spans[1])))
-        psi_counts = _held(psi_counts + random_count(moves[0]), spans[0])
-        phi_counts = _held(phi_counts + random_count(moves[1]), spans[1])
-        missing = step % MISSING_EVERY == MISSING_EVERY - 1
-        psi_rad = nan if missing else float(twin.angle_from_counts_psi(psi_counts))
-        yield float(references[0]), float(references[1]), psi_rad, float(twin.angle_from_counts_phi(phi_counts))
+            references_rad = [
+                float(twin.angle_from_counts(loop, random_count(span))) for loop, span in enumerate(spans)
+            ]
+        counts = [
+            _held(count + random_count(move), span) for count, move, span in zip(counts, moves, spans, strict=True)
+        ]
+        angles_rad = [float(twin.angle_from_counts(loop, count)) for loop, count in enumerate(counts)]
+        if step % MISSING_EVERY == MISSING_EVERY - 1:
+            angles_rad[0] = nan
+        yield (*references_rad, *angles_rad)
 
 
-def _checksum(twin: Twin, outputs: list[tuple[float, float]]) -> int:
-    """FNV-1a over whole words: both outputs' bits and both duties of every step."""
+def _checksum(twin: Twin, outputs: Sequence[Sequence[float]]) -> int:
+    """FNV-1a over whole words: all outputs' bits, then all duties, of every step."""
     checksum = 2166136261
-    for u_M_V, u_T_V in outputs:
-        duties = (twin.duty_main(u_M_V), twin.duty_tail(u_T_V))
-        for word in (twin.voltage_word(u_M_V), twin.voltage_word(u_T_V), *duties):
+    for voltages_V in outputs:
+        duties = [twin.duty(loop, u_V) for loop, u_V in enumerate(voltages_V)]
+        for word in (*map(twin.voltage_word, voltages_V), *duties):
             checksum = ((checksum ^ (word % 2**32)) * 16777619) % 2**32
     return checksum
 

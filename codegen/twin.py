@@ -10,17 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.law_constants import law_constants
-from codegen.law_equations import (
-    STATE_WORDS,
+from codegen.law_equations import scheduled_law
+from codegen.law_frame import (
+    AxisEquations,
     LawInput,
-    LawOutput,
     LawState,
     law_reset,
     law_step,
-    state_from_words,
+    state_of_words,
+    state_size,
     words_from_state,
 )
 from codegen.numbers import float32_bits
+from records.law_table import FlownTable
 from records.table import ControllerTable
 
 Bits = NDArray[np.uint32]
@@ -102,59 +104,57 @@ class Float32Twin:
     arithmetic = "float32"
 
     def __init__(self, table: ControllerTable) -> None:
-        self.law: Any = law_constants(table, np.float32)
-        self.resolution_psi_rad = np.float32(table.elevation.resolution_rad)
-        self.resolution_phi_rad = np.float32(table.azimuth.resolution_rad)
-        self._state: LawState[np.float32] = self._at_rest(0.0, 0.0)
+        self._begin(table, law_constants(table, np.float32), scheduled_law(table.order))
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def _begin(self, table: FlownTable, law: Any, equations: AxisEquations) -> None:
+        self.law: Any = law
+        self._equations = equations
+        self._resolutions_rad = [np.float32(axis.resolution_rad) for axis in table.axes]
+        self._loops = len(table.loops)
+        self.state_words = state_size(equations.AxisState, self._loops)
+        self.reset(*[0.0] * self._loops)
+
+    def reset(self, *angles_rad: float) -> None:
         """Start afresh at these angles."""
-        self._state = self._at_rest(psi_rad, phi_rad)
+        angles = tuple(np.float32(angle) for angle in angles_rad)
+        self._state: LawState[np.float32] = law_reset(self._equations, self.law, self.scalars, angles)
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample; returns (u_M_V, u_T_V) within their limits."""
-        given = LawInput(*(np.float32(value) for value in (psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)))
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles; returns the voltages within their limits."""
+        given = LawInput.of([np.float32(value) for value in given_rad])
         with np.errstate(all="ignore"):
-            self._state, output = self.law_step(self.scalars, self._state, given)
-        return float(output.u_M_V), float(output.u_T_V)
+            self._state, voltages_V = law_step(self._equations, self.law, self.scalars, self._state, given)
+        return tuple(float(u_V) for u_V in voltages_V)
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest, bits [lanes, STATE_WORDS], for angles psi, phi as bits [lanes, 2]."""
-        psi_rad, phi_rad = _numbers(angles).T
-        return self._bits_of_state(self.law_reset(self.lanes, psi_rad, phi_rad), len(angles))
+        """States at rest, bits [lanes, state_words], for angles as bits [lanes, loops]."""
+        state = law_reset(self._equations, self.law, self.lanes, tuple(_numbers(angles).T))
+        return self._bits_of_state(state, len(angles))
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2].
+        """All lanes through all steps: inputs [steps, lanes, 2 loops] as bits give final states and outputs [steps, lanes, loops].
 
-        Columns of the inputs are psi_ref_rad, phi_ref_rad, psi_rad, phi_rad, those of the outputs u_M_V, u_T_V.
+        Columns of the inputs are the references, then the angles, of all loops, those of the outputs the voltages.
         """
         steps, lanes = inputs.shape[:2]
-        outputs = np.empty((steps, lanes, 2), dtype=np.float32)
+        outputs = np.empty((steps, lanes, self._loops), dtype=np.float32)
         # One lane goes faster as single numbers than as arrays of one.
         decisions: Any = self.scalars if lanes == 1 else self.lanes
-        columns = (lambda rows: rows[0]) if lanes == 1 else np.transpose
-        state = self.state_from_words(columns(_numbers(states)))
+        columns: Any = (lambda rows: rows[0]) if lanes == 1 else np.transpose
+        state = state_of_words(columns(_numbers(states)), self._equations.AxisState, self._loops)
         with np.errstate(all="ignore"):
             for given, output in zip(_numbers(inputs), outputs, strict=True):
-                state, voltages = self.law_step(decisions, state, LawInput(*columns(given)))
-                output[:, 0], output[:, 1] = voltages.u_M_V, voltages.u_T_V
+                state, voltages_V = law_step(self._equations, self.law, decisions, state, LawInput.of(columns(given)))
+                output[:] = np.transpose(voltages_V)
         return self._bits_of_state(state, lanes), outputs.view(np.uint32)
 
-    def angle_from_counts_psi(self, counts: int) -> np.float32:
-        """Elevation [rad] of an encoder count."""
-        return np.float32(np.float32(counts) * self.resolution_psi_rad)
+    def angle_from_counts(self, loop: int, counts: int) -> np.float32:
+        """Angle [rad] of an encoder count of the loop at this place."""
+        return np.float32(np.float32(counts) * self._resolutions_rad[loop])
 
-    def angle_from_counts_phi(self, counts: int) -> np.float32:
-        """Azimuth [rad] of an encoder count."""
-        return np.float32(np.float32(counts) * self.resolution_phi_rad)
-
-    def duty_main(self, u_V: float) -> int:
-        """Signed PWM ticks of the main rotor's voltage."""
-        return _duty(np.float32(u_V), self.law.elevation.u_safe_V)
-
-    def duty_tail(self, u_V: float) -> int:
-        """Signed PWM ticks of the tail rotor's voltage."""
-        return _duty(np.float32(u_V), self.law.azimuth.u_safe_V)
+    def duty(self, loop: int, u_V: float) -> int:
+        """Signed PWM ticks of a voltage of the loop at this place."""
+        return _duty(np.float32(u_V), self.law.axes[loop].u_safe_V)
 
     def voltage_word(self, u_V: float) -> int:
         """The bits of a voltage."""
@@ -165,34 +165,14 @@ class Float32Twin:
         """The bits of the quiet NaN."""
         return 0x7FC00000
 
-    def _at_rest(self, psi_rad: float, phi_rad: float) -> LawState[np.float32]:
-        return self.law_reset(self.scalars, np.float32(psi_rad), np.float32(phi_rad))
-
     def _bits_of_state(self, state: LawState[Any], lanes: int) -> Bits:
         words = np.empty((lanes, self.state_words), dtype=np.float32)
         for index, word in enumerate(words_from_state(state)):
             words[:, index] = word
         return words.view(np.uint32)
 
-    # What the law is: another law's twin replaces these.
-
     scalars: Any = Float32Scalars()
     lanes: Any = Float32Lanes()
-    state_words = STATE_WORDS
-
-    def law_reset(self, decisions: Any, psi_rad: Any, phi_rad: Any) -> LawState[Any]:
-        """The state at rest."""
-        return law_reset(self.law, decisions, psi_rad, phi_rad)
-
-    def law_step(
-        self, decisions: Any, state: LawState[Any], given: LawInput[Any]
-    ) -> tuple[LawState[Any], LawOutput[Any]]:
-        """One sample."""
-        return law_step(self.law, decisions, state, given)
-
-    def state_from_words(self, words: Any) -> LawState[Any]:
-        """A state from its numbers."""
-        return state_from_words(words)
 
 
 def _duty(u_V: np.float32, safe_V: np.float32) -> int:

@@ -10,14 +10,18 @@ from design.discretise import SampledPlant, sample
 from design.linearise import LinearPlant, linearise, subsystem
 from design.operating_points import equilibria, grid
 from design.settings import DesignSettings
+from design.structure import demand_helicopter
 from design.table import frame_entries
+from records.errors import BadInput
 from records.law_table import AxisTable, LawTable
+from records.table import AXES
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]
 G = TypeVar("G")
+STATES = 3  # of an axis that the papers' controllers are designed for
 
 
 @dataclass(frozen=True)
@@ -31,8 +35,15 @@ class Points:
     linear: tuple[LinearPlant, ...]
 
     def axis(self, name: str) -> tuple[LinearPlant, ...]:
-        """The third-order part of each from the axis' input to its angle."""
-        return tuple(subsystem(self.bound, plant, name) for plant in self.linear)
+        """The part of each from the axis' input to its angle, of one rotor lag; raises BadInput for another."""
+        parts = tuple(subsystem(self.bound, plant, self.settings.loop(name)) for plant in self.linear)
+        for part in parts:
+            if len(part.A) != STATES:
+                raise BadInput(
+                    f"{name} axis", f"plant {self.bound.plant.name!r}", f"{len(part.A)} states", f"{STATES}: a rotor with one lag",
+                    "design this controller on another plant, and fly this one with --table",
+                )  # fmt: skip
+        return parts
 
     def sampled(self, name: str) -> tuple[SampledPlant, ...]:
         """The same, sampled with a zero-order hold."""
@@ -41,9 +52,10 @@ class Points:
 
 def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:
     """The operating points of the nominal plant: controllers are designed without added effects. Raises BadInput for one out of reach."""
+    demand_helicopter(bound, "this controller")
     seen = without_effects(bound) if bound.effects else bound
     psi_rad = grid(settings)
-    points = equilibria(seen, psi_rad)
+    points = equilibria(seen, settings, psi_rad)
     return Points(seen, settings, psi_rad, points, tuple(linearise(seen, point) for point in points))
 
 
@@ -61,9 +73,7 @@ def law_table(controller: str, points: Points, axes: dict[str, AxisTable[G]], or
         controller=controller,
         plant=points.bound.plant.name,
         sample_period_s=points.settings.sample_period_s,
-        psi_min_rad=points.settings.psi_min_rad,
-        psi_max_rad=points.settings.psi_max_rad,
-        elevation=axes["elevation"],
-        azimuth=axes["azimuth"],
+        schedule=points.settings.schedule,
+        axes=tuple(axes[name] for name in AXES),
         origin=origin,
     )

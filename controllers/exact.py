@@ -1,21 +1,11 @@
 """A controller's equations run in double precision (its float law) and in float32 (the exact twin of its C)."""
 
 import math
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
-from codegen.law_frame import (
-    LAST_ACCEPTED_FIELDS,
-    AxisEquations,
-    LawInput,
-    LawOutput,
-    LawState,
-    law_reset,
-    law_step,
-    state_of_words,
-)
+from codegen.law_frame import AxisEquations, LawInput, law_reset, law_step
 from codegen.twin import Float32Lanes, Float32Scalars, Float32Twin
 from controllers.frame import numbers_of
 from records.law_table import LawTable
@@ -69,17 +59,16 @@ class EquationLaw:
     def __init__(self, equations: AxisEquations, table: LawTable[Any]) -> None:
         self._equations = equations
         self._law = numbers_of(table, float)
-        self._state = law_reset(equations, self._law, Doubles(), 0.0, 0.0)
+        self.reset(*[0.0] * len(table.loops))
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start at rest at the measured angles."""
-        self._state = law_reset(self._equations, self._law, Doubles(), psi_rad, phi_rad)
+        self._state = law_reset(self._equations, self._law, Doubles(), angles_rad)
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample: u_M_V, u_T_V."""
-        given = LawInput(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
-        self._state, output = law_step(self._equations, self._law, Doubles(), self._state, given)
-        return output.u_M_V, output.u_T_V
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles: the voltages."""
+        self._state, voltages_V = law_step(self._equations, self._law, Doubles(), self._state, LawInput.of(given_rad))
+        return voltages_V
 
 
 class EquationTwin(Float32Twin):
@@ -89,28 +78,4 @@ class EquationTwin(Float32Twin):
     lanes: Any = Lanes()
 
     def __init__(self, equations: AxisEquations, table: LawTable[Any]) -> None:
-        self._equations = equations
-        self.law = numbers_of(table, np.float32)
-        self.resolution_psi_rad = np.float32(table.elevation.resolution_rad)
-        self.resolution_phi_rad = np.float32(table.azimuth.resolution_rad)
-        self.state_words = state_words(equations)
-        self._state = self._at_rest(0.0, 0.0)
-
-    def law_reset(self, decisions: Any, psi_rad: Any, phi_rad: Any) -> LawState[Any]:
-        """The state at rest."""
-        return law_reset(self._equations, self.law, decisions, psi_rad, phi_rad)
-
-    def law_step(
-        self, decisions: Any, state: LawState[Any], given: LawInput[Any]
-    ) -> tuple[LawState[Any], LawOutput[Any]]:
-        """One sample."""
-        return law_step(self._equations, self.law, decisions, state, given)
-
-    def state_from_words(self, words: Any) -> LawState[Any]:
-        """A state from its numbers."""
-        return state_of_words(words, self._equations.AxisState)
-
-
-def state_words(equations: AxisEquations) -> int:
-    """Numbers that a controller remembers, both axes and the last accepted inputs."""
-    return 2 * len(fields(equations.AxisState)) + len(LAST_ACCEPTED_FIELDS)  # type: ignore[arg-type]
+        self._begin(table, numbers_of(table, np.float32), equations)

@@ -32,9 +32,7 @@ def numbers_of(table: LawTable[Any], number: Callable[[float], N]) -> LawNumbers
     def of_axis(axis: AxisTable[Any]) -> AxisNumbers[N]:
         return AxisNumbers(gains=_each(axis.gains, number), **frame_numbers(axis, table.sample_period_s, number))
 
-    return LawNumbers(
-        elevation=of_axis(table.elevation), azimuth=of_axis(table.azimuth), **range_numbers(table, number)
-    )
+    return LawNumbers(axes=tuple(of_axis(axis) for axis in table.axes), **range_numbers(table, number))
 
 
 def _each(entry: Any, number: Callable[[float], Any]) -> Any:

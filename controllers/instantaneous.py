@@ -8,13 +8,12 @@ Feed-forward, anti-windup and the answer to a broken state are the scheduled law
 """
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import SCHEDULED, AxisState, differences, drive, moved
+from codegen.law_equations import Scheduled, differences, drive, moved
 from codegen.law_frame import Sample
 from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
@@ -81,16 +80,8 @@ class InstantaneousGains:
     constants: Constants
 
 
-class Instantaneous:
+class Instantaneous(Scheduled):
     """The equations of one axis, name by name and operation by operation as in templates/instantaneous.c.j2."""
-
-    AxisState = AxisState
-
-    def axis_rest(
-        self, law: Any, axis: Any, arithmetic: Any, reference_rad: Any, angle_rad: Any, schedule_rad: Any
-    ) -> Any:
-        """As the scheduled law's."""
-        return SCHEDULED.axis_rest(law, axis, arithmetic, reference_rad, angle_rad, schedule_rad)
 
     def axis_step(self, law: Any, axis: Any, arithmetic: Any, state: Any, sample: Sample[Any]) -> tuple[Any, Any]:
         """Design at the measured elevation, then differences of the error, v, the limits."""
@@ -104,8 +95,8 @@ class Instantaneous:
         """(C.14) to (C.23) of this axis at one elevation."""
         model, constants = axis.gains.model, axis.gains.constants
         cos_psi = cosine(psi_rad, constants.cosine, constants.one)
-        omega_M = speed_rad_s(law.elevation.gains.model, constants, cos_psi)
-        if axis is law.elevation:
+        omega_M = speed_rad_s(law.axes[0].gains.model, constants, cos_psi)
+        if axis is law.axes[0]:
             alpha = model.stiffness * sine(psi_rad, constants.sine, constants.one)
             plant = sampled_axis(model, constants, omega_M, alpha, model.damping)
         else:
@@ -114,7 +105,7 @@ class Instantaneous:
         return placed(plant, model.target, constants)
 
 
-EQUATIONS = Instantaneous()
+EQUATIONS = Instantaneous(3)
 
 
 def design(points: Points) -> LawTable[InstantaneousGains]:
@@ -166,7 +157,7 @@ def _model(points: Points, axis: str) -> AxisModel:
         stiffness=float(load / inertia * Ts_s**2) if axis == "elevation" else 0.0,
         damping=float(value[rotor.damping][0] / inertia * Ts_s),
         target=_plain(np.poly(poles).real[:0:-1]),
-        observer=observer(wishes.observer_pole),
+        observer=observer(wishes.observer_pole, 3),
     )
 
 
@@ -192,12 +183,11 @@ _ROTORS = {
 
 def _check(points: Points, table: LawTable[InstantaneousGains]) -> None:
     """In double precision the board's design must be that of the design stage, from the plant's own equations, at every operating point."""
-    law = SimpleNamespace(elevation=table.elevation, azimuth=table.azimuth)
     for point in points.equilibria:
         for name in AXES:
-            wishes, Ts_s = points.settings.axis(name).without_roll_off, points.settings.sample_period_s
-            delta = design_point(points.bound, point, name, wishes, Ts_s).delta
-            found = EQUATIONS.placed(law, getattr(law, name), point.psi_rad)
+            wishes = points.settings.axis(name).without_roll_off
+            delta = design_point(points.bound, point, points.settings, wishes, point.psi_rad).delta
+            found = EQUATIONS.placed(table, table.axis(name), point.psi_rad)
             wanted = np.array([*delta.q, *delta.p[1:]])
             apart = np.max(np.abs(np.array(list(vars(found).values())) / wanted - 1.0))
             if not apart < AGREEMENT:

@@ -12,7 +12,7 @@ from controllers.equation_controller import EquationController
 from controllers.table import CONTROLLERS
 from records.errors import BadInput
 from records.law_table import SCHEMA, AxisTable, FlownTable, LawTable
-from records.table import AXES, ControllerTable, demand_digest, parse_frame, parse_table
+from records.table import ControllerTable, demand_digest, parse_frame, parse_table
 from records.text import checks
 from records.text.reading import read_json
 
@@ -64,14 +64,8 @@ def load_scheduled(path: Path, use: str) -> ControllerTable:
 
 
 def _parse(content: Mapping[str, Any], row: EquationController, where: str) -> LawTable[Any]:
-    checks.keys(content, where, ("schema", "digest", *(field.name for field in fields(LawTable))))
-    axes: dict[str, Any] = {name: _axis(content[name], row, f"{where}: {name}") for name in AXES}
-    table: LawTable[Any] = LawTable(
-        controller=row.name,
-        **parse_frame(content, where),
-        origin=checks.table(content["origin"], f"{where}: origin"),
-        **axes,
-    )
+    frame = parse_frame(content, where, lambda entry, place: _axis(entry, row, place), ("controller",))
+    table: LawTable[Any] = LawTable(controller=row.name, **frame)
     demand_digest(table.digest, content, where)
     return table
 

@@ -28,7 +28,6 @@ from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.lqg_gains import WEIGHTS, gains_at
 from design.schedule import fit, stored_fit
-from design.table import SENSORS
 from records.law_table import LawTable
 from records.table import AXES, Polynomial
 
@@ -156,7 +155,7 @@ FIT = 0.08
 
 def _values(points: Points, axis: str) -> dict[str, Array]:
     """Each coefficient at the operating points (points,)."""
-    resolution_rad = points.bound.plant.sensors[SENSORS[axis]]
+    resolution_rad = points.bound.plant.sensors[points.settings.loop(axis).output]
     Ts_s, weights = points.settings.sample_period_s, WEIGHTS[axis]
     designs = [gains_at(plant, weights, Ts_s, resolution_rad) for plant in points.axis(axis)]
     return {name: np.array([entry[name] for entry in designs]) for name in NAMES}

@@ -18,7 +18,7 @@ from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
-from design.table import LIMITS, plain
+from design.table import limits_V, plain
 from records.law_table import LawTable
 from records.table import AXES, lag_gain
 
@@ -106,7 +106,7 @@ def _origin(axis: str, tuning: Tuning) -> dict[str, Any]:
 
 def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
     Ts_s = points.settings.sample_period_s
-    low_V, high_V = (points.bound.parameter(name) for name in LIMITS[axis])
+    low_V, high_V = limits_V(points.bound, points.settings.loop(axis), points.settings.axis(axis))
     return PidGains(
         k_p_V_rad=tuning.k_p,
         k_i_Ts_V_rad=tuning.k_i * Ts_s,

@@ -30,7 +30,9 @@ SETTLED_DEG = 3.0
 def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, expected: str) -> None:
     """Raise BadInput naming elevation, axis and error where the law does not settle on the plant without added effects."""
     seen = without_effects(bound) if bound.effects else bound
-    for psi_rad in np.linspace(table.psi_min_rad, table.psi_max_rad, 3):
+    schedule = table.schedule
+    assert schedule is not None
+    for psi_rad in np.linspace(schedule.min_rad, schedule.max_rad, 3):
         angle_deg = float(np.degrees(psi_rad))
         error_deg = _last_error_deg(seen, table, law, angle_deg)
         worst = int(np.argmax(error_deg))

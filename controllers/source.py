@@ -7,31 +7,34 @@ from typing import Any
 
 import jinja2
 
-from codegen.law import c_environment, frame_axis, frame_context, shared_context
+from codegen.law import c_environment, frame_axis, frame_context, region_text, shared_context, test_context
 from codegen.law_frame import AxisEquations
 from codegen.numbers import c_float32
 from codegen.self_test import self_test
 from controllers.exact import EquationTwin
 from controllers.frame import float32_polynomial
 from records.law_table import LawTable
-from records.table import AXES
 
 
 def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> Mapping[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c; `template` is a file of controllers/templates for law.c."""
-    gains = table.elevation.gains
-    feedforwards = {name: float32_polynomial(table.axis(name).feedforward_V) for name in AXES}
+    gains = table.axes[0].gains
+    feedforwards = {
+        loop.axis: float32_polynomial(axis.feedforward_V) for loop, axis in zip(table.loops, table.axes, strict=True)
+    }
     degrees = {len(entry) - 1 for entry in (*feedforwards.values(), *_polynomials(gains).values())}
-    axes = tuple(frame_axis(table, name) for name in AXES)
+    axes = tuple(frame_axis(table, loop) for loop in table.loops)
     names = [field.name for field in fields(equations.AxisState)]  # type: ignore[arg-type]
     context = {
         **shared_context(table, "float32"),
-        **frame_context(table, axes, names),
+        **frame_context(axes, names),
+        "powers": list(range(4)),
         "feedforwards": feedforwards,
+        "region": region_text(table),
         "degrees": sorted(degrees - {0}),
         "at": _values(gains),
         "gain_fields": [(field.name, _shape(getattr(gains, field.name))) for field in fields(gains)],
-        "test": self_test(table, EquationTwin(equations, table)),
+        **test_context(table, self_test(table, EquationTwin(equations, table))),
     }
     templates = {"law.h": "law.h.j2", "law.c": template, "law_self_test.c": "law_self_test.c.j2"}
     return {name: _environment().get_template(file).render(context) for name, file in templates.items()}

@@ -1,6 +1,6 @@
 """The paper's form of the controller, eqs (22) and (27), and the change of basis to the delta form that is generated.
 
-    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3,    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3 (+ p_4 z^-4)      (22)
+    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3,    P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3 (+ p_4 z^-4)      (22), n = 3
 
 With delta = 1 - z^-1 the same two polynomials are (records.table)
 
@@ -10,21 +10,26 @@ so the change of basis has integer entries. The direct form is kept as reference
 of large coefficients, which a rounded table does not keep. What is in brackets is the roll-off, which the paper's controller lacks.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# z^-k = (1 - delta)^k: column k holds the coefficients of delta^0 .. delta^3. The matrix, and its upper left corner, is its own inverse.
-_BINOMIAL = np.array([[1.0, 1.0, 1.0, 1.0], [0.0, -1.0, -2.0, -3.0], [0.0, 0.0, 1.0, 3.0], [0.0, 0.0, 0.0, -1.0]])
+
+@cache
+def _binomial(count: int) -> Array:
+    """z^-k = (1 - delta)^k: column k holds the coefficients of delta^0 .. delta^(count - 1). The matrix is its own inverse."""
+    return np.array([[(-1) ** power * math.comb(k, power) for k in range(count)] for power in range(count)], float)
 
 
 @dataclass(frozen=True)
 class DirectForm:
-    """Coefficients of eq (22) at one angle, ascending powers of z^-1: q (4,) in V/rad, p (order + 1,) with p[0] = 1."""
+    """Coefficients of eq (22) at one angle, ascending powers of z^-1: q (n + 1,) in V/rad, p (order + 1,) with p[0] = 1."""
 
     q: Array
     p: Array
@@ -32,7 +37,7 @@ class DirectForm:
 
 @dataclass(frozen=True)
 class DeltaForm:
-    """The same controller in powers of delta: q (4,) in V/rad and p (order,) of records.table, p[0] = P(1)."""
+    """The same controller in powers of delta: q (n + 1,) in V/rad and p (order,) of records.table, p[0] = P(1)."""
 
     q: Array
     p: Array
@@ -41,19 +46,19 @@ class DeltaForm:
 def to_delta(direct: DirectForm) -> DeltaForm:
     """Change of basis of Q, and of -z (P - 1) = -(p_1 + p_2 z^-1 + p_3 z^-2 + ..)."""
     order = len(direct.p) - 1
-    feedback = -_BINOMIAL[:order, :order] @ direct.p[1:]
-    return DeltaForm(q=_BINOMIAL @ direct.q, p=np.append(1.0 - feedback[0], feedback[1:]))
+    feedback = -_binomial(order) @ direct.p[1:]
+    return DeltaForm(q=_binomial(len(direct.q)) @ direct.q, p=np.append(1.0 - feedback[0], feedback[1:]))
 
 
 def to_direct(delta: DeltaForm) -> DirectForm:
     """The inverse of `to_delta`."""
     order = len(delta.p)
     feedback = np.append(1.0 - delta.p[0], delta.p[1:])
-    return DirectForm(q=_BINOMIAL @ delta.q, p=np.append(1.0, -_BINOMIAL[:order, :order] @ feedback))
+    return DirectForm(q=_binomial(len(delta.q)) @ delta.q, p=np.append(1.0, -_binomial(order) @ feedback))
 
 
 def feedback_V(form: DirectForm, errors_rad: Sequence[float], outputs_V: Sequence[float]) -> float:
-    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (4,) of k .. k-3 and outputs (order,) of k-1, k-2 ..
+    """Eq (27): sum q_i e(k-i) - sum p_i u_fb(k-i) from errors (n + 1,) of k .. k-n and outputs (order,) of k-1, k-2 ..
 
     The outputs are those of the feedback alone. The paper writes the total voltage, which multiplies the feed-forward by 1/P(1).
     """

@@ -1,17 +1,20 @@
 """The gate: a table that is unstable or below a stated margin anywhere in its range does not leave the design stage."""
 
-import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from design.report import AxisReport, DesignReport
 from design.settings import DesignSettings, MarginLimits
 from records.errors import BadInput
-from records.table import AXES
 
 REMEDY = "choose other poles, more operating points or a higher coefficient_degree"
 
 # The controller's own poles may reach the unit circle (integral action) but not leave it by more than rounding.
 LARGEST_RADIUS = 1.0 + 1e-9
+
+# Bristol's rule: a pairing with a relative gain below a half loses more than half of its loop's gain, or its sign, when the others close.
+LEAST_RELATIVE_GAIN = 0.5
 
 
 @dataclass(frozen=True)
@@ -27,18 +30,46 @@ class _Rule:
 
 def check(report: DesignReport, settings: DesignSettings) -> None:
     """Raises BadInput naming axis, angle, and pole or margin of the first rule that does not hold."""
-    for name in AXES:
-        axis = report.axis(name)
+    for axis in report.axes:
         for rule in _stability(axis, report.arithmetic):
-            _apply(rule, report, name)
-    _apply(
-        _Rule("slowest pole of both loops together", tuple(report.coupled_slowest_rad_s), 0.0, "rad/s"),
-        report,
-        "both axes",
-    )
-    for name in AXES:
-        for rule in _margin_rules(report.axis(name), settings.margins):
-            _apply(rule, report, name)
+            _apply(rule, report, settings, axis.axis)
+    if report.coupling:
+        _check_relative_gains(report, settings)
+        slowest = tuple(report.coupled_slowest_rad_s)
+        _apply(_Rule("slowest pole of all loops together", slowest, 0.0, "rad/s"), report, settings, "all axes")
+    for axis in report.axes:
+        for rule in _margin_rules(axis, settings.margins):
+            _apply(rule, report, settings, axis.axis)
+    if report.coupling:
+        _check_coupled_sensitivity(report, settings)
+
+
+def _check_relative_gains(report: DesignReport, settings: DesignSettings) -> None:
+    for index, loop in enumerate(settings.loops):
+        gains = [found.relative_gain[index] for found in report.coupling]
+        worst = int(np.argmin(gains))
+        if gains[worst] < LEAST_RELATIVE_GAIN:
+            raise BadInput(
+                f"relative gain from {loop.input} to {loop.output}",
+                settings.place(loop.axis, float(report.points_rad[worst])),
+                f"{gains[worst]:.3g} at its crossover",
+                f"at least {LEAST_RELATIVE_GAIN:g}: below, most of what the input does to this angle comes by way of the other loops",
+                "pair the loops otherwise, or choose an operating range where they are less coupled",
+            )
+
+
+def _check_coupled_sensitivity(report: DesignReport, settings: DesignSettings) -> None:
+    for index, loop in enumerate(settings.loops):
+        found = [entry.sensitivity[index] for entry in report.coupling]
+        worst, limit = int(np.argmax(found)), settings.margins.max_sensitivity
+        if not found[worst] < limit:
+            raise BadInput(
+                "coupled margin, sensitivity max|1/(1 + L)| with the other loops closed",
+                settings.place(loop.axis, float(report.points_rad[worst])),
+                f"{found[worst]:.4g}",
+                f"below {limit:.4g}",
+                "choose slower poles for one of the loops, which lie too near each other for their coupling",
+            )
 
 
 def _stability(axis: AxisReport, arithmetic: str) -> tuple[_Rule, ...]:
@@ -60,16 +91,16 @@ def _margin_rules(axis: AxisReport, limits: MarginLimits) -> tuple[_Rule, ...]:
     )
 
 
-def _apply(rule: _Rule, report: DesignReport, axis: str) -> None:
+def _apply(rule: _Rule, report: DesignReport, settings: DesignSettings, axis: str) -> None:
     worst = min(rule.values) if rule.at_least else max(rule.values)
     holds = worst >= rule.limit if rule.at_least else worst < rule.limit
     if holds:
         return
-    psi_deg = math.degrees(report.psi_rad[rule.values.index(worst)])
+    psi_rad = float(report.psi_rad[rule.values.index(worst)])
     bound = "at least" if rule.at_least else "below"
     raise BadInput(
         rule.what,
-        f"{axis} at psi = {psi_deg:.1f} deg",
+        settings.place(axis, psi_rad),
         f"{worst:.4g} {rule.unit}".strip(),
         f"{bound} {rule.limit:.4g} {rule.unit}".strip(),
         REMEDY,

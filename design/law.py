@@ -1,13 +1,13 @@
 """The law in double precision, in delta form: the readable original of the generated C, with its names and argument order.
 
-Per axis, with e0 = filtered reference - angle and its backward differences e1, e2, e3 (D.4 of docs/theory.md):
+Per axis of n states, with e0 = filtered reference - angle and its backward differences e1, e2 .. en (D.4 of docs/theory.md):
 
-    v = v_prev - p_0 s_0 + p_1 s_1 + p_2 s_2 + p_3 s_3 + q_0 e0 + q_1 e1 + q_2 e2 + q_3 e3 - a_0 w_0 + a_1 w_1 + a_2 w_2
-    u = v + u_ff(filtered elevation reference),   u_limited = limits(u),   w = u - u_limited,   s = v - w
+    v = v_prev - p_0 s_0 + p_1 s_1 + .. + q_0 e0 + q_1 e1 + .. + q_n en - a_0 w_0 + a_1 w_1 + ..
+    u = v + u_ff(filtered reference of the scheduling angle),   u_limited = limits(u),   w = u - u_limited,   s = v - w
 
-where s_0 = s(k-1), s_1, s_2, s_3 are its backward differences, w_0, w_1, w_2 those of w, v_prev = v(k-1) = s_0 + w_0. Inserting
-P = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2 + p_3 delta^3], A alike and v = s + w gives P s = Q e - A w, which is
-A v = Q e + (A - P) s. Without a roll-off there is no p_3.
+where s_0 = s(k-1), s_1, s_2 .. are its backward differences, w_0, w_1 .. those of w, v_prev = v(k-1) = s_0 + w_0. Inserting
+P = 1 - z^-1 [(1 - p_0) + p_1 delta + .. + p_n delta^n], A alike and v = s + w gives P s = Q e - A w, which is
+A v = Q e + (A - P) s. Without a roll-off there is no p_n.
 """
 
 import math
@@ -17,8 +17,6 @@ from dataclasses import dataclass, replace
 from records.table import PLAUSIBLE_V, AxisLaw, ControllerTable
 
 Differences = tuple[float, ...]
-_ZERO: Differences = (0.0, 0.0, 0.0)
-_ZERO_OF_S: Differences = (*_ZERO, 0.0)
 
 
 @dataclass(frozen=True)
@@ -29,49 +27,49 @@ class AxisState:
     angle_rad: float
     x1_rad: float
     x2_rad: float
-    v_V: float = 0.0
-    e: Differences = _ZERO
-    s: Differences = _ZERO_OF_S
-    w: Differences = _ZERO
+    v_V: float
+    e: Differences
+    s: Differences
+    w: Differences
 
 
-@dataclass(frozen=True)
-class LawState:
-    """What the law remembers between two samples."""
-
-    elevation: AxisState
-    azimuth: AxisState
+LawState = tuple[AxisState, ...]
 
 
-def law_reset(table: ControllerTable, psi_rad: float, phi_rad: float) -> LawState:
+def law_reset(table: ControllerTable, *angles_rad: float) -> LawState:
     """The state at rest at the measured angles; an angle that is not finite counts as 0.
 
     The filtered reference starts at the angle, or at the end of its range next to it; no difference of the error is pending.
     """
-    return LawState(_axis_reset(table.elevation, psi_rad), _axis_reset(table.azimuth, phi_rad))
+    return tuple(_axis_reset(law, angle_rad) for law, angle_rad in zip(table.axes, angles_rad, strict=True))
 
 
 def _axis_reset(law: AxisLaw, angle_rad: float) -> AxisState:
     angle = _finite(angle_rad, 0.0)
     start = _clamp(angle, law.reference_min_rad, law.reference_max_rad)
-    return AxisState(reference_rad=start, angle_rad=angle, x1_rad=start, x2_rad=start, e=(start - angle, 0.0, 0.0))
+    zeros = (0.0,) * law.order
+    return AxisState(start, angle, start, start, v_V=0.0, e=(start - angle, *zeros[1:]), s=(*zeros, 0.0), w=zeros)
 
 
-def law_step(
-    table: ControllerTable,
-    state: LawState,
-    psi_ref_rad: float,
-    phi_ref_rad: float,
-    psi_rad: float,
-    phi_rad: float,
-) -> tuple[LawState, float, float]:
-    """One sample: the new state and the inputs u_M_V and u_T_V; total, also for inputs that are not finite."""
-    elevation = _filter(table.elevation, table.sample_period_s, state.elevation, psi_ref_rad, psi_rad)
-    azimuth = _filter(table.azimuth, table.sample_period_s, state.azimuth, phi_ref_rad, phi_rad)
-    psi_scheduled_rad = _clamp(elevation.angle_rad, table.psi_min_rad, table.psi_max_rad)
-    elevation, u_M_V = _control(table.elevation, elevation, psi_scheduled_rad, elevation.x2_rad)
-    azimuth, u_T_V = _control(table.azimuth, azimuth, psi_scheduled_rad, elevation.x2_rad)
-    return LawState(elevation, azimuth), u_M_V, u_T_V
+def law_step(table: ControllerTable, state: LawState, *given_rad: float) -> tuple[LawState, tuple[float, ...]]:
+    """One sample of references, then angles: the new state and the voltages; total, also for inputs that are not finite."""
+    references_rad, angles_rad = given_rad[: len(table.axes)], given_rad[len(table.axes) :]
+    accepted = [
+        _filter(law, table.sample_period_s, remembered, reference_rad, angle_rad)
+        for law, remembered, reference_rad, angle_rad in zip(table.axes, state, references_rad, angles_rad, strict=True)
+    ]
+    scheduled_rad, region_rad = _schedule(table, accepted)
+    stepped = [_control(law, own, scheduled_rad, region_rad) for law, own in zip(table.axes, accepted, strict=True)]
+    return tuple(own for own, _ in stepped), tuple(u_V for _, u_V in stepped)
+
+
+def _schedule(table: ControllerTable, accepted: Sequence[AxisState]) -> tuple[float, float]:
+    """The scheduling angle within its range, and its filtered reference; zeros without a schedule."""
+    schedule = table.schedule
+    if schedule is None:
+        return 0.0, 0.0
+    own = accepted[table.index(schedule.axis)]
+    return _clamp(own.angle_rad, schedule.min_rad, schedule.max_rad), own.x2_rad
 
 
 def _filter(
@@ -92,34 +90,35 @@ def _within_reference(law: AxisLaw, x_rad: float, target_rad: float) -> float:
     return target_rad if math.isnan(x_rad) else _clamp(x_rad, law.reference_min_rad, law.reference_max_rad)
 
 
-def _control(
-    law: AxisLaw, state: AxisState, psi_scheduled_rad: float, elevation_reference_rad: float
-) -> tuple[AxisState, float]:
+def _control(law: AxisLaw, state: AxisState, scheduled_rad: float, region_rad: float) -> tuple[AxisState, float]:
     """Feedback, feed-forward, limits and anti-windup of one axis."""
     e = _differences(state.x2_rad - state.angle_rad, state.e)
-    v = _feedback(law, state, e, psi_scheduled_rad)
+    v = _feedback(law, state, e, scheduled_rad)
     if not abs(v) <= PLAUSIBLE_V:  # only a broken state gets here: start the feedback afresh from the present error
-        state, e, v = replace(state, s=_ZERO_OF_S, w=_ZERO), (e[0], 0.0, 0.0, 0.0), 0.0
-    u = v + polynomial(law.feedforward_V, elevation_reference_rad)
+        zeros = (0.0,) * law.order
+        state, e, v = replace(state, s=(*zeros, 0.0), w=zeros), (e[0], *zeros), 0.0
+    u = v + polynomial(law.feedforward_V, region_rad)
     u_limited = saturate(law, u)
     w = u - u_limited
-    remembered = replace(state, v_V=v, e=e[:3], s=_differences(v - w, state.s)[:4], w=_differences(w, state.w)[:3])
-    return remembered, u_limited
+    s, w_differences = _differences(v - w, state.s[:-1]), _differences(w, state.w[:-1])
+    return replace(state, v_V=v, e=e[:-1], s=s, w=w_differences), u_limited
 
 
 def _feedback(law: AxisLaw, state: AxisState, e: Differences, psi_rad: float) -> float:
-    q_0, q_1, q_2, q_3 = (polynomial(row, psi_rad) for row in law.q_V_rad)
-    p_0, *p = (polynomial(row, psi_rad) for row in law.p)
-    (a_0, a_1, a_2), (s_0, *s), (w_0, w_1, w_2) = law.a, state.s, state.w
-    v = state.v_V - p_0 * s_0
-    for p_i, s_i in zip(p, s, strict=False):  # without a roll-off there is no p_3
+    q, p = ([polynomial(row, psi_rad) for row in rows] for rows in (law.q_V_rad, law.p))
+    v = state.v_V - p[0] * state.s[0]
+    for p_i, s_i in zip(p[1:], state.s[1:], strict=False):  # without a roll-off there is no p_n
         v = v + p_i * s_i
-    v = v + q_0 * e[0] + q_1 * e[1] + q_2 * e[2] + q_3 * e[3]
-    return v - a_0 * w_0 + a_1 * w_1 + a_2 * w_2
+    for q_i, e_i in zip(q, e, strict=True):
+        v = v + q_i * e_i
+    v = v - law.a[0] * state.w[0]
+    for a_i, w_i in zip(law.a[1:], state.w[1:], strict=True):
+        v = v + a_i * w_i
+    return v
 
 
 def _differences(value: float, previous: Differences) -> Differences:
-    """`value` with its backward differences of one order more than the last value's own in `previous`."""
+    """`value` with its backward differences, one for each of those of the last value in `previous`."""
     found = [value]
     for last in previous:
         found.append(found[-1] - last)
@@ -153,13 +152,13 @@ class FloatLaw:
 
     def __init__(self, table: ControllerTable) -> None:
         self._table = table
-        self._state = law_reset(table, 0.0, 0.0)
+        self._state = law_reset(table, *[0.0] * len(table.axes))
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start at rest at the measured angles."""
-        self._state = law_reset(self._table, psi_rad, phi_rad)
+        self._state = law_reset(self._table, *angles_rad)
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample: u_M_V, u_T_V."""
-        self._state, u_M_V, u_T_V = law_step(self._table, self._state, psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
-        return u_M_V, u_T_V
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles: the voltages."""
+        self._state, voltages_V = law_step(self._table, self._state, *given_rad)
+        return voltages_V

@@ -1,16 +1,20 @@
-"""The linearised plant at an operating point, eqs (17)-(19), and its two single-input subsystems."""
+"""The linearised plant at an operating point, eqs (17)-(19), and its single-input subsystems, one a loop."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from design.structure import measured_axis
 from records.errors import BadInput
-from records.loops import LOOPS
+from records.loops import LOOPS, Loop
+from records.table import ORDERS
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
 from sim.kernel.reference import reference
+from sim.model import Model
 
 Array = NDArray[np.float64]
 
@@ -24,20 +28,6 @@ class LinearPlant:
     C: Array
 
 
-@dataclass(frozen=True)
-class Subsystem:
-    """Which states, input and output of the plant the design of one axis sees."""
-
-    states: tuple[str, str, str]
-    input: str
-    output: str
-
-
-SUBSYSTEMS: Mapping[str, Subsystem] = {
-    loop.axis: Subsystem((loop.rotor_speed, loop.output, loop.rate), loop.input, loop.output) for loop in LOOPS
-}
-
-
 def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
     """A, B, C of eqs (17) and (18) at `point`, without Coulomb friction: sgn has no slope at rest."""
     model = reference(bound.model)
@@ -46,22 +36,49 @@ def linearise(bound: BoundPlant, point: OperatingPoint) -> LinearPlant:
     return LinearPlant(model.A(*arguments), model.B(*arguments), model.C(*arguments))
 
 
-def subsystem(bound: BoundPlant, linear: LinearPlant, axis: str) -> LinearPlant:
-    """The third-order part of `linear` from the axis' input to its angle, eq (20) or (21), cross-coupling left out.
+def subsystem(bound: BoundPlant, linear: LinearPlant, loop: Loop, loops: Sequence[Loop] = LOOPS) -> LinearPlant:
+    """The part of `linear` from the loop's input to its angle, eq (20) or (21), without the states of the axes that other loops hold:
+    those that the input reaches and that reach the angle, in the plant's order.
 
-    Raises BadInput where the input does not drive the rotor's speed at once, as behind a second lag.
+    Raises BadInput where the input does not reach the angle here, or through more states than a law can be made for.
     """
-    wanted = SUBSYSTEMS[axis]
-    names = [symbol.name for symbol in bound.model.states]
-    rows = [names.index(name) for name in wanted.states]
-    column = [symbol.name for symbol in bound.model.inputs].index(wanted.input)
-    output = list(bound.model.outputs).index(wanted.output)
-    if not np.any(linear.B[rows, column]):
+    model = bound.model
+    column = [symbol.name for symbol in model.inputs].index(loop.input)
+    output = [str(name) for name in model.outputs].index(loop.output)
+    others = {state for other in loops if other != loop for state in _axis_states(model, other)}
+    free = np.array([symbol not in others for symbol in model.states])
+    coupling = (linear.A != 0.0) & free & free[:, np.newaxis]
+    reached = _closure(coupling, (linear.B[:, column] != 0.0) & free)
+    rows = np.flatnonzero(reached & _closure(coupling.T, (linear.C[output] != 0.0) & free))
+    if not 1 <= len(rows) <= ORDERS[-1]:
+        states = ", ".join(str(model.states[row]) for row in rows) or "none"
         raise BadInput(
-            f"{axis} axis", f"plant {bound.plant.name!r}", f"{wanted.input} behind a second lag of the rotor",
-            "a rotor with one lag: the law is designed on three states",
-            "design it on another plant, and fly this one with --table",
+            f"{loop.axis} axis", f"plant {bound.plant.name!r}", f"{len(rows)} states between {loop.input} and {loop.output}: {states}",
+            f"1 to {ORDERS[-1]} that the input moves and that move the angle",
+            "choose another operating range, or another input for this loop",
         )  # fmt: skip
     return LinearPlant(
-        A=linear.A[np.ix_(rows, rows)], B=linear.B[np.ix_(rows, [column])], C=linear.C[np.ix_([output], rows)]
+        A=linear.A[np.ix_(rows, rows)],
+        B=linear.B[np.ix_(rows, np.array([column]))],
+        C=linear.C[np.ix_(np.array([output]), rows)],
     )
+
+
+def of_loops(bound: BoundPlant, linear: LinearPlant, loops: Sequence[Loop]) -> LinearPlant:
+    """The whole plant with the loops' inputs and outputs alone, in their order."""
+    inputs, outputs = [symbol.name for symbol in bound.model.inputs], [str(name) for name in bound.model.outputs]
+    columns, rows = [inputs.index(loop.input) for loop in loops], [outputs.index(loop.output) for loop in loops]
+    return LinearPlant(linear.A, linear.B[:, columns], linear.C[rows])
+
+
+def _axis_states(model: Model, loop: Loop) -> set[Any]:
+    axis = measured_axis(model, loop)
+    return set() if axis is None else {axis.position, axis.velocity}
+
+
+def _closure(coupling: NDArray[np.bool_], seeds: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """All states that are reached from the seeds, where coupling[i, j] leads from j to i."""
+    reached = seeds
+    for _ in range(len(seeds)):
+        reached = reached | (coupling @ reached)
+    return reached

@@ -84,7 +84,7 @@ def migrations(axis: ScheduledAxis, psi_rad: Array, plants: Sequence[PlantPolyno
 
 def exact_design(axis: ScheduledAxis, plant: PlantPolynomials, psi_rad: float) -> DeltaForm:
     """The controller that eq (26) gives for `plant` itself, without fit."""
-    where = f"{axis.name} at psi = {math.degrees(psi_rad):.1f} deg"
+    where = f"{axis.name} at {math.degrees(psi_rad):.1f} deg"
     return placed(transfer_from_polynomials(plant.b, plant.a), plant, axis.wishes, where).delta
 
 
@@ -126,4 +126,5 @@ def _fit_direct(
     columns = np.array([np.concatenate([form.q, form.p[1:]]) for form in forms]).T
     kept = [[store(c) for c in fit(grid_rad, column, degree)] for column in columns]
     values = np.array([polyval(psi_rad, row) for row in kept]).T
-    return [to_delta(DirectForm(row[:4], np.append(1.0, row[4:]))) for row in values]
+    count = len(forms[0].q)
+    return [to_delta(DirectForm(row[:count], np.append(1.0, row[count:]))) for row in values]

@@ -1,6 +1,6 @@
 """The design at each operating point: equilibrium, linear plant, controller."""
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +13,10 @@ from design.loop import PlantPolynomials, plant_polynomials
 from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
 from design.refine import refined
 from design.settings import AxisSettings, DesignSettings
+from design.structure import measured_axis
 from design.transfer import TransferFunction, transfer_function
-from records.table import AXES, BothAxes
+from records.errors import BadInput
+from records.loops import Loop
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint, equilibrium
 
@@ -32,48 +34,73 @@ class PointDesign:
 
 
 def grid(settings: DesignSettings) -> Array:
-    """The elevations Psi_0 [rad], (points,), of the operating points, evenly spread over the schedule's range."""
-    return np.linspace(settings.psi_min_rad, settings.psi_max_rad, settings.operating_points)
+    """The scheduling angles Psi_0 [rad], (points,), of the operating points, evenly spread over the range; 0 alone without a schedule."""
+    if settings.schedule is None:
+        return np.zeros(1)
+    return np.linspace(settings.schedule.min_rad, settings.schedule.max_rad, settings.operating_points)
 
 
-def equilibria(bound: BoundPlant, psi_rad: Array) -> tuple[OperatingPoint, ...]:
-    """Eq (16) at each elevation; raises BadInput naming the angle and the input that would leave its limits."""
-    return tuple(equilibrium(bound, float(psi)) for psi in psi_rad)
+def rest(bound: BoundPlant, settings: DesignSettings, psi_rad: float) -> OperatingPoint:
+    """Eq (16) with the scheduling axis at this angle and all others at 0; raises BadInput naming angle and input beyond its limits."""
+    if settings.schedule is None:
+        return equilibrium(bound)
+    arms = [axis for axis in bound.model.axes if axis.position is not None]
+    scheduling = measured_axis(bound.model, settings.loop(settings.schedule.axis))
+    return equilibrium(bound, *(psi_rad if axis is scheduling else 0.0 for axis in arms))
+
+
+def equilibria(bound: BoundPlant, settings: DesignSettings, psi_rad: Array) -> tuple[OperatingPoint, ...]:
+    """`rest` at each scheduling angle."""
+    return tuple(rest(bound, settings, float(psi)) for psi in psi_rad)
+
+
+def rest_V(bound: BoundPlant, equilibria: Sequence[OperatingPoint], loop: Loop) -> Array:
+    """The loop's voltage at each operating point, (points,)."""
+    column = [symbol.name for symbol in bound.model.inputs].index(loop.input)
+    return np.array([point.u0[column] for point in equilibria])
 
 
 @dataclass(frozen=True)
-class DesignPoints(BothAxes[tuple[PointDesign, ...]]):
-    """Equilibria (points,) over the schedule's range and the controllers made for each of them."""
+class DesignPoints:
+    """Equilibria (points,) over the schedule's range and the controllers made for each of them, by loop."""
 
     psi_rad: Array
     equilibria: tuple[OperatingPoint, ...]
-    elevation: tuple[PointDesign, ...]
-    azimuth: tuple[PointDesign, ...]
+    axes: tuple[tuple[PointDesign, ...], ...]
 
 
 def design_points(bound: BoundPlant, settings: DesignSettings) -> DesignPoints:
-    """Design both axes at each operating point; raises BadInput naming angle and axis where that is not possible."""
+    """Design all axes at each operating point; raises BadInput naming angle and axis where that is not possible."""
     psi_rad = grid(settings)
-    points = equilibria(bound, psi_rad)
-    elevation, azimuth = (
-        tuple(design_point(bound, point, axis, settings.axis(axis), settings.sample_period_s) for point in points)
-        for axis in AXES
+    points = equilibria(bound, settings, psi_rad)
+    axes = tuple(
+        tuple(
+            design_point(bound, point, settings, settings.axis(loop.axis), float(psi))
+            for psi, point in zip(psi_rad, points, strict=True)
+        )
+        for loop in settings.loops
     )
-    return DesignPoints(psi_rad, points, elevation, azimuth)
+    return DesignPoints(psi_rad, points, axes)
 
 
 def design_point(
-    bound: BoundPlant, point: OperatingPoint, axis: str, wishes: AxisSettings, sample_period_s: float
+    bound: BoundPlant, point: OperatingPoint, settings: DesignSettings, wishes: AxisSettings, psi_rad: float
 ) -> PointDesign:
-    """The controller of `axis` at `point`; raises BadInput naming axis and angle when eq (26) cannot be used there."""
-    where = f"{axis} at psi = {math.degrees(point.psi_rad):.1f} deg"
-    linear = subsystem(bound, linearise(bound, point), axis)
-    transfer = transfer_function(linear, sample_period_s, where)
-    return placed(transfer, plant_polynomials(sample(linear, sample_period_s)), wishes, where)
+    """The controller of one axis at `point`; raises BadInput naming axis and angle when eq (26) cannot be used there."""
+    where = settings.place(wishes.axis, psi_rad)
+    linear = subsystem(bound, linearise(bound, point), settings.loop(wishes.axis), settings.loops)
+    transfer = transfer_function(linear, settings.sample_period_s, where)
+    return placed(transfer, plant_polynomials(sample(linear, settings.sample_period_s)), wishes, where)
 
 
 def placed(transfer: TransferFunction, plant: PlantPolynomials, wishes: AxisSettings, where: str) -> PointDesign:
     """Eq (26) solved for one sampled plant, given in powers of z^-1 and of gamma; raises BadInput naming `where` (see place)."""
+    states, poles = len(plant.a) - 1, len(wishes.poles_rad_s)
+    if poles != 2 * states:
+        raise BadInput(
+            "poles", where, f"{poles} poles of an axis of {states} states", f"{2 * states} poles",
+            f"give plant and controller {states} each in poles_rad_s",
+        )  # fmt: skip
     wanted = characteristic(poles_z(wishes.placed_rad_s, plant.sample_period_s))
     placement = place(transfer.b, transfer.a, wanted, FREE_DEGREES[wishes.free_degree], where)
     return PointDesign(plant, transfer, placement, exact_delta(plant, placement, wishes))
@@ -86,5 +113,5 @@ def exact_delta(plant: PlantPolynomials, placement: Placement, wishes: AxisSetti
     if free_degree == "integral":
         return DeltaForm(delta.q, np.append(0.0, delta.p[1:]))
     if free_degree == "q3_zero":
-        return DeltaForm(np.append(delta.q[:3], 0.0), delta.p)
+        return DeltaForm(np.append(delta.q[:-1], 0.0), delta.p)
     return delta

@@ -5,13 +5,13 @@
     A = 1 + a_1 z^-1 + a_2 z^-2 + a_3 z^-3,    B = b_1 z^-1 + b_2 z^-2 + b_3 z^-3
     P = 1 + p_1 z^-1 + p_2 z^-2 + p_3 z^-3,    Q = q_0 + q_1 z^-1 + q_2 z^-2 + q_3 z^-3
 
-The paper counts seven equations for the seven unknowns; that of z^0 reads 1 = 1, so six remain.
+as it stands for a plant of n = 3 states. The paper counts seven equations for the seven unknowns; that of z^0 reads 1 = 1, so six remain.
 
 A roll-off adds p_4 z^-4 to P and one pole to place: Q/P then falls by 20 dB a decade towards the Nyquist frequency, where the controller
 of eq (22) passes every encoder step on at its highest gain.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,31 +22,46 @@ from records.errors import BadInput
 
 Array = NDArray[np.float64]
 
-ORDER = 3
-
 # Above this condition number the coefficients keep fewer than 6 digits more than the cancellation in Q(1) takes away.
 MAX_CONDITION = 1e6
 
 
 @dataclass(frozen=True)
 class FreeDegree:
-    """A condition `p` . (p_1 p_2 p_3 p_4) + `q` . (q_0 q_1 q_2 q_3) = `value` that fixes the last unknown, and what it means."""
+    """A condition `p` . (p_1 p_2 ..) + `q` . (q_0 .. q_n) = `value` that fixes the last unknown, and what it means.
 
-    p: tuple[float, float, float, float]
-    q: tuple[float, float, float, float]
+    `p` and `q` make a row from the number of its unknowns.
+    """
+
+    p: Callable[[int], Sequence[float]]
+    q: Callable[[int], Sequence[float]]
     value: float
     meaning: str
 
-    def row(self, order: int) -> Array:
-        """The condition's left side over the unknowns p_1 .. p_order, q_0 .. q_3."""
-        return np.array([*self.p[:order], *self.q])
+    def row(self, p_count: int, q_count: int) -> Array:
+        """The condition's left side over the unknowns p_1 .., q_0 .. q_n."""
+        return np.array([*self.p(p_count), *self.q(q_count)])
+
+
+def _ones(count: int) -> list[float]:
+    return [1.0] * count
+
+
+def _zeros(count: int) -> list[float]:
+    return [0.0] * count
 
 
 FREE_DEGREES: Mapping[str, FreeDegree] = {
-    "integral": FreeDegree((1, 1, 1, 1), (0, 0, 0, 0), -1.0, "P(1) = 0: the controller integrates"),
-    "q3_zero": FreeDegree((0, 0, 0, 0), (0, 0, 0, 1), 0.0, "q_3 = 0: lowest gain without an integrator"),
-    "q0_zero": FreeDegree((0, 0, 0, 0), (1, 0, 0, 0), 0.0, "q_0 = 0: the controller answers one sample later"),
-    "q_nyquist_zero": FreeDegree((0, 0, 0, 0), (1, -1, 1, -1), 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"),
+    "integral": FreeDegree(_ones, _zeros, -1.0, "P(1) = 0: the controller integrates"),
+    "q3_zero": FreeDegree(
+        _zeros, lambda n: [*_zeros(n - 1), 1.0], 0.0, "q_3 = 0, the last q: lowest gain without an integrator"
+    ),
+    "q0_zero": FreeDegree(
+        _zeros, lambda n: [1.0, *_zeros(n - 1)], 0.0, "q_0 = 0: the controller answers one sample later"
+    ),
+    "q_nyquist_zero": FreeDegree(
+        _zeros, lambda n: [(-1.0) ** i for i in range(n)], 0.0, "Q(-1) = 0: no answer at the Nyquist frequency"
+    ),
 }
 
 
@@ -68,24 +83,25 @@ def characteristic(poles: NDArray[np.complex128]) -> Array:
     return np.asarray(np.poly(poles).real)
 
 
-def sylvester(b: Array, a: Array, order: int = ORDER) -> Array:
-    """Coefficients of z^-1 .. z^-n of A (p_1 .. p_order) + B (q_0 .. q_3), shape (n, order + 4), n = 3 + order, from b (4,) and a (4,)
-    with b_0 = 0."""
+def sylvester(b: Array, a: Array, order: int) -> Array:
+    """Coefficients of z^-1 .. z^-(n + order) of A (p_1 .. p_order) + B (q_0 .. q_n), shape (n + order, order + n + 1), from b and a
+    (n + 1,) with b_0 = 0."""
     columns = [np.convolve(a, np.eye(order + 1)[index]) for index in range(1, order + 1)]
-    columns += [np.convolve(b, np.eye(order + 1)[index]) for index in range(ORDER + 1)]
+    columns += [np.convolve(b, np.eye(order + 1)[index]) for index in range(len(a))]
     return np.stack(columns, axis=1)[1:]
 
 
 def place(b: Array, a: Array, wanted: Array, free: FreeDegree, where: str) -> Placement:
-    """Solve eq (26) for `wanted` (7,), or (8,) with a roll-off; b (4,) with b_0 = 0 and a (4,) with a_0 = 1, ascending powers of z^-1.
+    """Solve eq (26) for `wanted` (2 n + 1,), or one more with a roll-off; b and a (n + 1,), b_0 = 0, a_0 = 1, ascending powers of z^-1.
 
-    B is divided by max|b|, which takes the condition number from 1e6 to about 50. Raises BadInput naming `where` (axis and
-    operating angle) when the system is ill-conditioned or when the controller has a pole outside the unit circle: both would
+    B is divided by max|b|, which takes the condition number of the CE150 from 1e6 to about 50. Raises BadInput naming `where` (axis
+    and operating angle) when the system is ill-conditioned or when the controller has a pole outside the unit circle: both would
     place the poles on paper only.
     """
-    scale, order = float(np.max(np.abs(b))), len(wanted) - 1 - ORDER
-    unscale = np.array([1.0] * order + [1.0 / scale] * (ORDER + 1))
-    row = free.row(order) * unscale
+    states = len(a) - 1
+    scale, order = float(np.max(np.abs(b))), len(wanted) - 1 - states
+    unscale = np.array([1.0] * order + [1.0 / scale] * (states + 1))
+    row = free.row(order, states + 1) * unscale
     size = float(np.max(np.abs(row)))
     system = np.vstack([sylvester(b / scale, a, order), row / size])
     target = np.append(wanted[1:] - np.append(a[1:], np.zeros(order)), free.value / size)

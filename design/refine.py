@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 
 
 def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[complex], free: FreeDegree) -> DeltaForm:
-    """The controller `found` after that step: q (4,) in V/rad, p (order,).
+    """The controller `found` after that step: q (n + 1,) in V/rad, p (order,).
 
-    b (4,) and a (4,) of `plant` ascend in gamma, poles (3 + order,) are in rad/s. `found` must be near: all is linear, but a step as large
+    b and a (n + 1,) of `plant` ascend in gamma, poles (n + order,) are in rad/s. `found` must be near: all is linear, but a step as large
     as the controller itself would bring back what its columns round away. Raises numpy's LinAlgError where A and B share a root.
     """
     unknowns = len(found.q) + len(found.p)
@@ -36,7 +36,7 @@ def refined(plant: PlantPolynomials, found: DeltaForm, poles_rad_s: Sequence[com
     system = columns / rows[:, np.newaxis]
     sizes = np.max(np.abs(system), axis=0)
     step = np.linalg.solve(system / sizes, missing / rows) / sizes
-    return _form(_unknowns(found) + step)
+    return _form(plant, _unknowns(found) + step)
 
 
 def wanted(poles_rad_s: Sequence[complex], sample_period_s: float) -> Array:
@@ -47,15 +47,16 @@ def wanted(poles_rad_s: Sequence[complex], sample_period_s: float) -> Array:
 
 def _at(plant: PlantPolynomials, free: FreeDegree, unknowns: Array) -> Array:
     """What these unknowns make of all but the highest power of gamma in A P + B Q, and of the free condition's left side."""
-    form = _form(unknowns)
+    form = _form(plant, unknowns)
     direct = to_direct(form)
     closed = closed_loop_polynomial(open_loop(plant, form))
-    return np.append(closed[:-1], np.dot(free.row(len(form.p)), np.append(direct.p[1:], direct.q)))
+    return np.append(closed[:-1], np.dot(free.row(len(form.p), len(form.q)), np.append(direct.p[1:], direct.q)))
 
 
 def _unknowns(form: DeltaForm) -> Array:
     return np.append(form.q, form.p)
 
 
-def _form(unknowns: Array) -> DeltaForm:
-    return DeltaForm(q=unknowns[:4], p=unknowns[4:])
+def _form(plant: PlantPolynomials, unknowns: Array) -> DeltaForm:
+    count = len(plant.a)
+    return DeltaForm(q=unknowns[:count], p=unknowns[count:])

@@ -1,5 +1,6 @@
-"""What is known of a table: fit, pole migration, margins over the elevation, and both loops closed together."""
+"""What is known of a table: fit, pole migration, margins over the scheduling angle, and all loops closed together."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,18 +8,18 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from design.coupled import coupled_poles
+from design.coupled import Coupling, coupled_poles, coupling
 from design.direct_form import DeltaForm
-from design.discretise import sample
-from design.linearise import LinearPlant, linearise, subsystem
+from design.discretise import SampledPlant, sample
+from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
 from design.margins import Margins, margins
 from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
-from design.operating_points import DesignPoints, equilibria
+from design.operating_points import DesignPoints, PointDesign, equilibria, rest_V
 from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
 from design.settings import DesignSettings
-from records.table import AXES, BothAxes, ControllerTable, Polynomial
+from records.table import ControllerTable, Polynomial
 from sim.bind import BoundPlant
 
 Array = NDArray[np.float64]
@@ -70,20 +71,27 @@ class AxisReport:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignReport(BothAxes[AxisReport]):
-    """Both axes over the elevations psi_rad (angles,): the operating points and at least 200 angles between them.
+class DesignReport:
+    """All axes over the scheduling angles psi_rad (angles,): the operating points and at least 200 angles between them.
 
-    points_rad (points,) are the operating points alone. `arithmetic` is that of the law that flies; `coupled_slowest_rad_s` (angles,) is
-    the slowest pole of both its loops closed on the whole plant, and `coupled` its worst.
+    points_rad (points,) are the operating points alone, `angle` names the axis that they are of. `arithmetic` is that of the law that
+    flies; `coupled_slowest_rad_s` (angles,) is the slowest pole of all its loops closed on the whole plant, and `coupled` its worst.
+    `coupling` is what the loops do to one another at each operating point.
     """
 
     arithmetic: str
+    angle: str
     psi_rad: Array
     points_rad: Array
-    elevation: AxisReport
-    azimuth: AxisReport
+    axes: tuple[AxisReport, ...]
     coupled_slowest_rad_s: Array
     coupled: SlowestPole
+    coupling: tuple[Coupling, ...]
+
+    def axis(self, name: str) -> AxisReport:
+        """The entry of the axis called `name`."""
+        (found,) = (axis for axis in self.axes if axis.axis == name)
+        return found
 
     def pole_entries(self) -> list[dict[str, Any]]:
         """The entries `poles` of verification.json: designed poles against those that fly, per axis."""
@@ -95,7 +103,7 @@ class DesignReport(BothAxes[AxisReport]):
                 "at_psi_rad": axis.after_rounding.at_psi_rad,
                 "stable": axis.after_rounding.stable,
             }
-            for axis in (self.elevation, self.azimuth)
+            for axis in self.axes
         ]
 
 
@@ -111,23 +119,26 @@ def make_report(
     Raises BadInput where an angle cannot be held at rest.
     """
     psi_rad = angles(points.psi_rad)
-    linear = tuple(linearise(bound, point) for point in equilibria(bound, psi_rad))
+    linear = tuple(linearise(bound, point) for point in equilibria(bound, settings, psi_rad))
     survey = _Survey(bound, settings, table, points, rounding, psi_rad, linear)
-    elevation, azimuth = (_axis_report(survey, axis) for axis in AXES)
+    axes = tuple(_axis_report(survey, loop.axis) for loop in settings.loops)
     poles = _coupled(survey)
     return DesignReport(
         rounding.name,
+        "rest" if settings.schedule is None else settings.schedule.axis,
         psi_rad,
         points.psi_rad,
-        elevation,
-        azimuth,
+        axes,
         np.max(poles.real, axis=1),
         slowest_of(psi_rad, poles),
+        _coupling(survey),
     )
 
 
 def angles(grid_rad: Array) -> Array:
     """The operating points (points,) and, spread evenly strictly between them, at least ANGLES_BETWEEN angles: (angles,) [rad]."""
+    if len(grid_rad) == 1:
+        return grid_rad
     intervals = len(grid_rad) - 1
     parts = -(-ANGLES_BETWEEN // intervals) + 1
     return np.interp(np.arange(intervals * parts + 1) / parts, np.arange(len(grid_rad)), grid_rad)
@@ -150,14 +161,27 @@ class _Survey:
             name=axis,
             wishes=self.settings.axis(axis),
             grid_rad=self.points.psi_rad,
-            designs=tuple(design.delta for design in self.points.axis(axis)),
+            designs=tuple(design.delta for design in self.designs(axis)),
             degree=self.settings.coefficient_degree,
             schedule=schedule_of(self.table.axis(axis)),
         )
 
+    def designs(self, axis: str) -> tuple[PointDesign, ...]:
+        return self.points.axes[self.settings.index(axis)]
+
     def plants(self, axis: str) -> tuple[PlantPolynomials, ...]:
-        parts = (subsystem(self.bound, plant, axis) for plant in self.linear)
+        loop, loops = self.settings.loop(axis), self.settings.loops
+        parts = (subsystem(self.bound, plant, loop, loops) for plant in self.linear)
         return tuple(plant_polynomials(sample(part, self.settings.sample_period_s)) for part in parts)
+
+    def whole(self) -> list[SampledPlant]:
+        """The plants (angles,) from all loops' inputs to all their angles."""
+        loops, period_s = self.settings.loops, self.settings.sample_period_s
+        return [sample(of_loops(self.bound, plant, loops), period_s) for plant in self.linear]
+
+    def together(self) -> Iterator[tuple[DeltaForm, ...]]:
+        """The controllers of all loops at each angle, as they fly."""
+        return zip(*(self.flown(loop.axis) for loop in self.settings.loops), strict=True)
 
     def flown(self, axis: str) -> tuple[DeltaForm, ...]:
         """The controllers (angles,) as they fly."""
@@ -166,7 +190,7 @@ class _Survey:
 
 def _axis_report(survey: _Survey, axis: str) -> AxisReport:
     psi_rad, plants, controllers = survey.psi_rad, survey.plants(axis), survey.flown(axis)
-    scheduled, designs = survey.scheduled(axis), survey.points.axis(axis)
+    scheduled, designs = survey.scheduled(axis), survey.designs(axis)
     fitted = pole_map(plants, [evaluate(scheduled.schedule, float(psi)) for psi in psi_rad])
     rounded = pole_map(plants, controllers)
     return AxisReport(
@@ -198,11 +222,19 @@ def _feedforward_error_V(survey: _Survey, axis: str) -> float:
 
 
 def _operating_V(survey: _Survey, axis: str) -> Array:
-    return np.array([point.u0[AXES.index(axis)] for point in survey.points.equilibria])
+    return rest_V(survey.bound, survey.points.equilibria, survey.settings.loop(axis))
 
 
 def _coupled(survey: _Survey) -> Poles:
-    """Poles of both loops closed on the whole plant, shape (angles, states), for the controllers as they fly."""
-    plants = [sample(plant, survey.settings.sample_period_s) for plant in survey.linear]
-    pairs = zip(*(survey.flown(axis) for axis in AXES), strict=True)
-    return np.array([coupled_poles(plant, pair) for plant, pair in zip(plants, pairs, strict=True)])
+    """Poles of all loops closed on the whole plant, shape (angles, states), for the controllers as they fly."""
+    pairs = zip(survey.whole(), survey.together(), strict=True)
+    return np.array([coupled_poles(plant, controllers) for plant, controllers in pairs])
+
+
+def _coupling(survey: _Survey) -> tuple[Coupling, ...]:
+    """At the operating points; nothing of one loop."""
+    if len(survey.settings.loops) == 1:
+        return ()
+    wanted = set(survey.points.psi_rad.tolist())
+    rows = zip(survey.psi_rad.tolist(), survey.whole(), survey.together(), strict=True)
+    return tuple(coupling(plant, controllers) for psi, plant, controllers in rows if psi in wanted)

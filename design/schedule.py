@@ -19,9 +19,10 @@ from records.table import AxisLaw, Polynomial, short
 Array = NDArray[np.float64]
 
 NOISE = 1e-11
-# Below this sample period [s] q_3 is one number for all elevations. Encoder steps then come as close as the three samples of a third
-# difference, and a q_3 that changes from step to step rectifies them: at 1 ms u_M of the CE150 drifts by 1 V in 0.1 s at 33 deg/s and the
-# flight of `make run` leaves its references by 25 deg, at 2 ms it is 0.1 deg further off on the average, at 5 ms nothing is seen.
+# Below this sample period [s] the last q, q_3 of three states, is one number for all elevations. Encoder steps then come as close as the
+# three samples of a third difference, and a q_3 that changes from step to step rectifies them: at 1 ms u_M of the CE150 drifts by 1 V in
+# 0.1 s at 33 deg/s and the flight of `make run` leaves its references by 25 deg, at 2 ms it is 0.1 deg further off on the average, at
+# 5 ms nothing is seen.
 CONSTANT_Q3_BELOW_S = 2.5e-3
 DIGITS = 8  # float32 holds 7
 # A constant p_i has few digits (records.table.SHORT_BITS) where these move its distance from 1 by this share at most, else all. P is
@@ -40,7 +41,7 @@ class Degrees:
 
 @dataclass(frozen=True)
 class Schedule:
-    """The feedback of one axis in delta form: four polynomials q [V/rad], three or four p in Psi [rad], ascending powers."""
+    """The feedback of one axis in delta form: n + 1 polynomials q [V/rad], n or n + 1 p in Psi [rad], ascending powers."""
 
     q: tuple[Polynomial, ...]
     p: tuple[Polynomial, ...]
@@ -85,11 +86,11 @@ def stored_fit(psi_rad: Array, values: Array, degree: int) -> Polynomial:
 
 
 def fit_schedule(psi_rad: Array, designs: Sequence[DeltaForm], degrees: Degrees, sample_period_s: float) -> Schedule:
-    """Fit the coefficients of the designs (points,) with equal weights; q_3 is a constant below CONSTANT_Q3_BELOW_S."""
+    """Fit the coefficients of the designs (points,) with equal weights; the last q is a constant below CONSTANT_Q3_BELOW_S."""
     q, p = np.array([design.q for design in designs]), np.array([design.p for design in designs])
     fitted = [_kept(psi_rad, column, degrees.q) for column in q.T]
     if sample_period_s < CONSTANT_Q3_BELOW_S:
-        fitted[3] = _kept(psi_rad, q[:, 3], 0) + (0.0,) * degrees.q
+        fitted[-1] = _kept(psi_rad, q[:, -1], 0) + (0.0,) * degrees.q
     return Schedule(q=tuple(fitted), p=tuple(_kept(psi_rad, column, degrees.p, 1.0) for column in p.T))
 
 

@@ -2,15 +2,18 @@
 
 [design]                             every key may be left out; the defaults are DEFAULTS below
 sample_period_s = 0.01
-psi_min_rad = -0.698                 the schedule's range of elevation, within the hard stops
+schedule = "psi_rad"                 the measured angle that the coefficients go by; without it none, but the helicopter's elevation
+psi_min_rad = -0.698                 the schedule's range of that angle, within the hard stops
 psi_max_rad = 0.698
 operating_points = 17                spread evenly over that range
 coefficient_degree = 2               of the fits of q_i in Psi
 recursion_degree = 0                 of the fits of p_i in Psi; without it, coefficient_degree
 feedforward_degree = 2               of the fits of u_M0 and u_T0
 
-[design.elevation]                   and [design.azimuth]
-poles_rad_s = [-3.0, [-2.5, 1.5], [-2.5, -1.5], ...]     six, real or [re, im]
+[design.elevation]                   and [design.azimuth]; another plant's loops, one to four, each by a name of its own
+output = "psi_rad"                   the measured angle; may be left out where the plant has one
+input = "u_M_V"                      the voltage that the loop commands; likewise
+poles_rad_s = [-3.0, [-2.5, 1.5], [-2.5, -1.5], ...]     two for each state of the axis, real or [re, im]
 roll_off_pole_rad_s = -20.0          a seventh: the controller then falls towards the Nyquist frequency; 0 = none, as below 1 ms
 coefficient_degree = 0               of this axis' q_i; without it, that of [design]
 free_degree = "integral"             a name of design.pole_placement.FREE_DEGREES
@@ -18,6 +21,8 @@ prefilter_time_constant_s = 0.4      0 = none
 observer_pole = 0.9                  triple pole in z of the anti-windup observer
 reference_min_rad = -0.698           references outside are clamped
 reference_max_rad = 0.698
+u_min_V = 0.0                        narrower limits than the plant's: for a thrust that does not turn round with its voltage
+u_max_V = 10.0
 
 [design.margins]                     a table that falls below them anywhere in the range is refused
 max_sensitivity = 6.0
@@ -30,11 +35,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from design.pole_placement import FREE_DEGREES, ORDER
+from design.pole_placement import FREE_DEGREES
 from design.schedule import Degrees
-from design.structure import demand_helicopter
+from design.structure import loops_of, stops
 from records.errors import BadInput
-from records.table import AXES, BothAxes
+from records.loops import LOOPS, Loop
+from records.table import ORDERS, Schedule
 from records.text import checks
 from sim.bind import BoundPlant
 
@@ -74,6 +80,21 @@ AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     },
 }
 
+# Models whose axes the default poles are for.
+KNOWN_POLES = ("ce150", "ce150_seed_literal", "ce150_velagic")
+
+# Wishes for an axis of any other plant, whose poles its file must name.
+PLAIN_AXIS: Mapping[str, Any] = {
+    "roll_off_pole_rad_s": 0.0,
+    "coefficient_degree": None,
+    "free_degree": "integral",
+    "prefilter_time_constant_s": 0.0,
+    "observer_pole": 0.9,
+}
+
+# Without a schedule there is one operating point, and every coefficient is a constant.
+UNSCHEDULED: Mapping[str, float] = {"operating_points": 1, "coefficient_degree": 0, "feedforward_degree": 0}
+
 # Poles of a plant file's own are placed alone, and scheduled, unless it asks for a roll-off or another degree as well.
 OWN_POLES: Mapping[str, float | None] = {"roll_off_pole_rad_s": 0.0, "coefficient_degree": None}
 
@@ -85,18 +106,19 @@ MARGIN_DEFAULTS: Mapping[str, float] = {
     "min_delay_margin_s": 0.02,
 }
 
-# Share of the hard stops that the defaults use, so that neither schedule nor reference ends on a stop.
-_ELEVATION_SHARE = 8.0 / 9.0
-_AZIMUTH_SHARE = 12.0 / 13.0
+# Share of the hard stops that the defaults use, so that neither schedule nor reference ends on a stop; the azimuth's by its own name.
+_SHARE, _AZIMUTH_SHARE = 8.0 / 9.0, 12.0 / 13.0
 
 
 @dataclass(frozen=True)
 class AxisSettings:
-    """Wishes for the law of one axis; poles in rad/s of the continuous plane, `observer_pole` in z.
+    """Wishes for the law of the loop `axis`; poles in rad/s of the continuous plane, `observer_pole` in z.
 
-    `coefficient_degree` is that of the fits of its q_i, None where it is the whole table's.
+    `coefficient_degree` is that of the fits of its q_i, None where it is the whole table's; `u_min_V` and `u_max_V` are None where the
+    law may command all that the plant's input takes.
     """
 
+    axis: str
     poles_rad_s: tuple[complex, ...]
     roll_off_pole_rad_s: float
     coefficient_degree: int | None
@@ -105,6 +127,8 @@ class AxisSettings:
     observer_pole: float
     reference_min_rad: float
     reference_max_rad: float
+    u_min_V: float | None = None
+    u_max_V: float | None = None
 
     @property
     def placed_rad_s(self) -> tuple[complex, ...]:
@@ -128,64 +152,120 @@ class MarginLimits:
 
 
 @dataclass(frozen=True)
-class DesignSettings(BothAxes[AxisSettings]):
-    """Wishes for the whole table."""
+class DesignSettings:
+    """Wishes for the whole table; `axes` in the order of `loops`."""
 
     sample_period_s: float
-    psi_min_rad: float
-    psi_max_rad: float
+    schedule: Schedule | None
     operating_points: int
     coefficient_degree: int
     recursion_degree: int
     feedforward_degree: int
-    elevation: AxisSettings
-    azimuth: AxisSettings
+    axes: tuple[AxisSettings, ...]
     margins: MarginLimits
+    loops: tuple[Loop, ...] = LOOPS
 
     def axis(self, name: str) -> AxisSettings:
         """The wishes for one axis, without a roll-off below ROLL_OFF_FROM_S."""
-        wishes = super().axis(name)
+        wishes = self.axes[self.index(name)]
         return wishes if self.sample_period_s >= ROLL_OFF_FROM_S else wishes.without_roll_off
+
+    def with_axis(self, name: str, **change: Any) -> "DesignSettings":
+        """The same with other wishes for one axis."""
+        changed = [replace(axis, **change) if axis.axis == name else axis for axis in self.axes]
+        return replace(self, axes=tuple(changed))
+
+    def index(self, name: str) -> int:
+        """The place of the loop of this axis."""
+        return [loop.axis for loop in self.loops].index(name)
+
+    def loop(self, name: str) -> Loop:
+        """The loop of this axis."""
+        return self.loops[self.index(name)]
 
     def degrees(self, axis: str) -> Degrees:
         """Those of the fits of one axis' feedback."""
         own = self.axis(axis).coefficient_degree
         return Degrees(self.coefficient_degree if own is None else own, self.recursion_degree)
 
+    def place(self, what: str, psi_rad: float) -> str:
+        """Where something is, in words: elevation at psi = -7.9 deg."""
+        if self.schedule is None:
+            return f"{what} at rest"
+        return f"{what} at {self.loop(self.schedule.axis).symbol} = {math.degrees(psi_rad):.1f} deg"
+
 
 def read_settings(bound: BoundPlant) -> DesignSettings:
     """The settings in the plant's [design] section; raises BadInput naming key, range or pole that cannot be used."""
     section, where = bound.plant.design, f"plant {bound.plant.name!r}: design"
-    demand_helicopter(bound)
-    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "psi_min_rad", "psi_max_rad", *AXES, "margins"))
-    psi_limit = bound.parameter("Psi_lim")
-    psi_min, psi_max = _psi_range(section, where, psi_limit)
-    coefficient_degree = _count(section, "coefficient_degree", where)
+    loops = loops_of(bound, section, where)
+    scheduling = _scheduling(section, loops, where)
+    ranges = () if scheduling is None else (f"{scheduling.symbol}_min_rad", f"{scheduling.symbol}_max_rad")
+    names = [loop.axis for loop in loops]
+    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins"))
+    schedule = None if scheduling is None else _schedule(bound, section, scheduling, where)
+    counts = DEFAULTS if schedule else {**DEFAULTS, **UNSCHEDULED}
+    coefficient_degree = _count(section, "coefficient_degree", where, counts)
     settings = DesignSettings(
         sample_period_s=checks.positive(_entry(section, "sample_period_s", DEFAULTS), f"{where}.sample_period_s"),
-        psi_min_rad=psi_min,
-        psi_max_rad=psi_max,
-        operating_points=_count(section, "operating_points", where),
+        schedule=schedule,
+        operating_points=_count(section, "operating_points", where, counts),
         coefficient_degree=coefficient_degree,
         recursion_degree=_count({"recursion_degree": coefficient_degree, **section}, "recursion_degree", where),
-        feedforward_degree=_count(section, "feedforward_degree", where),
-        elevation=_axis(section, "elevation", where, (psi_min, psi_max), psi_limit),
-        azimuth=_axis(section, "azimuth", where, *_azimuth_range(bound)),
+        feedforward_degree=_count(section, "feedforward_degree", where, counts),
+        axes=tuple(_axis(bound, section, loop, where, schedule) for loop in loops),
         margins=_margins(section, f"{where}.margins"),
+        loops=loops,
     )
     _check_period(settings, where)
     _check_degrees(settings, where)
-    for axis in AXES:
-        _check_nyquist(settings, axis, where)
+    for name in names:
+        _check_nyquist(settings, name, where)
     return settings
+
+
+def _scheduling(section: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Loop | None:
+    """The loop whose angle the coefficients go by; the helicopter's is its first."""
+    if "schedule" not in section:
+        return loops[0] if loops == LOOPS else None
+    name = checks.text(section["schedule"], f"{where}.schedule")
+    for loop in loops:
+        if name == loop.output:
+            return loop
+    known = ", ".join(loop.output for loop in loops)
+    raise BadInput(
+        "schedule", f"{where}.schedule", repr(name), f"a loop's output, {known}", "leave it out for no schedule"
+    )
+
+
+def _schedule(bound: BoundPlant, section: Mapping[str, Any], loop: Loop, where: str) -> Schedule:
+    low_key, high_key = f"{loop.symbol}_min_rad", f"{loop.symbol}_max_rad"
+    stops_rad = stops(bound, loop)
+    default = _within(stops_rad, _SHARE)
+    low, high = (_range_end(section, key, default, end, where) for end, key in enumerate((low_key, high_key)))
+    _check_range(f"{where}: {low_key}, {high_key}", low, high, stops_rad, "operating range")
+    return Schedule(loop.axis, low, high)
+
+
+def _range_end(
+    section: Mapping[str, Any], key: str, default: tuple[float, float] | None, end: int, where: str
+) -> float:
+    if key not in section and default is None:
+        raise BadInput(f"key {key!r}", where, "nothing", "a number, as this axis has no stops", f"add {key}")
+    return checks.number(section.get(key, default[end] if default else None), f"{where}.{key}")
+
+
+def _within(stops_rad: tuple[float, float], share: float) -> tuple[float, float] | None:
+    """The default of a range within stops; None where there are none."""
+    return (share * stops_rad[0], share * stops_rad[1]) if all(map(math.isfinite, stops_rad)) else None
 
 
 def _entry(section: Mapping[str, Any], key: str, defaults: Mapping[str, Any]) -> Any:
     return section[key] if key in section else defaults[key]
 
 
-def _count(section: Mapping[str, Any], key: str, where: str) -> int:
-    value = _entry(section, key, DEFAULTS)
+def _count(section: Mapping[str, Any], key: str, where: str, defaults: Mapping[str, float] = DEFAULTS) -> int:
+    value = _entry(section, key, defaults)
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
         raise BadInput(
             "count", f"{where}.{key}", repr(value), "a whole number of 0 or more", "write it without a point"
@@ -197,35 +277,30 @@ def _own_degree(value: Any, where: str) -> int | None:
     return None if value is None else _count({"coefficient_degree": value}, "coefficient_degree", where)
 
 
-def _psi_range(section: Mapping[str, Any], where: str, limit_rad: float) -> tuple[float, float]:
-    default = _ELEVATION_SHARE * limit_rad
-    low = checks.number(section.get("psi_min_rad", -default), f"{where}.psi_min_rad")
-    high = checks.number(section.get("psi_max_rad", default), f"{where}.psi_max_rad")
-    _check_range(f"{where}: psi_min_rad, psi_max_rad", low, high, limit_rad, "operating range")
-    return low, high
-
-
-def _check_range(where: str, low: float, high: float, limit_rad: float, what: str) -> None:
+def _check_range(where: str, low: float, high: float, stops_rad: tuple[float, float], what: str) -> None:
     got = f"{low:g} .. {high:g} rad"
     if low >= high:
         raise BadInput(what, where, f"{got}, which is empty", "min < max", "widen the range")
-    if low < -limit_rad or high > limit_rad:
-        expected = f"a range within the hard stops at +-{limit_rad:g} rad"
-        raise BadInput(what, where, got, expected, "narrow the range")
-
-
-def _azimuth_range(bound: BoundPlant) -> tuple[tuple[float, float], float]:
-    limit = bound.parameter("Phi_lim")
-    return (-_AZIMUTH_SHARE * limit, _AZIMUTH_SHARE * limit), limit
+    if low < stops_rad[0] or high > stops_rad[1]:
+        symmetric = stops_rad[0] == -stops_rad[1]
+        stops = f"+-{stops_rad[1]:g} rad" if symmetric else f"{stops_rad[0]:g} and {stops_rad[1]:g} rad"
+        raise BadInput(what, where, got, f"a range within the hard stops at {stops}", "narrow the range")
 
 
 def _axis(
-    design: Mapping[str, Any], axis: str, design_where: str, reference_rad: tuple[float, float], limit_rad: float
+    bound: BoundPlant, design: Mapping[str, Any], loop: Loop, design_where: str, schedule: Schedule | None
 ) -> AxisSettings:
-    where = f"{design_where}.{axis}"
+    axis, where = loop.axis, f"{design_where}.{loop.axis}"
     section = checks.table(design.get(axis, {}), where)
-    checks.keys(section, where, (), tuple(AxisSettings.__dataclass_fields__))
-    defaults = {**AXIS_DEFAULTS[axis], **(OWN_POLES if "poles_rad_s" in section else {})}
+    wished = tuple(name for name in AxisSettings.__dataclass_fields__ if name != "axis")
+    is_known = bound.model.name in KNOWN_POLES and axis in AXIS_DEFAULTS
+    checks.keys(section, where, () if is_known else ("poles_rad_s",), (*wished, "output", "input"))
+    stops_rad = stops(bound, loop)
+    if schedule is not None and schedule.axis == axis:
+        reference_rad: tuple[float, float] | None = (schedule.min_rad, schedule.max_rad)
+    else:
+        reference_rad = _within(stops_rad, _AZIMUTH_SHARE if axis == "azimuth" else _SHARE)
+    defaults = {**AXIS_DEFAULTS.get(axis, PLAIN_AXIS), **(OWN_POLES if "poles_rad_s" in section else {})}
     filter_s = checks.number(
         _entry(section, "prefilter_time_constant_s", defaults), f"{where}.prefilter_time_constant_s"
     )
@@ -233,10 +308,13 @@ def _axis(
         raise BadInput(
             "time constant", f"{where}.prefilter_time_constant_s", repr(filter_s), "0 or more", "write 0 for no filter"
         )
-    low = checks.number(section.get("reference_min_rad", reference_rad[0]), f"{where}.reference_min_rad")
-    high = checks.number(section.get("reference_max_rad", reference_rad[1]), f"{where}.reference_max_rad")
-    _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, limit_rad, "reference range")
+    low, high = (
+        _range_end(section, key, reference_rad, end, where)
+        for end, key in enumerate(("reference_min_rad", "reference_max_rad"))
+    )
+    _check_range(f"{where}: reference_min_rad, reference_max_rad", low, high, stops_rad, "reference range")
     return AxisSettings(
+        axis=axis,
         poles_rad_s=read_poles(_entry(section, "poles_rad_s", defaults), f"{where}.poles_rad_s"),
         roll_off_pole_rad_s=_roll_off(_entry(section, "roll_off_pole_rad_s", defaults), f"{where}.roll_off_pole_rad_s"),
         coefficient_degree=_own_degree(_entry(section, "coefficient_degree", defaults), where),
@@ -245,6 +323,7 @@ def _axis(
         observer_pole=_observer_pole(_entry(section, "observer_pole", defaults), f"{where}.observer_pole"),
         reference_min_rad=low,
         reference_max_rad=high,
+        **{name: checks.number(section[name], f"{where}.{name}") for name in ("u_min_V", "u_max_V") if name in section},
     )
 
 
@@ -264,10 +343,12 @@ def _observer_pole(value: Any, where: str) -> float:
 
 
 def read_poles(entries: Any, where: str) -> tuple[complex, ...]:
-    """Poles in rad/s, real or [re, im]; raises BadInput unless they are 2 x ORDER, stable and in conjugate pairs."""
-    if not isinstance(entries, list | tuple) or len(entries) != 2 * ORDER:
+    """Poles in rad/s, real or [re, im]; raises BadInput unless they are two a state, stable and in conjugate pairs."""
+    most = 2 * ORDERS[-1]
+    if not isinstance(entries, list | tuple) or len(entries) not in range(2, most + 1, 2):
         got = f"{len(entries)} poles" if isinstance(entries, list | tuple) else repr(entries)[:60]
-        raise BadInput("poles", where, got, f"{2 * ORDER} poles", "give plant and controller three poles each")
+        expected = f"two poles for each state of the axis, as 6 poles of a helicopter's, {most} at most"
+        raise BadInput("poles", where, got, expected, "give plant and controller as many each as the axis has states")
     poles = tuple(_pole(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
     for pole in poles:
         if pole.imag != 0.0 and poles.count(pole) != poles.count(pole.conjugate()):
@@ -306,9 +387,20 @@ def _margins(design: Mapping[str, Any], where: str) -> MarginLimits:
     return MarginLimits(**values)
 
 
+def _names(settings: DesignSettings) -> list[str]:
+    return [loop.axis for loop in settings.loops]
+
+
 def _check_degrees(settings: DesignSettings, where: str) -> None:
-    degrees = [degree for axis in AXES for degree in asdict(settings.degrees(axis)).values()]
+    degrees = [degree for axis in _names(settings) for degree in asdict(settings.degrees(axis)).values()]
     needed = max(*degrees, settings.feedforward_degree) + 1
+    if settings.schedule is None:
+        if settings.operating_points != 1 or needed > 1:
+            raise BadInput(
+                "degrees", where, f"{settings.operating_points} operating points, fits of degree {needed - 1}",
+                "one point and degrees of 0, as nothing is scheduled", "leave them out, or name the schedule's output",
+            )  # fmt: skip
+        return
     if settings.operating_points < max(needed, 2):
         raise BadInput(
             "operating points",

@@ -1,51 +1,89 @@
-"""Which plants the design stage can work on: a helicopter of two axes as the CE150 is one, by the names of its columns."""
+"""Which loops a plant's law is to close, and which plants have the helicopter's, by the names of their columns."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-from design.linearise import SUBSYSTEMS
 from records.errors import BadInput
+from records.loops import LOOPS, MOST_LOOPS, Loop
+from records.table import parse_loops
+from records.text import checks
 from sim.bind import BoundPlant
+from sim.model import Axis, Model
 
-PARAMETERS = (
-    "Psi_lim",
-    "Phi_lim",
-    "u_min",
-    "u_max",
-    "uT_min",
-    "uT_max",
-)  # stops and limits, which table and references keep
+# Keys of [design] that are no loop; the range of the schedule has its angle in its name.
+_NO_LOOP = ("margins", "schedule")
+
+
+def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple[Loop, ...]:
+    """The loops that [design] names, each a section with `output` and `input`; raises BadInput for what the plant does not have.
+
+    The helicopter's go without saying, and so do the columns of a plant of one output and one input.
+    """
+    if not missing(bound):
+        return LOOPS
+    names = [key for key, entry in section.items() if isinstance(entry, Mapping) and key not in _NO_LOOP]
+    if not 1 <= len(names) <= MOST_LOOPS:
+        expected = f"1 to {MOST_LOOPS} sections, one a loop, as [design.arm] with output, input and poles_rad_s"
+        raise BadInput("loops", where, f"{len(names)} sections", expected, "name the loops that the law is to close")
+    loops = parse_loops([_named(bound, name, section[name], f"{where}.{name}") for name in names], where)
+    for loop in loops:
+        _demand_column("output", loop.output, [str(name) for name in bound.model.outputs], f"{where}.{loop.axis}")
+        _demand_column("input", loop.input, [str(name) for name in bound.model.inputs], f"{where}.{loop.axis}")
+    return loops
+
+
+def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, Any]:
+    section = checks.table(entry, where)
+    outputs, inputs = list(bound.model.outputs), [str(symbol) for symbol in bound.model.inputs]
+    only = {"output": outputs, "input": inputs}
+    columns = {
+        key: section.get(key, str(found[0]) if len(found) == 1 else "one of " + " or ".join(map(str, found)))
+        for key, found in only.items()
+    }
+    return {"axis": name, **columns, "motor": name}
+
+
+def _demand_column(what: str, name: str, known: list[str], where: str) -> None:
+    if name not in known:
+        raise BadInput(f"{what} {name!r}", where, "no such column", f"one of {', '.join(known)}", f"write {what} = ..")
+
+
+def measured_axis(model: Model, loop: Loop) -> Axis | None:
+    """The axis whose position the loop measures; None where it measures something else."""
+    (measured,) = (expression for output, expression in model.outputs.items() if str(output) == loop.output)
+    return next((axis for axis in model.axes if axis.position is not None and axis.position == measured), None)
+
+
+def stops(bound: BoundPlant, loop: Loop) -> tuple[float, float]:
+    """The hard stops of the measured axis [rad], infinite where there are none."""
+    axis = measured_axis(bound.model, loop)
+    low, high = (None, None) if axis is None else (axis.lower, axis.upper)
+    return -math.inf if low is None else bound.number(low), math.inf if high is None else bound.number(high)
 
 
 def missing(bound: BoundPlant) -> tuple[str, ...]:
-    """What a plant lacks to be designed for, in words; nothing of one that has the helicopter's structure."""
+    """What a plant lacks to have the helicopter's structure, in words; nothing of one that has it."""
     return tuple(_missing(bound))
 
 
-def demand_helicopter(bound: BoundPlant) -> None:
-    """Raise BadInput naming what the plant's equations lack to be designed for."""
+def demand_helicopter(bound: BoundPlant, what: str = "image, board and line") -> None:
+    """Raise BadInput naming what the plant lacks for `what`, which are still the helicopter's."""
     lacking = missing(bound)
     if lacking:
         got = f"the equations of {bound.plant.model}, without {', '.join(lacking[:4])}{' and more' if len(lacking) > 4 else ''}"
-        expected = "a helicopter with elevation and azimuth, as model ce150 has them"
-        remedy = (
-            "give such a plant; `simulate` without a loop, `identify`, `diagnose` and `watch` of a log take every plant"
-        )
-        raise BadInput("plant to design for", f"plant {bound.plant.name!r}", got, expected, remedy)
+        expected = f"a helicopter with elevation and azimuth, as model ce150 has them: {what} are of its two loops"
+        remedy = "give such a plant; `design`, `generate`, `verify`, `simulate`, `identify` and `diagnose` take others"
+        raise BadInput(f"plant for {what}", f"plant {bound.plant.name!r}", got, expected, remedy)
 
 
 def _missing(bound: BoundPlant) -> Iterator[str]:
     model = bound.nominal
-    wanted = {
-        "input": [part.input for part in SUBSYSTEMS.values()],
-        "output": [part.output for part in SUBSYSTEMS.values()],
-    }
+    wanted = {"input": [loop.input for loop in LOOPS], "output": [loop.output for loop in LOOPS]}
     for kind, names in wanted.items():
         found = [str(name) for name in (model.inputs if kind == "input" else model.outputs)]
         if found != names:
             yield from (f"the {kind} {name}" for name in names if name not in found)
             if set(names) <= set(found):
                 yield f"{kind}s {' and '.join(names)} alone, in this order"
-    states = {str(state) for state in model.states}
-    yield from (f"the state {name}" for part in SUBSYSTEMS.values() for name in part.states if name not in states)
-    yield from (f"the axis {axis}" for axis in SUBSYSTEMS if axis not in {entry.name for entry in model.axes})
-    yield from (f"the parameter {name}" for name in PARAMETERS if name not in bound.plant.parameters)
+    yield from (f"the axis {loop.axis}" for loop in LOOPS if loop.axis not in {entry.name for entry in model.axes})

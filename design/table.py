@@ -1,5 +1,6 @@
 """From a plant and wishes to a controller table and the report on it: the entry of the design stage."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -8,23 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.gate import check
-from design.operating_points import DesignPoints, design_points
+from design.operating_points import DesignPoints, design_points, rest_V
 from design.report import DesignReport, make_report
 from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
-from design.settings import DesignSettings
+from design.settings import AxisSettings, DesignSettings
 from records.errors import BadInput
-from records.loops import LOOPS
+from records.loops import Loop
 from records.plant import plant_digest
-from records.table import AXES, AxisLaw, ControllerTable, short
+from records.table import AxisLaw, ControllerTable, short
 from sim.added_effects import linear_part, without_effects
 from sim.bind import BoundPlant
 from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]
-
-LIMITS = {"elevation": ("u_min", "u_max"), "azimuth": ("uT_min", "uT_max")}
-SENSORS = {loop.axis: loop.output for loop in LOOPS}
 
 
 def design(
@@ -74,22 +72,21 @@ def make_table(bound: BoundPlant, settings: DesignSettings, points: DesignPoints
     return ControllerTable(
         plant=bound.plant.name,
         sample_period_s=settings.sample_period_s,
-        psi_min_rad=settings.psi_min_rad,
-        psi_max_rad=settings.psi_max_rad,
-        elevation=axis_law(bound, settings, points, "elevation"),
-        azimuth=axis_law(bound, settings, points, "azimuth"),
+        schedule=settings.schedule,
+        axes=tuple(axis_law(bound, settings, points, loop.axis) for loop in settings.loops),
+        loops=settings.loops,
         origin=_origin(bound, settings, points),
     )
 
 
 def axis_law(bound: BoundPlant, settings: DesignSettings, points: DesignPoints, axis: str) -> AxisLaw:
     """The law of one axis, fitted over the designs at `points`."""
-    designs = [design.delta for design in points.axis(axis)]
+    designs = [design.delta for design in points.axes[settings.index(axis)]]
     schedule = fit_schedule(points.psi_rad, designs, settings.degrees(axis), settings.sample_period_s)
     return AxisLaw(
         q_V_rad=schedule.q,
         p=schedule.p,
-        a=observer(settings.axis(axis).observer_pole),
+        a=observer(settings.axis(axis).observer_pole, len(schedule.q) - 1),
         **frame_entries(bound, settings, points.psi_rad, points.equilibria, axis),
     )
 
@@ -98,24 +95,48 @@ def frame_entries(
     bound: BoundPlant, settings: DesignSettings, psi_rad: Array, equilibria: Sequence[OperatingPoint], axis: str
 ) -> dict[str, Any]:
     """What every controller's table states of an axis, by field: eq (28) fitted over psi_rad (points,), limits, ranges, encoder step."""
-    wishes = settings.axis(axis)
-    voltages_V = np.array([point.u0[AXES.index(axis)] for point in equilibria])
-    u_min_V, u_max_V = (bound.parameter(name) for name in LIMITS[axis])
+    wishes, loop = settings.axis(axis), settings.loop(axis)
+    u_min_V, u_max_V = limits_V(bound, loop, wishes)
     return {
-        "feedforward_V": stored_fit(psi_rad, voltages_V, settings.feedforward_degree),
+        "feedforward_V": stored_fit(psi_rad, rest_V(bound, equilibria, loop), settings.feedforward_degree),
         "prefilter_time_constant_s": wishes.prefilter_time_constant_s,
         "u_min_V": u_min_V,
         "u_max_V": u_max_V,
         "u_safe_V": min(max(0.0, u_min_V), u_max_V),
         "reference_min_rad": wishes.reference_min_rad,
         "reference_max_rad": wishes.reference_max_rad,
-        "resolution_rad": bound.plant.sensors[SENSORS[axis]],
+        "resolution_rad": bound.plant.sensors[loop.output],
     }
 
 
-def observer(pole: float) -> tuple[float, float, float]:
-    """a_0, a_1, a_2 of A = (1 - pole z^-1)^3 = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2], each the nearest short number."""
-    return short((1.0 - pole) ** 3), short(3.0 * pole**2 - 2.0 * pole**3), short(pole**3)
+def limits_V(bound: BoundPlant, loop: Loop, wishes: AxisSettings) -> tuple[float, float]:
+    """Least and largest voltage of the loop's input: the plant's, or narrower ones that are wished for.
+
+    Raises BadInput where it has no limit, as then it has no anti-windup either, and for limits beyond the plant's.
+    """
+    (variable,) = (symbol for symbol in bound.model.inputs if symbol.name == loop.input)
+    least, most = bound.limits(variable)
+    low = least if wishes.u_min_V is None else wishes.u_min_V
+    high = most if wishes.u_max_V is None else wishes.u_max_V
+    where = f"plant {bound.plant.name!r}: {loop.input}"
+    if not (math.isfinite(low) and math.isfinite(high)):
+        remedy = "state them in the equations, or as u_min_V and u_max_V of the loop"
+        raise BadInput("input limits", where, f"{low:g} to {high:g} V", "two numbers", remedy)
+    if not least <= low < high <= most:
+        raise BadInput(
+            "input limits", where, f"{low:g} to {high:g} V", f"within {least:g} to {most:g} V", "narrow them"
+        )
+    return low, high
+
+
+def observer(pole: float, order: int) -> tuple[float, ...]:
+    """a_i of A = (1 - pole z^-1)^order = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2 + ..], each the nearest short number.
+
+    With z^-1 = 1 - delta the bracket is (1 - A) / z^-1 = sum_k c_k z^-(k - 1), c_k = -(order over k) (-pole)^k.
+    """
+    c = [-math.comb(order, k) * (-pole) ** k for k in range(1, order + 1)]
+    a = [(-1) ** i * sum(math.comb(k, i) * c[k] for k in range(i, order)) for i in range(order)]
+    return tuple(short(value) for value in (1.0 - a[0], *a[1:]))
 
 
 def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -> dict[str, Any]:
@@ -127,14 +148,20 @@ def _origin(bound: BoundPlant, settings: DesignSettings, points: DesignPoints) -
         "recursion_degree": settings.recursion_degree,
         "feedforward_degree": settings.feedforward_degree,
         "operating_points": [
-            {"psi_rad": point.psi_rad, "x0": plain(point.x0), "u0_V": plain(point.u0)} for point in points.equilibria
+            {**_angle(settings, float(psi)), "x0": plain(point.x0), "u0_V": plain(point.u0)}
+            for psi, point in zip(points.psi_rad, points.equilibria, strict=True)
         ],
-        **{axis: _axis_origin(settings, points, axis) for axis in AXES},
+        **{loop.axis: _axis_origin(settings, points, loop.axis) for loop in settings.loops},
     }
 
 
+def _angle(settings: DesignSettings, psi_rad: float) -> dict[str, float]:
+    """The scheduling angle of an operating point, by its column."""
+    return {} if settings.schedule is None else {settings.loop(settings.schedule.axis).output: psi_rad}
+
+
 def _axis_origin(settings: DesignSettings, points: DesignPoints, axis: str) -> dict[str, Any]:
-    wishes, designs = settings.axis(axis), points.axis(axis)
+    wishes, designs = settings.axis(axis), points.axes[settings.index(axis)]
     deltas = [design.delta for design in designs]
     schedule = fit_schedule(points.psi_rad, deltas, settings.degrees(axis), settings.sample_period_s)
     return {

@@ -10,6 +10,7 @@ from design.schedule import evaluate, schedule_of
 from design.settings import AxisSettings, DesignSettings
 from design.table import axis_law
 from records.errors import BadInput
+from records.loops import LOOPS
 from records.table import AXES, ControllerTable
 from sim.bind import BoundPlant
 from sim.loop import fly_law
@@ -32,14 +33,12 @@ class TradePoint:
 
 
 def trade_off(bound: BoundPlant, settings: DesignSettings, table: ControllerTable) -> tuple[TradePoint, ...]:
-    """The points of FACTORS that can be designed for, from slow to fast; none without a roll-off on both axes."""
-    if not all(settings.axis(axis).roll_off_pole_rad_s for axis in AXES):
+    """The points of FACTORS that can be designed for, from slow to fast; none without a roll-off on both axes of a helicopter."""
+    if settings.loops != LOOPS or not all(settings.axis(axis).roll_off_pole_rad_s for axis in AXES):
         return ()
     points = []
     for factor in FACTORS:
-        moved = replace(
-            settings, elevation=_moved(settings, "elevation", factor), azimuth=_moved(settings, "azimuth", factor)
-        )
+        moved = replace(settings, axes=tuple(_moved(settings, axis, factor) for axis in AXES))
         try:
             points.append(_point(bound, moved, table, factor))
         except BadInput:  # a controller that is unstable itself
@@ -54,11 +53,7 @@ def _moved(settings: DesignSettings, axis: str, factor: float) -> AxisSettings:
 
 def _point(bound: BoundPlant, settings: DesignSettings, table: ControllerTable, factor: float) -> TradePoint:
     points = design_points(bound, settings)
-    moved = replace(
-        table,
-        elevation=axis_law(bound, settings, points, "elevation"),
-        azimuth=axis_law(bound, settings, points, "azimuth"),
-    )
+    moved = replace(table, axes=tuple(axis_law(bound, settings, points, axis) for axis in AXES))
     log = fly_law(bound, moved, flight(bound, settings.sample_period_s))
     return TradePoint(
         factor=factor,
@@ -73,6 +68,6 @@ def _sensitivity(table: ControllerTable, points: DesignPoints, axis: str) -> flo
     schedule = schedule_of(table.axis(axis))
     loops = [
         open_loop(design.plant, evaluate(schedule, float(psi)))
-        for psi, design in zip(points.psi_rad, points.axis(axis), strict=True)
+        for psi, design in zip(points.psi_rad, points.axes[AXES.index(axis)], strict=True)
     ]
     return max(margins(loop).sensitivity for loop in loops)

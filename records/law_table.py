@@ -1,16 +1,15 @@
 """The table of a controller that is not the scheduled one: its own numbers in the frame that all controllers share.
 
-    u = feedback(reference, angle) + u_ff(filtered elevation reference),   limited
+    u = feedback(reference, angle) + u_ff(filtered reference of the scheduling angle),   limited
 
 The frame accepts inputs, filters references, adds the operating point's voltage and limits; what the feedback is made of are the
 controller's own `gains`, a frozen record of numbers and tuples of numbers.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from records.table import BothAxes, Polynomial, digest_of, lag_gain, text_of
+from records.table import Polynomial, Table, lag_gain, text_of
 
 SCHEMA = "law-table/1"
 G = TypeVar("G")
@@ -40,28 +39,8 @@ class AxisRange(Protocol):
         """The encoder's step [rad]."""
 
 
-class FlownTable(Protocol):
-    """What every table states, whichever controller it is of: records.table.ControllerTable, or LawTable."""
-
-    @property
-    def plant(self) -> str:
-        """The plant file's name."""
-
-    @property
-    def sample_period_s(self) -> float:
-        """Time from sample to sample [s]."""
-
-    @property
-    def elevation(self) -> AxisRange:
-        """The elevation's ranges."""
-
-    @property
-    def azimuth(self) -> AxisRange:
-        """The azimuth's ranges."""
-
-    @property
-    def digest(self) -> str:
-        """The name of the table: 64 hexadecimal digits."""
+# What flies, whichever controller it is of: records.table.ControllerTable, or LawTable.
+FlownTable = Table[Any]
 
 
 @dataclass(frozen=True)
@@ -83,23 +62,11 @@ class AxisTable(Generic[G]):
         return lag_gain(self.prefilter_time_constant_s, sample_period_s)
 
 
-@dataclass(frozen=True)
-class LawTable(BothAxes[AxisTable[G]]):
-    """Both axes of a controller over the elevations psi_min_rad..psi_max_rad; `origin` tells where the numbers are from."""
+@dataclass(frozen=True, kw_only=True)
+class LawTable(Table[AxisTable[G]]):
+    """The table of another controller, by its name."""
 
     controller: str
-    plant: str
-    sample_period_s: float
-    psi_min_rad: float
-    psi_max_rad: float
-    elevation: AxisTable[G]
-    azimuth: AxisTable[G]
-    origin: Mapping[str, Any] = field(default_factory=dict)
-
-    @property
-    def digest(self) -> str:
-        """See records.table.digest_of."""
-        return digest_of(self)
 
 
 def law_table_text(table: LawTable[Any]) -> str:

@@ -2,28 +2,30 @@
 
 from dataclasses import dataclass
 
+MOST_LOOPS = 4
+
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop: its `axis`, the `symbol` of the axis' angle, the letter of its `rotor` and the `motor` that it drives.
+    """One loop: its `axis`, the columns of the measured angle `output` [rad] and of the commanded `input` [V], the `motor` driven.
 
     Columns bear their units: output psi_rad, reference psi_ref_rad, input u_M_V.
     """
 
     axis: str
-    symbol: str
-    rotor: str
+    output: str
+    input: str
     motor: str
 
     @property
-    def output(self) -> str:
-        """The measured angle."""
-        return f"{self.symbol}_rad"
+    def symbol(self) -> str:
+        """The angle without its unit."""
+        return self.output.removesuffix("_rad")
 
     @property
-    def rate(self) -> str:
-        """The angle's rate, a state of the plant."""
-        return f"{self.symbol}_dot_rad_s"
+    def voltage(self) -> str:
+        """The input without its unit."""
+        return self.input.removesuffix("_V")
 
     @property
     def reference(self) -> str:
@@ -36,20 +38,10 @@ class Loop:
         return f"{self.symbol}_counts"
 
     @property
-    def rotor_speed(self) -> str:
-        """The speed of the rotor between input and angle, a state of the plant."""
-        return f"omega_{self.rotor}_rad_s"
-
-    @property
-    def input(self) -> str:
-        """What the law commands."""
-        return f"u_{self.rotor}_V"
-
-    @property
     def duty(self) -> str:
         """What the command is on the board's PWM."""
         return f"duty_{self.motor}_ticks"
 
 
-# In the order of the plant's outputs and inputs. The first angle is the one that the schedule goes by.
-LOOPS = (Loop("elevation", "psi", "M", "main"), Loop("azimuth", "phi", "T", "tail"))
+# The helicopter's, in the order of the plant's outputs and inputs.
+LOOPS = (Loop("elevation", "psi_rad", "u_M_V", "main"), Loop("azimuth", "phi_rad", "u_T_V", "tail"))

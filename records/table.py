@@ -1,16 +1,17 @@
 """The controller table: everything that the generated law is made from, and the digest that names it.
 
-The law of one axis, with delta = 1 - z^-1 and Psi the measured elevation, is (seed 000, eqs (22) and (27), in another basis)
+The law of one axis of n states, with delta = 1 - z^-1 and Psi the angle that the table is scheduled on, is (seed 000, eqs (22) and (27),
+in another basis)
 
-    Q(z^-1, Psi) = q_0 + q_1 delta + q_2 delta^2 + q_3 delta^3
-    P(z^-1, Psi) = 1 - z^-1 [(1 - p_0) + p_1 delta + p_2 delta^2 + p_3 delta^3]
-    A(z^-1)      = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]        the anti-windup observer
+    Q(z^-1, Psi) = q_0 + q_1 delta + .. + q_n delta^n
+    P(z^-1, Psi) = 1 - z^-1 [(1 - p_0) + p_1 delta + .. + p_n delta^n]
+    A(z^-1)      = 1 - z^-1 [(1 - a_0) + a_1 delta + .. + a_n-1 delta^(n-1)]        the anti-windup observer
 
     A v = Q e + (A - P) s        e = filtered reference - angle, s = u - u_ff after the limits, v = u_fb before them
     u = v + u_ff(filtered reference)
 
-P(1) = p_0, exactly 0 with integral action; p_3 is there with a roll-off, where Q/P has one pole more than it has zeros. Each q_i and p_i
-is a polynomial in Psi [rad], each feed-forward one in the filtered elevation reference; ascending powers.
+P(1) = p_0, exactly 0 with integral action; p_n is there with a roll-off, where Q/P has one pole more than it has zeros. Each q_i and p_i
+is a polynomial in Psi [rad], each feed-forward one in the filtered reference of that angle; ascending powers.
 
 What is no number, and a state that is broken, are answered alike by every form of the law (docs/theory.md, section 4).
 """
@@ -18,20 +19,23 @@ What is no number, and a state that is broken, are answered alike by every form 
 import hashlib
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from records.errors import BadInput
-from records.loops import LOOPS
+from records.loops import LOOPS, MOST_LOOPS, Loop
 from records.text import checks
 from records.text.reading import read_json
 
 SCHEMA = "controller-table/1"
-AXES = tuple(loop.axis for loop in LOOPS)
+AXES = tuple(loop.axis for loop in LOOPS)  # the helicopter's
+ORDERS = range(1, 6)  # states of an axis that a law can be made for
 Polynomial = tuple[float, ...]
 A = TypeVar("A")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
@@ -54,24 +58,13 @@ def short(value: float) -> float:
     return math.ldexp(round(math.ldexp(fraction, SHORT_BITS)), exponent - SHORT_BITS)
 
 
-class BothAxes(Generic[A]):
-    """A record that has one entry for each of AXES."""
-
-    elevation: A
-    azimuth: A
-
-    def axis(self, name: str) -> A:
-        """The entry of the axis called `name`."""
-        return {"elevation": self.elevation, "azimuth": self.azimuth}[name]
-
-
 @dataclass(frozen=True)
 class AxisLaw:
-    """The law of one axis; `q_V_rad` has 4 polynomials, `p` 3 or with a roll-off 4, `a` 3 numbers; voltages in V, angles in rad."""
+    """The law of one axis of n states: n + 1 polynomials `q_V_rad`, n or with a roll-off n + 1 `p`, n numbers `a`; V, rad."""
 
     q_V_rad: tuple[Polynomial, ...]
     p: tuple[Polynomial, ...]
-    a: tuple[float, float, float]
+    a: tuple[float, ...]
     feedforward_V: Polynomial
     prefilter_time_constant_s: float
     u_min_V: float
@@ -85,27 +78,84 @@ class AxisLaw:
         """b of the axis' reference filter, see `lag_gain`."""
         return lag_gain(self.prefilter_time_constant_s, sample_period_s)
 
+    @property
+    def order(self) -> int:
+        """n, the states that the law was made for."""
+        return len(self.q_V_rad) - 1
+
 
 @dataclass(frozen=True)
-class ControllerTable(BothAxes[AxisLaw]):
-    """The table of both axes over the scheduling range psi_min_rad..psi_max_rad, and where it came from.
+class Schedule:
+    """The measured angle of the loop `axis`, which the coefficients are polynomials of, held within min_rad..max_rad."""
 
-    `feedforward_V` of the azimuth axis is a polynomial in the elevation reference, as u_T0 depends on Psi only.
-    `origin` records plant, operating points, poles and fit for tracing; it is covered by `digest` as well.
+    axis: str
+    min_rad: float
+    max_rad: float
+
+    @property
+    def widest_rad(self) -> float:
+        """The largest |Psi|."""
+        return max(abs(self.min_rad), abs(self.max_rad))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table(Generic[A]):
+    """What the tables of all controllers state: one entry of `axes` a loop, in the order of `loops`, and where all came from.
+
+    Without a `schedule` every polynomial is a constant. `origin` records plant, operating points, poles and fit for tracing; it is
+    covered by `digest` as well.
     """
 
     plant: str
     sample_period_s: float
-    psi_min_rad: float
-    psi_max_rad: float
-    elevation: AxisLaw
-    azimuth: AxisLaw
+    schedule: Schedule | None
+    axes: tuple[A, ...]
+    loops: tuple[Loop, ...] = LOOPS
     origin: Mapping[str, Any] = field(default_factory=dict)
+
+    def axis(self, name: str) -> A:
+        """The entry of the axis called `name`."""
+        return self.axes[self.index(name)]
+
+    def index(self, name: str) -> int:
+        """The place of the axis called `name`."""
+        return [loop.axis for loop in self.loops].index(name)
+
+    @property
+    def scheduled(self) -> A | None:
+        """The entry of the axis that the schedule goes by."""
+        return None if self.schedule is None else self.axis(self.schedule.axis)
+
+    @property
+    def widest_schedule_rad(self) -> float:
+        """The largest |Psi| of the schedule; 0 without one."""
+        return 0.0 if self.schedule is None else self.schedule.widest_rad
 
     @property
     def digest(self) -> str:
-        """See digest_of."""
-        return digest_of(self)
+        """SHA-256, as 64 hexadecimal digits, of the table's canonical JSON text."""
+        text = json.dumps(content_of(self), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ControllerTable(Table[AxisLaw]):
+    """The table of the scheduled law."""
+
+    @property
+    def order(self) -> int:
+        """The most states of any axis: how many differences each remembers."""
+        return max(axis.order for axis in self.axes)
+
+
+T = TypeVar("T", bound=Table[Any])
+
+
+def changed_axis(table: T, name: str, **change: object) -> T:
+    """`table` with fields of the axis called `name` replaced."""
+    index = table.index(name)
+    axes = (*table.axes[:index], replace(table.axes[index], **change), *table.axes[index + 1 :])
+    return replace(table, axes=axes)
 
 
 def table_text(table: ControllerTable) -> str:
@@ -122,39 +172,59 @@ def load_table(path: Path) -> ControllerTable:
 def parse_table(content: Mapping[str, Any], where: str) -> ControllerTable:
     """A controller table from the content of its file; raises BadInput."""
     checks.schema(content, f"{where}: schema", SCHEMA)
-    names = tuple(ControllerTable.__dataclass_fields__)
-    checks.keys(content, where, ("schema", "digest", *names))
-    table = ControllerTable(
-        **parse_frame(content, where),
-        elevation=_axis(content["elevation"], f"{where}: elevation"),
-        azimuth=_axis(content["azimuth"], f"{where}: azimuth"),
-        origin=checks.table(content["origin"], f"{where}: origin"),
-    )
+    table = ControllerTable(**parse_frame(content, where, _axis))
     demand_digest(table.digest, content, where)
     return table
 
 
 # What the tables of all controllers share (records/law_table.py).
 
-
-def digest_of(table: Any) -> str:
-    """SHA-256, as 64 hexadecimal digits, of the canonical JSON text of a table."""
-    text = json.dumps(asdict(table), sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
+_SHARED = ("schema", "digest", "plant", "sample_period_s", "origin", "loops")
 
 
-def text_of(schema: str, table: Any) -> str:
+def content_of(table: Table[Any]) -> dict[str, Any]:
+    """What the file states besides schema and digest: the schedule's range under its angle's symbol, each axis under its name.
+
+    The helicopter's loops go without saying.
+    """
+    own = [entry.name for entry in fields(table) if entry.name not in Table.__dataclass_fields__]
+    told = {} if table.loops == LOOPS else {"loops": [asdict(loop) for loop in table.loops]}
+    return {
+        **{name: getattr(table, name) for name in own},
+        "plant": table.plant,
+        "sample_period_s": table.sample_period_s,
+        **told,
+        **_range_entries(table),
+        **{loop.axis: asdict(axis) for loop, axis in zip(table.loops, table.axes, strict=True)},
+        "origin": table.origin,
+    }
+
+
+def text_of(schema: str, table: Table[Any]) -> str:
     """A table as JSON text with its digest; numbers print so that they read back exactly."""
-    return json.dumps({"schema": schema, "digest": table.digest, **asdict(table)}, indent=1) + "\n"
+    return json.dumps({"schema": schema, "digest": table.digest, **content_of(table)}, indent=1) + "\n"
 
 
-def parse_frame(content: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Plant, sample period and scheduling range from the content of a table's file; raises BadInput naming `where` and the key."""
+def parse_frame(
+    content: Mapping[str, Any], where: str, axis: Callable[[Any, str], Any], own: tuple[str, ...] = ()
+) -> dict[str, Any]:
+    """The fields of Table from the content of a file, each axis made by `axis` from entry and place; raises BadInput.
+
+    `own` are the keys that this controller's table has besides.
+    """
+    loops = parse_loops(content["loops"], f"{where}: loops") if "loops" in content else LOOPS
+    schedule = _schedule(content, loops, where)
+    names = [loop.axis for loop in loops]
+    ranges = () if schedule is None else _range_keys(loops[names.index(schedule.axis)])
+    required = [name for name in _SHARED if name != "loops"]
+    checks.keys(content, where, (*required, *own, *names, *ranges), ("loops",))
     return {
         "plant": checks.text(content["plant"], f"{where}: plant"),
         "sample_period_s": checks.positive(content["sample_period_s"], f"{where}: sample_period_s"),
-        "psi_min_rad": checks.number(content["psi_min_rad"], f"{where}: psi_min_rad"),
-        "psi_max_rad": checks.number(content["psi_max_rad"], f"{where}: psi_max_rad"),
+        "schedule": schedule,
+        "axes": tuple(axis(content[name], f"{where}: {name}") for name in names),
+        "loops": loops,
+        "origin": checks.table(content["origin"], f"{where}: origin"),
     }
 
 
@@ -165,26 +235,75 @@ def demand_digest(digest: str, content: Mapping[str, Any], where: str) -> None:
         raise BadInput("digest", where, got, expected, "the table was changed by hand: design it again")
 
 
+def parse_loops(entries: Any, where: str) -> tuple[Loop, ...]:
+    """One to four loops of distinct names, angles [rad] and voltages [V]; raises BadInput."""
+    if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_LOOPS:
+        raise BadInput("loops", where, repr(entries)[:60], f"a list of 1 to {MOST_LOOPS} loops", "name fewer loops")
+    loops = tuple(_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
+    for name in Loop.__dataclass_fields__:
+        named = [getattr(loop, name) for loop in loops]
+        if len(set(named)) < len(named):
+            raise BadInput("loops", where, f"{name} {', '.join(named)}", "each once", "name each loop's own")
+    return loops
+
+
+def _loop(entry: Any, where: str) -> Loop:
+    section = checks.table(entry, where)
+    names = tuple(Loop.__dataclass_fields__)
+    checks.keys(section, where, names)
+    loop = Loop(**{name: checks.text(section[name], f"{where}.{name}") for name in names})
+    for name, value in asdict(loop).items():
+        if not _NAME.fullmatch(value) or (name == "axis" and value in _SHARED):
+            raise BadInput(
+                "name", f"{where}.{name}", repr(value), "letters, digits and _, as in C", "choose another name"
+            )
+    if not (loop.output.endswith("_rad") and loop.input.endswith("_V")):
+        expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
+        raise BadInput("loop", where, f"{loop.output} and {loop.input}", expected, "choose such a loop")
+    return loop
+
+
+def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Schedule | None:
+    for loop in loops:
+        low, high = _range_keys(loop)
+        if low in content and high in content:
+            limits = (checks.number(content[key], f"{where}: {key}") for key in (low, high))
+            return Schedule(loop.axis, *limits)
+    return None
+
+
+def _range_entries(table: Table[Any]) -> dict[str, float]:
+    if table.schedule is None:
+        return {}
+    keys = _range_keys(table.loops[table.index(table.schedule.axis)])
+    return dict(zip(keys, (table.schedule.min_rad, table.schedule.max_rad), strict=True))
+
+
+def _range_keys(loop: Loop) -> tuple[str, str]:
+    return f"{loop.symbol}_min_rad", f"{loop.symbol}_max_rad"
+
+
 def _axis(entry: Any, where: str) -> AxisLaw:
     section = checks.table(entry, where)
     checks.keys(section, where, tuple(AxisLaw.__dataclass_fields__))
-    a = checks.numbers(section["a"], f"{where}.a", 3)
+    q = _polynomials(section["q_V_rad"], f"{where}.q_V_rad", ORDERS.start + 1, ORDERS.stop)
+    order = len(q) - 1
     scalars = {
         name: checks.number(section[name], f"{where}.{name}")
         for name in AxisLaw.__dataclass_fields__
         if name not in ("q_V_rad", "p", "a", "feedforward_V")
     }
     return AxisLaw(
-        q_V_rad=_polynomials(section["q_V_rad"], f"{where}.q_V_rad", (4,)),
-        p=_polynomials(section["p"], f"{where}.p", (3, 4)),
-        a=(a[0], a[1], a[2]),
+        q_V_rad=q,
+        p=_polynomials(section["p"], f"{where}.p", order, order + 1),
+        a=checks.numbers(section["a"], f"{where}.a", order),
         feedforward_V=checks.numbers(section["feedforward_V"], f"{where}.feedforward_V"),
         **scalars,
     )
 
 
-def _polynomials(entry: Any, where: str, counts: tuple[int, ...]) -> tuple[Polynomial, ...]:
-    if not isinstance(entry, list) or len(entry) not in counts:
-        expected = f"{' or '.join(map(str, counts))} lists of coefficients"
+def _polynomials(entry: Any, where: str, least: int, most: int) -> tuple[Polynomial, ...]:
+    if not isinstance(entry, list) or not least <= len(entry) <= most:
+        expected = f"{least} to {most} lists of coefficients"
         raise BadInput("polynomials", where, repr(entry)[:60], expected, "design the table again")
     return tuple(checks.numbers(row, f"{where}[{index}]") for index, row in enumerate(entry))

@@ -12,8 +12,8 @@ SCHEMA = "verification/1"
 class FirstMismatch:
     """Where two executions part: stimulus, step and lane, the signal that differs first, and all words in hexadecimal.
 
-    `signal` is u_M_V, u_T_V or a word of the state. `step` is None when all outputs agreed but a state at rest, or at the end, did
-    not. `inputs` are psi_ref_rad, phi_ref_rad, psi_rad, phi_rad; `words` what the first and what the second execution gave.
+    `signal` is an output or a word of the state. `step` is None when all outputs agreed but a state at rest, or at the end, did not.
+    `inputs` are the references, then the angles, of all loops; `words` what the first and what the second execution gave.
     """
 
     stimulus: str
@@ -59,11 +59,20 @@ def equality_table(equality: Equality) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class RoundingBound:
-    """A proved bound on what one step can differ from real arithmetic, per output [V], and how it was proved."""
+    """A proved bound on what one step can differ from real arithmetic, per output (u_M) in V, and how it was proved."""
 
-    u_M: float
-    u_T: float
+    volts: Mapping[str, float]
     method: str
+
+    @property
+    def told(self) -> str:
+        """The bounds in words."""
+        return ", ".join(f"{name} within {1e3 * bound:.2f} mV" for name, bound in self.volts.items())
+
+    @property
+    def entries(self) -> dict[str, Any]:
+        """What verification.json states."""
+        return {**self.volts, "method": self.method}
 
 
 @dataclass(frozen=True)
@@ -176,8 +185,8 @@ def verification_text(verification: Verification) -> str:
         "failures": list(verification.failures),
         "equality": [equality_table(row) for row in verification.equality],
         "self_test": content["self_tests"],
-        "rounding_bound_V": content["rounding"],
-        "rounding_bounds_V": content["roundings"],
+        "rounding_bound_V": verification.rounding.entries,
+        "rounding_bounds_V": {name: bound.entries for name, bound in verification.roundings.items()},
         "poles": content["poles"],
         "target": content["target"],
         **({"proofs": content["proofs"]} if verification.proofs else {}),

@@ -191,8 +191,8 @@ def _hint(flight: ReplayedLog, table: ControllerTable, run: Replayed, row: int) 
 
 
 def _meets_limit(table: ControllerTable, run: Replayed, row: int) -> bool:
-    low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V], np.float32)
-    high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V], np.float32)
+    low = np.array([axis.u_min_V for axis in table.axes], np.float32)
+    high = np.array([axis.u_max_V for axis in table.axes], np.float32)
     at_limit = np.any((run.u_V[: row + 1] <= low) | (run.u_V[: row + 1] >= high), axis=1)
     return bool(at_limit.any() and np.sum(~at_limit[np.argmax(at_limit) :]) <= BEHIND_LIMIT)
 

@@ -77,7 +77,7 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
         * PRINT_MARGIN,
         missing=_blocks(np.isnan(u_V[:, 0])),
         printings=written,
-        steps_rad=(table.elevation.resolution_rad, table.azimuth.resolution_rad),
+        steps_rad=(table.axes[0].resolution_rad, table.axes[1].resolution_rad),
         rows=samples,
         input_names=tuple(log.columns.inputs),
         lacking=lacking,

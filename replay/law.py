@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from codegen.law_constants import AxisConstants, law_constants
 from records.errors import BadInput
-from records.table import AxisLaw, ControllerTable
+from records.table import AxisLaw, ControllerTable, Schedule, changed_axis
+from sim.kernel.law import is_kernel_s
 from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
 Gains = tuple[float | None, float | None]
 
-AXES = ("elevation", "azimuth")
 ROOM = 12  # coefficients of a polynomial, as in firmware_replay.c
 SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE = range(4)
 WINDUP_OBSERVER, WINDUP_NONE, WINDUP_CLAMP, WINDUP_FREEZE = range(4)
@@ -131,8 +131,7 @@ class Setup:
 
     def with_axis(self, name: str, **change: object) -> "Setup":
         """The setup with fields of the table's axis `name` replaced."""
-        axis = replace(getattr(self.table, name), **change)
-        return replace(self, table=replace(self.table, **{name: axis}))
+        return replace(self, table=changed_axis(self.table, name, **change))
 
 
 class ReplayLaw:
@@ -212,15 +211,13 @@ def _library(arithmetic: str) -> tuple[Any, Any]:
 class _Numbers:
     """All of a table that the C's law is made from; two tables of the same numbers are one here."""
 
-    elevation: AxisLaw
-    azimuth: AxisLaw
+    axes: tuple[AxisLaw, ...]
     sample_period_s: float
-    psi_min_rad: float
-    psi_max_rad: float
+    schedule: Schedule | None
 
     @classmethod
     def of(cls, table: ControllerTable) -> "_Numbers":
-        return cls(table.elevation, table.azimuth, table.sample_period_s, table.psi_min_rad, table.psi_max_rad)
+        return cls(table.axes, table.sample_period_s, table.schedule)
 
     @property
     def table(self) -> ControllerTable:
@@ -228,11 +225,8 @@ class _Numbers:
         return ControllerTable(
             plant="",
             sample_period_s=self.sample_period_s,
-            psi_min_rad=self.psi_min_rad,
-            psi_max_rad=self.psi_max_rad,
-            elevation=self.elevation,
-            azimuth=self.azimuth,
-            origin={},
+            schedule=self.schedule,
+            axes=self.axes,
         )
 
 
@@ -256,11 +250,18 @@ def _law(setup: Setup) -> Any:
 @lru_cache(maxsize=1024)
 def _table_law(numbers: _Numbers, arithmetic: str) -> Any:
     ffi, _ = _library(arithmetic)
-    constants = law_constants(numbers.table, np.float32 if arithmetic == FLOAT32 else np.float64)
+    table = numbers.table
+    constants = law_constants(table, np.float32 if arithmetic == FLOAT32 else np.float64)
+    if constants.schedule is None or not is_kernel_s(table):
+        got = f"loops {', '.join(loop.axis for loop in table.loops)} of up to {table.order} states"
+        expected = "the helicopter's two of three, which a firmware is run again for"
+        raise BadInput(
+            "controller table", "replay", got, expected, "replay it through twin and C: `twinlaw verify --log`"
+        )
     fields = {
-        "axis": [_axis_fields(axis) for axis in (constants.elevation, constants.azimuth)],
-        "psi_min_rad": constants.psi_min_rad,
-        "psi_max_rad": constants.psi_max_rad,
+        "axis": [_axis_fields(axis) for axis in constants.axes],
+        "psi_min_rad": constants.schedule.min_rad,
+        "psi_max_rad": constants.schedule.max_rad,
         "least_schedule_rad": constants.least_schedule_rad,
         "plausible_V": constants.plausible_V,
     }

@@ -7,9 +7,9 @@ from itertools import product
 
 import numpy as np
 
-from records.table import ControllerTable
+from records.table import AXES, ControllerTable
 from replay import thresholds
-from replay.law import AXES, Setup
+from replay.law import Setup
 from replay.variants import BY_ANGLES, Variant
 
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
@@ -53,7 +53,7 @@ def _samples(count: int) -> str:
 def _last_places(table: ControllerTable) -> Iterator[Variant]:
     """Each coefficient one unit of its last place up or down: a number that another program rounded, or one bit that was lost."""
     for name in AXES:
-        axis = getattr(table, name)
+        axis = table.axis(name)
         for key in ("q_V_rad", "p", "a", "feedforward_V"):
             for place in _places(getattr(axis, key)):
                 for way, towards in (("up", np.inf), ("down", -np.inf)):
@@ -73,7 +73,7 @@ def _places(numbers: Sequence[float] | Sequence[Sequence[float]]) -> Iterator[tu
 
 
 def _one_place(setup: Setup, name: str, key: str, place: tuple[int, ...], towards: float) -> Setup:
-    numbers = getattr(getattr(setup.table, name), key)
+    numbers = getattr(setup.table.axis(name), key)
     row = list(numbers[place[0]] if key in ROWS else numbers)
     row[place[-1]] = float(np.nextafter(np.float32(row[place[-1]]), np.float32(towards)))
     changed = tuple(row) if key not in ROWS else (*numbers[: place[0]], tuple(row), *numbers[place[0] + 1 :])

@@ -49,11 +49,11 @@ def _telling_row(flight: ReplayedLog, table: ControllerTable) -> int | None:
     """The first row before which references were known for SETTLED_CONSTANTS time constants, and HISTORY rows are
     whole and off the limits."""
     n = len(flight.t_s)
-    longest_s = max(table.elevation.prefilter_time_constant_s, table.azimuth.prefilter_time_constant_s)
+    longest_s = max(axis.prefilter_time_constant_s for axis in table.axes)
     settling = max(thresholds.HISTORY, int(np.ceil(thresholds.SETTLED_CONSTANTS * longest_s / table.sample_period_s)))
     known = np.all(np.isfinite(flight.reference_rad) & np.isfinite(flight.angle_rad), axis=1)
-    low = np.array([table.elevation.u_min_V, table.azimuth.u_min_V])
-    high = np.array([table.elevation.u_max_V, table.azimuth.u_max_V])
+    low = np.array([axis.u_min_V for axis in table.axes])
+    high = np.array([axis.u_max_V for axis in table.axes])
     with np.errstate(invalid="ignore"):
         free = known & np.all((flight.logged_V > low) & (flight.logged_V < high), axis=1)
     rows = np.arange(settling, max(settling, n - thresholds.LEAST_ROWS))
@@ -78,7 +78,7 @@ def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: Con
     for last in range(first, row):
         law.run(state, (last, last + 1), inputs, None, None)
         ahead_rad.append(state.axis[0].reference_2_rad)
-    for index, axis in enumerate((table.elevation, table.azimuth)):
+    for index, axis in enumerate(table.axes):
         s_V = flight.logged_V[first:row, index] - [polynomial(axis.feedforward_V, angle) for angle in ahead_rad]
         own = state.axis[index]
         own.v_V = float(s_V[-1])

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import ControllerTable
+from records.table import AXES, ControllerTable
 from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel, Fold, Overflow, ReplayLaw, Setup
@@ -127,7 +127,7 @@ def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDAr
     whats = ((law.AT_SUM, "sum"), (law.AT_COMMAND, "command before its limits"))
     for axis in np.flatnonzero(differs[rows[0]]).tolist():
         for (at, what), numbers_V in zip(whats, sites, strict=True):
-            for axes, whose in (((axis,), law.AXES[axis]), ((0, 1), "elevation and azimuth")):
+            for axes, whose in (((axis,), AXES[axis]), ((0, 1), "elevation and azimuth")):
                 yield from _overflows(
                     numbers_V[:, axis], abs(float(off_V[rows[0], axis])), _Place(axes, at, f"{whose} {what}")
                 )
@@ -203,7 +203,7 @@ def angles_that_wrap(flight: ReplayedLog) -> Iterator[Variant]:
                 chosen = [folds[axis] if axis in only else None for axis in range(2)]
                 if any(fold is None for axis, fold in enumerate(chosen) if axis in only):
                     continue
-                whose = " and the ".join(law.AXES[axis] for axis in only)
+                whose = " and the ".join(AXES[axis] for axis in only)
                 sentence = f"lets an integer overflow: the {whose} counts {how} in {bits} bits"
                 yield Variant(name, "folds", sentence, partial(replace, folds=tuple(chosen)))
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import ControllerTable, lag_gain
+from records.table import AXES, ControllerTable, lag_gain
 from replay import thresholds
 from replay.flight import ReplayedLog
-from replay.law import AXES, ReplayLaw, Setup
+from replay.law import ReplayLaw, Setup
 from replay.variants import Variant, prefilter_gains
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ def _window(flight: ReplayedLog) -> int | None:
 
 
 def _constant(table: ControllerTable, axis: int) -> float:
-    return float((table.elevation, table.azimuth)[axis].prefilter_time_constant_s)
+    return float(table.axes[axis].prefilter_time_constant_s)
 
 
 def _with_constants(setup: Setup, constants_s: tuple[float, ...]) -> Setup:

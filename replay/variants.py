@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import AxisLaw, ControllerTable, Polynomial
+from records.table import AXES, AxisLaw, ControllerTable, Polynomial
 from replay import law, thresholds
 from replay.flight import ReplayedLog
-from replay.law import AXES, Channel, Gains, Setup
+from replay.law import Channel, Gains, Setup
 
 Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
@@ -123,7 +123,7 @@ def _feedforward(setup: Setup, by_axis: Mapping[str, Polynomial]) -> Setup:
 
 def prefilter_gains(table: ControllerTable, gain: Callable[[float, float], float]) -> Gains:
     """b of both axes by the rule `gain` of time constant and sample period; None where there is no filter."""
-    constants_s = [getattr(table, axis).prefilter_time_constant_s for axis in AXES]
+    constants_s = [table.axis(axis).prefilter_time_constant_s for axis in AXES]
     first, second = (gain(value, table.sample_period_s) if value > 0.0 else None for value in constants_s)
     return first, second
 
@@ -140,7 +140,7 @@ def _limits_found(table: ControllerTable, flight: ReplayedLog) -> dict[str, dict
     """Limits read off the log, by axis: extremes at which it stays, or beyond the stated ones."""
     found: dict[str, dict[str, float]] = {}
     for axis, u_V in zip(AXES, flight.logged_V.T, strict=True):
-        stated = getattr(table, axis)
+        stated = table.axis(axis)
         if np.nanmin(u_V) == np.nanmax(u_V):  # an input that stands still shows no limit
             continue
         for name, extreme, outwards in (("u_min_V", np.nanmin(u_V), -1.0), ("u_max_V", np.nanmax(u_V), 1.0)):
@@ -236,7 +236,7 @@ def _schedule(table: ControllerTable) -> Iterator[Variant]:
         (law.SCHEDULE_REFERENCE, "schedules on the elevation reference"),
     ):
         yield Variant("other_schedule", "schedule", sentence, partial(replace, schedule=schedule))
-    rows = [row for axis in AXES for row in (*getattr(table, axis).q_V_rad, *getattr(table, axis).p)]
+    rows = [row for axis in AXES for row in (*table.axis(axis).q_V_rad, *table.axis(axis).p)]
     for degree in reversed(range(max(len(row) for row in rows) - 1)):
         sentence = f"schedules with polynomials cut to degree {degree}"
         yield Variant("cut_schedule", "coefficients", sentence, partial(_cut, degree=degree))
@@ -244,7 +244,7 @@ def _schedule(table: ControllerTable) -> Iterator[Variant]:
 
 def _cut(setup: Setup, degree: int) -> Setup:
     for name in AXES:
-        axis = getattr(setup.table, name)
+        axis = setup.table.axis(name)
         cut = {key: tuple(row[: degree + 1] for row in getattr(axis, key)) for key in ("q_V_rad", "p")}
         setup = setup.with_axis(name, **cut)
     return setup
@@ -280,8 +280,8 @@ def _to_bfloat16(value: float) -> float:
 
 
 def _round_table(setup: Setup, to: Round, extent: int) -> Setup:
-    axes: dict[str, Any] = {name: _round_axis(getattr(setup.table, name), to, extent) for name in AXES}
-    setup = replace(setup, table=replace(setup.table, **axes))
+    axes = tuple(_round_axis(axis, to, extent) for axis in setup.table.axes)
+    setup = replace(setup, table=replace(setup.table, axes=axes))
     if extent < 3:
         return setup
     return replace(setup, prefilter_gains=prefilter_gains(setup.table, lambda T, T_s: to(-math.expm1(-T_s / T))))

@@ -13,6 +13,7 @@ from sim.model import Axis
 from sim.start import start_state
 
 MAX_ITERATIONS = 60
+STARTS = (0.5, 0.75)  # of the inputs' range: a thrust by the square has no slope in the middle of a range of both signs
 STEP_TOLERANCE = 1e-14
 RATE_TOLERANCE = 1e-6  # of a rate at a rest point; where there is none, the least rate is far larger
 Array = NDArray[np.float64]
@@ -40,8 +41,9 @@ def equilibrium(bound: BoundPlant, *positions_rad: float) -> OperatingPoint:
     for axis in arms:
         _check_stops(bound, axis, positions.get(axis.position, 0.0))
     x = np.array([positions.get(state, 0.0) for state in model.states])
-    u = np.array([sum(bound.commands(variable)) / 2.0 for variable in model.inputs])
-    found = _solve(bound, *_begin(bound, x, u, positions_rad))
+    commands = np.array([bound.commands(variable) for variable in model.inputs]).reshape(-1, 2)
+    starts = (commands @ np.array([1.0 - share, share]) for share in STARTS)
+    found = next(filter(None, (_solve(bound, *_begin(bound, x, u, positions_rad)) for u in starts)), None)
     if found is None:
         raise BadInput(
             "equilibrium",

@@ -16,23 +16,44 @@ from sim.columns import log_columns, reference_name
 from sim.manoeuvres import Manoeuvre
 from sim.runs.stepped import SteppedPlant
 from sim.simulate import simulate
+from sim.wiring import Wiring
 
 Array = NDArray[np.float64]
 
 
 class Controller(Protocol):
-    """What can fly the two-axis helicopter: a float law, its twin, compiled C, an emulated or a real board.
+    """What can fly a plant: a float law, its twin, compiled C, an emulated or a real board.
 
     `step` is called once per sample, in order; all angles in rad, the inputs in V after the controller's own limits.
     """
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
-        """Start anew at rest at these angles."""
+    def reset(self, *angles_rad: float) -> None:
+        """Start anew at rest at these angles, one a loop."""
         ...
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """Take one sample's references and measured angles; return (u_M_V, u_T_V)."""
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """Take one sample's references, then measured angles, of all loops; return the loops' voltages."""
         ...
+
+
+class Wired:
+    """A law of some loops as a controller of all the plant's columns, in the plant's order."""
+
+    def __init__(self, law: Controller, wires: Wiring) -> None:
+        self._law, self._wires = law, wires
+
+    def reset(self, *angles_rad: float) -> None:
+        """Start anew at rest at these outputs."""
+        self._law.reset(*(angles_rad[place] for place in self._wires.outputs))
+
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """References, then measurements, of all outputs; returns all inputs."""
+        count, places = len(given_rad) // 2, self._wires.outputs
+        voltages_V = self._law.step(*(given_rad[start + place] for start in (0, count) for place in places))
+        command_V = self._wires.rest_V.tolist()
+        for place, u_V in zip(self._wires.inputs, voltages_V, strict=True):
+            command_V[place] = u_V
+        return tuple(command_V)
 
 
 def fly(
@@ -64,7 +85,7 @@ def fly(
 def fly_law(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, *, substeps: int = 1) -> RunLog:
     """The same flight with the float64 law of `table`, wholly in C: about a thousand times faster than `fly`.
 
-    Raises BadInput for a plant that the table is not of (two inputs and two outputs).
+    Raises BadInput for a table of other loops than the helicopter's, or of more than three states (sim/kernel/law.py).
     """
     runs = simulate(
         bound, manoeuvre.t_s, manoeuvre.x0, table, reference=manoeuvre.reference_rad, substeps=substeps, keep="uy"

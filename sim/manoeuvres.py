@@ -3,13 +3,16 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import BadInput
+from records.table import Table
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
+from sim.wiring import wiring
 
 Array = NDArray[np.float64]
 
@@ -56,6 +59,56 @@ def flight(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:
     axes = zip((FLIGHT_ELEVATION, FLIGHT_AZIMUTH), bound.encoder_steps, strict=True)
     legs = [on_encoder_steps(axis, step_rad) for axis, step_rad in axes]
     return manoeuvre("flight", at_rest(bound), FLIGHT_S, sample_period_s, legs)
+
+
+# A flight of a plant that is no helicopter: each loop in turn goes to these shares of its references' range about the middle, and is
+# left alone for so many of its slowest time constants, its reference filter's counted as two.
+STEP_SHARES = (0.0, 0.5, -0.3, 0.0)
+TIME_CONSTANTS = 8.0
+SHORTEST_HOLD_S, LONGEST_HOLD_S = 4.0, 15.0
+
+
+def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
+    """Steps of each loop of a table in turn, from rest in the middle of its references; outputs without a loop stay where they rest.
+
+    Raises BadInput where the plant cannot rest there, or does not have the loops' columns.
+    """
+    wires = wiring(bound, table.loops)
+    middle_rad = [0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes]
+    point = equilibrium(bound, *_positions(bound, wires.outputs, middle_rad))
+    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in _outputs(bound, point.x0)]
+    at_s = 0.0
+    for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):
+        half_rad, hold_s = 0.5 * (axis.reference_max_rad - axis.reference_min_rad), _hold_s(table, axis, loop.axis)
+        moved = [
+            Leg(at_s + index * hold_s, math.degrees(centre_rad + share * half_rad))
+            for index, share in enumerate(STEP_SHARES)
+        ]
+        legs[place] = (replace(moved[0], at_s=0.0), *moved[1:])
+        at_s += len(STEP_SHARES) * hold_s
+    each = zip(legs, bound.encoder_steps, strict=True)
+    return manoeuvre("steps", point.x0, at_s, table.sample_period_s, [on_encoder_steps(*pair) for pair in each])
+
+
+def _hold_s(table: Table[Any], axis: Any, name: str) -> float:
+    """How long each step is left alone."""
+    poles = table.origin.get(name, {}).get("poles_rad_s", [[-1.0, 0.0]])
+    slowest_s = 1.0 / max(min(abs(real) for real, _ in poles), 1e-3)
+    wanted_s = float(TIME_CONSTANTS * (slowest_s + 2.0 * axis.prefilter_time_constant_s))
+    return min(max(wanted_s, SHORTEST_HOLD_S), LONGEST_HOLD_S)
+
+
+def _positions(bound: BoundPlant, places: Sequence[int], angles_rad: Sequence[float]) -> list[float]:
+    """Positions of the model's axes with the outputs at `places` at these angles, all others at 0."""
+    measured = list(bound.model.outputs.values())
+    wanted = {measured[place]: angle for place, angle in zip(places, angles_rad, strict=True)}
+    return [wanted.get(axis.position, 0.0) for axis in bound.model.axes if axis.position is not None]
+
+
+def _outputs(bound: BoundPlant, x0: Array) -> list[float]:
+    """What the outputs read at rest where they are states; 0 elsewhere."""
+    states = list(bound.model.states)
+    return [float(x0[states.index(y)]) if y in states else 0.0 for y in bound.model.outputs.values()]
 
 
 def hop(bound: BoundPlant, sample_period_s: float = 0.01) -> Manoeuvre:

@@ -1,18 +1,21 @@
 """Controller tables for tests, placed here in mpmath so that they need no design stage and have one digest on every processor."""
 
-from dataclasses import replace
 from functools import cache
 
 import mpmath
 import numpy as np
 
-from records.table import AxisLaw, ControllerTable, Polynomial
+from codegen.law_equations import axis_state
+from codegen.law_frame import state_size
+from records.table import AxisLaw, ControllerTable, Polynomial, Schedule, changed_axis
 
 SAMPLE_PERIOD_S = 0.01
 RESOLUTION_RAD = 2.0 * np.pi / 4096.0
 PSI_GRID_RAD = tuple(np.radians(np.arange(-40.0, 41.0, 5.0)).tolist())
 DIGITS = 50
 Row = list[mpmath.mpf]
+AXIS_STATE_FIELDS = tuple(axis_state(3).__dataclass_fields__)
+STATE_WORDS = state_size(axis_state(3), 2)
 
 
 @cache
@@ -23,10 +26,11 @@ def ce150_table(degree: int = 3, prefilter_time_constant_s: float = 0.35) -> Con
         return ControllerTable(
             plant="ce150",
             sample_period_s=SAMPLE_PERIOD_S,
-            psi_min_rad=PSI_GRID_RAD[0],
-            psi_max_rad=PSI_GRID_RAD[-1],
-            elevation=_axis(elevation, degree, (5.607, 0.0, -1.53), prefilter_time_constant_s, (0.0, 10.0, 0.0), 0.7),
-            azimuth=_axis(azimuth, degree, (1.97, 0.0, -0.33), prefilter_time_constant_s, (-10.0, 10.0, 0.0), 2.27),
+            schedule=Schedule("elevation", PSI_GRID_RAD[0], PSI_GRID_RAD[-1]),
+            axes=(
+                _axis(elevation, degree, (5.607, 0.0, -1.53), prefilter_time_constant_s, (0.0, 10.0, 0.0), 0.7),
+                _axis(azimuth, degree, (1.97, 0.0, -0.33), prefilter_time_constant_s, (-10.0, 10.0, 0.0), 2.27),
+            ),
             origin={"made_for": "tests"},
         )
 
@@ -148,7 +152,7 @@ def dense_table(seed: int = 3) -> ControllerTable:
     rng = np.random.default_rng(seed)
     table = ce150_table()
     for name in ("elevation", "azimuth"):
-        axis = table.elevation if name == "elevation" else table.azimuth
+        axis = table.axis(name)
         table = changed_axis(
             table,
             name,
@@ -158,13 +162,6 @@ def dense_table(seed: int = 3) -> ControllerTable:
             feedforward_V=_dense(0.3 * axis.u_max_V, rng)[:3],
         )
     return table
-
-
-def changed_axis(table: ControllerTable, name: str, **change: object) -> ControllerTable:
-    """`table` with fields of one axis replaced."""
-    axis = table.elevation if name == "elevation" else table.azimuth
-    changed: ControllerTable = replace(table, **{name: replace(axis, **change)})  # type: ignore[arg-type]
-    return changed
 
 
 def _dense(scale: float, rng: np.random.Generator) -> Polynomial:

@@ -7,12 +7,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from records.loops import LOOPS
+from records.loops import LOOPS, Loop
 from records.verification import Equality, FirstMismatch
 from verification.stimuli import Stimulus
 
 Bits = NDArray[np.uint32]
-OUTPUTS = tuple(loop.input for loop in LOOPS)
 
 
 class BatchStepper(Protocol):
@@ -22,10 +21,10 @@ class BatchStepper(Protocol):
     arithmetic: str
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest [lanes, words] for angles psi, phi [lanes, 2]."""
+        """States at rest [lanes, words] for angles [lanes, loops]."""
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """Inputs [steps, lanes, 4] give the final states and the outputs [steps, lanes, 2]."""
+        """Inputs [steps, lanes, 2 loops] give the final states and the outputs [steps, lanes, loops]."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +35,10 @@ class EqualityResult:
     first_mismatch: FirstMismatch | None
 
 
-def compare(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus]) -> EqualityResult:
-    """Run both on all `stimuli` and count the steps whose outputs differ in any bit; NaN equals NaN, +0 differs from -0.
+def compare(
+    one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus], loops: tuple[Loop, ...] = LOOPS
+) -> EqualityResult:
+    """Run both laws of `loops` on all `stimuli` and count the steps whose outputs differ in any bit; NaN equals NaN, +0 differs from -0.
 
     States at rest and after the last step are compared too, so that a difference which has not yet reached an output counts.
     """
@@ -46,14 +47,16 @@ def compare(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus])
     mismatches = 0
     first: FirstMismatch | None = None
     for stimulus in stimuli:
-        count, mismatch = _compare_one(one, other, stimulus)
+        count, mismatch = _compare_one(one, other, stimulus, loops)
         mismatches += count
         first = first or mismatch
     steps = sum(stimulus.steps for stimulus in stimuli)
     return EqualityResult(Equality((one.name, other.name), one.arithmetic, steps, mismatches, first), first)
 
 
-def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> tuple[int, FirstMismatch | None]:
+def _compare_one(
+    one: BatchStepper, other: BatchStepper, stimulus: Stimulus, loops: tuple[Loop, ...]
+) -> tuple[int, FirstMismatch | None]:
     starts = (one.start(stimulus.angles), other.start(stimulus.angles))
     ends, outputs = zip(
         *(
@@ -66,7 +69,7 @@ def _compare_one(one: BatchStepper, other: BatchStepper, stimulus: Stimulus) -> 
     unequal = differing(outputs[0], outputs[1], is_float)
     mismatches = int(unequal.any(axis=-1).sum())
     if mismatches:
-        return mismatches, first_output(stimulus, unequal, (outputs[0], outputs[1]))
+        return mismatches, first_output(stimulus, unequal, (outputs[0], outputs[1]), loops)
     for states in (starts, ends):
         unequal_states = differing(states[0], states[1], is_float)
         if unequal_states.any():
@@ -88,11 +91,13 @@ def _is_nan(bits: Bits) -> NDArray[np.bool_]:
     return beyond_infinity
 
 
-def first_output(stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: tuple[Bits, Bits]) -> FirstMismatch:
-    """The first of the `unequal` outputs [steps, lanes, 2] of two executions."""
+def first_output(
+    stimulus: Stimulus, unequal: NDArray[np.bool_], outputs: tuple[Bits, Bits], loops: tuple[Loop, ...] = LOOPS
+) -> FirstMismatch:
+    """The first of the `unequal` outputs [steps, lanes, loops] of two executions."""
     step, lane, word = (int(index) for index in np.argwhere(unequal)[0])
     words = [bits[step, lane, word] for bits in outputs]
-    return _mismatch(stimulus, step, lane, OUTPUTS[word], words)
+    return _mismatch(stimulus, step, lane, loops[word].input, words)
 
 
 def _first_state(stimulus: Stimulus, unequal: NDArray[np.bool_], states: Sequence[Bits]) -> FirstMismatch:

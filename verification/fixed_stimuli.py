@@ -6,19 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.fixed.constants import FixedAxis, fixed_constants, word_number
-from codegen.fixed.equations import AXIS_STATE_FIELDS
+from codegen.fixed.equations import fixed_axis_state
 from codegen.fixed.formats import FILTERED_BITS, MISSING, law_formats
-from codegen.law_equations import STATE_WORDS
+from codegen.law_equations import state_words
 from records.table import ControllerTable
 from verification import stimuli
 from verification.stimuli import Stimulus
 
 Bits = NDArray[np.uint32]
 
-_AXES = ("elevation", "azimuth")
-_WORD_OF = {
-    f"{axis}.{name}": index for index, (axis, name) in enumerate((a, n) for a in _AXES for n in AXIS_STATE_FIELDS)
-}
 EDGES = "edges of words"
 _MOVE_BITS = 20  # how far the last step of v at the end of its range goes
 _NEIGHBOURS = 4
@@ -56,7 +52,7 @@ def fixed_stimuli(table: ControllerTable, steps: int = 100_000, seed: int = 1) -
         as_words(table, stimuli.saturating(table, rng, 250, lanes)),
         with_special_words(table, rng, 250, lanes),
         from_random_states(table, rng, 2 * lanes, 125),
-        from_random_words(rng, max(1, share - edges.steps)),
+        from_random_words(table, rng, max(1, share - edges.steps)),
         edges,
     )
 
@@ -82,31 +78,34 @@ def with_special_words(table: ControllerTable, rng: np.random.Generator, steps: 
     """Reference jumps in which one word in thirty is missing, outermost, least, or any."""
     plain = as_words(table, stimuli.reference_jumps(table, rng, steps, lanes))
     inputs = _sprinkled(plain.inputs, rng, 30)
-    return Stimulus("special words", inputs[0, :, 2:].copy(), inputs)
+    return Stimulus("special words", inputs[0, :, len(table.loops) :].copy(), inputs)
 
 
 def from_random_states(table: ControllerTable, rng: np.random.Generator, lanes: int, steps: int) -> Stimulus:
     """States of all sizes, one word in fifty special, then ordinary inputs: broken states must heal alike."""
     plain = as_words(table, stimuli.reference_jumps(table, rng, steps, lanes))
-    states = _sprinkled(_any_size(rng, (lanes, STATE_WORDS)), rng, 50)
+    states = _sprinkled(_any_size(rng, (lanes, state_words(table))), rng, 50)
     return Stimulus("random states", plain.angles, plain.inputs, states)
 
 
 def at_the_edges(table: ControllerTable) -> Stimulus:
     """One step from states that chance does not meet: a filter whose step is a whole word, feedback at either end of its range."""
     law = fixed_constants(table, word_number)
+    names = [loop.axis for loop in table.loops]
     states = [
-        {f"{axis}.reference_{index}_rad": sign * 2**places for axis in _AXES for index in (1, 2)}
+        {f"{axis}.reference_{index}_rad": sign * 2**places for axis in names for index in (1, 2)}
         for places in range(FILTERED_BITS - 8, FILTERED_BITS + 1)
         for sign in (1, -1)
     ]
-    states += [state for axis in (law.elevation, law.azimuth) for state in _feedback_at_its_ends(axis, law.w_bits - 1)]
-    words = np.zeros((len(states), STATE_WORDS), dtype=np.int64)
+    states += [state for axis in law.axes for state in _feedback_at_its_ends(axis, law.w_bits - 1)]
+    fields = fixed_axis_state(table.order).__dataclass_fields__
+    place_of = {name: place for place, name in enumerate(f"{axis}.{field}" for axis in names for field in fields)}
+    words = np.zeros((len(states), state_words(table)), dtype=np.int64)
     for row, state in zip(words, states, strict=True):
         for name, value in state.items():
-            row[_WORD_OF[name]] = value
-    at_rest = np.zeros((1, len(states), 4), dtype=np.uint32)
-    return Stimulus(EDGES, at_rest[0, :, 2:].copy(), at_rest, words.astype(np.int32).view(np.uint32))
+            row[place_of[name]] = value
+    at_rest = np.zeros((1, len(states), 2 * len(names)), dtype=np.uint32)
+    return Stimulus(EDGES, at_rest[0, :, len(names) :].copy(), at_rest, words.astype(np.int32).view(np.uint32))
 
 
 def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str, int]]:
@@ -115,7 +114,7 @@ def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str,
         term.factor: term.sign * term.polynomial.constant / 2.0 ** (term.excess - term.doublings + axis.residue_places)
         for term in axis.terms
     }
-    if not gains.get("w_1_V"):
+    if not gains.get("w_1_V"):  # of one state there is no difference of w to lead it there
         return
     for sign in (1, -1):
         w_0, move = sign * (2**bits - 2**_MOVE_BITS), sign * 2**_MOVE_BITS
@@ -124,12 +123,13 @@ def _feedback_at_its_ends(axis: FixedAxis[int], bits: int) -> Iterator[dict[str,
             yield {f"{axis.name}.w_0_V": w_0, f"{axis.name}.w_1_V": w_1 + off}
 
 
-def from_random_words(rng: np.random.Generator, lanes: int) -> Stimulus:
+def from_random_words(table: ControllerTable, rng: np.random.Generator, lanes: int) -> Stimulus:
     """One step from states and inputs of any 32 bits, in half of the lanes of all sizes."""
-    words = rng.integers(0, 2**32, (lanes, STATE_WORDS + 4), dtype=np.uint32)
+    size, loops = state_words(table), len(table.loops)
+    words = rng.integers(0, 2**32, (lanes, size + 2 * loops), dtype=np.uint32)
     words[::2] = _sprinkled(_any_size(rng, words[::2].shape), rng, 16)
-    inputs = words[np.newaxis, :, STATE_WORDS:].copy()
-    return Stimulus("random words", inputs[0, :, 2:].copy(), inputs, words[:, :STATE_WORDS].copy())
+    inputs = words[np.newaxis, :, size:].copy()
+    return Stimulus("random words", inputs[0, :, loops:].copy(), inputs, words[:, :size].copy())
 
 
 def words_from_floats(values: NDArray[np.float64], places: int) -> Bits:

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,12 +10,12 @@ from numpy.typing import NDArray
 
 from codegen.fixed.formats import value_of, word_of
 from codegen.law import generate_law
+from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
+from verification.drivers import driver
 
 Bits = NDArray[np.uint32]
-
-_BATCH_DRIVER = Path(__file__).with_name("law_batch.c")
 
 # Numbers of the law cross the border as their 32 bits, whatever their arithmetic.
 _DECLARATIONS = """
@@ -44,56 +43,59 @@ class HostLaw:
     name = "host"
 
     def __init__(
-        self, texts: Mapping[str, str], arithmetic: str = "float32", flags: Sequence[str] = STRICT_FLOAT_FLAGS
+        self,
+        texts: Mapping[str, str],
+        arithmetic: str = "float32",
+        flags: Sequence[str] = STRICT_FLOAT_FLAGS,
+        loops: tuple[Loop, ...] = LOOPS,
     ) -> None:
-        """Compile the generated `texts` (file name -> C) with `flags`; raises BadInput when the compiler refuses."""
+        """Compile the generated `texts` (file name -> C) of a law of `loops` with `flags`; raises BadInput when the compiler refuses."""
         sources = [CText(name, text) for name, text in texts.items()]
-        library = build_shared(f"law-{arithmetic}", [*sources, _BATCH_DRIVER], flags=flags)
+        library = build_shared(f"law-{arithmetic}", [*sources, driver("law_batch.c", loops)], flags=flags)
         self.arithmetic = arithmetic
         self._places = _places(texts["law.h"]) if arithmetic == "fixed" else None
         self._ffi, self._lib = load_shared(_DECLARATIONS, library)
         self.state_words = int(self._lib.law_batch_state_words())
-        word = "int32_t" if arithmetic == "fixed" else "float"
-        self._given, self._answered = self._ffi.new(f"{word}[4]"), self._ffi.new(f"{word}[2]")
-        self.reset(0.0, 0.0)
+        self._loops, word = len(loops), "int32_t" if arithmetic == "fixed" else "float"
+        self._given = self._ffi.new(f"{word}[{2 * self._loops}]")
+        self._answered = self._ffi.new(f"{word}[{self._loops}]")
+        self.reset(*[0.0] * self._loops)
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start afresh at these angles."""
-        self._state = self.start(self._angles(psi_rad, phi_rad))
+        self._state = self.start(self._angles(*angles_rad))
         self._remembered = self._pointer(self._state)
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample; returns (u_M_V, u_T_V) within their limits."""
-        angles_rad = (psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
-        self._given[0:4] = angles_rad if self._places is None else self._words(angles_rad)
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles; returns the voltages within their limits."""
+        self._given[0 : len(given_rad)] = given_rad if self._places is None else self._words(given_rad)
         self._lib.law_batch_run(1, 1, self._remembered, self._given, self._answered)
-        main, tail = self._answered
         if self._places is None:
-            return main, tail
-        return value_of(main, self._places.voltage), value_of(tail, self._places.voltage)
+            return tuple(self._answered)
+        return tuple(value_of(word, self._places.voltage) for word in self._answered)
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest, bits [lanes, words], for angles psi, phi as bits [lanes, 2]."""
+        """States at rest, bits [lanes, words], for angles as bits [lanes, loops]."""
         states = np.zeros((len(angles), self.state_words), dtype=np.uint32)
         self._lib.law_batch_start(len(angles), self._pointer(angles), self._pointer(states))
         return states
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2]."""
+        """All lanes through all steps: inputs [steps, lanes, 2 loops] as bits give final states and outputs [steps, lanes, loops]."""
         steps, lanes = inputs.shape[:2]
         after = states.copy()
-        outputs = np.empty((steps, lanes, 2), dtype=np.uint32)
+        outputs = np.empty((steps, lanes, self._loops), dtype=np.uint32)
         self._lib.law_batch_run(steps, lanes, self._pointer(after), self._pointer(inputs), self._pointer(outputs))
         return after, outputs
 
     def angles_from_counts(self, counts: NDArray[np.int32]) -> Bits:
-        """Angles psi, phi as bits [n, 2] of encoder counts [n, 2]."""
+        """Angles as bits [n, loops] of encoder counts [n, loops]."""
         angles = np.empty(counts.shape, dtype=np.uint32)
         self._lib.law_batch_angles(len(counts), self._pointer(counts), self._pointer(angles))
         return angles
 
     def duties(self, voltages: Bits) -> NDArray[np.int32]:
-        """Signed PWM ticks [n, 2], main and tail, of voltages as bits [n, 2]."""
+        """Signed PWM ticks [n, loops] of voltages as bits [n, loops]."""
         ticks = np.empty(voltages.shape, dtype=np.int32)
         self._lib.law_batch_duties(len(voltages), self._pointer(voltages), self._pointer(ticks))
         return ticks
@@ -124,7 +126,7 @@ class HostLaw:
 
 def host_law(table: ControllerTable, arithmetic: str = "float32") -> HostLaw:
     """The law of `table`, generated and compiled with strict float flags."""
-    return HostLaw(generate_law(table, arithmetic), arithmetic)
+    return HostLaw(generate_law(table, arithmetic), arithmetic, loops=table.loops)
 
 
 def _places(header: str) -> Places:

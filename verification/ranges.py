@@ -1,11 +1,13 @@
 """The ranges of states and inputs for which the rounding bound is proved, and whether a flight stayed within them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import AxisState, LawInput, LawState, words_from_state
+from codegen.law_equations import axis_state
+from codegen.law_frame import LawInput, LawState, words_from_state
 from records.table import AxisLaw, ControllerTable
 
 Range = tuple[float, float]
@@ -16,24 +18,25 @@ _SLACK = 1.0 + 1e-5
 
 @dataclass(frozen=True)
 class LawRanges:
-    """A range for every number of state and input."""
+    """A range for every number of state and input, and for each axis' error with its differences, one more than are remembered."""
 
     state: LawState[Range]
     given: LawInput[Range]
+    errors_rad: tuple[tuple[Range, ...], ...]
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What is assumed of the axes: hard stops [rad], and how fast a measured angle may move from sample to sample [rad/s].
+    """What is assumed of each loop's axis: hard stop [rad], and how fast its angle may move from sample to sample [rad/s]."""
 
-    The default rates hold for the CE150 by a margin: full thrust from stop to stop without friction reaches 10.5 rad/s in
-    elevation, full thrust and reaction torque against the damping 8.4 rad/s in azimuth.
-    """
+    limits_rad: tuple[float, ...]
+    rates_rad_s: tuple[float, ...]
 
-    psi_limit_rad: float = 0.7854
-    phi_limit_rad: float = 2.2690
-    psi_rate_rad_s: float = 15.0
-    phi_rate_rad_s: float = 15.0
+
+# Rates that hold for the CE150 by a margin: full thrust from stop to stop without friction reaches 10.5 rad/s in elevation, full thrust
+# and reaction torque against the damping 8.4 rad/s in azimuth.
+FASTEST_RAD_S = 15.0
+CE150_MOTION = Motion((0.7854, 2.2690), (FASTEST_RAD_S, FASTEST_RAD_S))
 
 
 def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
@@ -47,16 +50,15 @@ def declared_ranges(table: ControllerTable, motion: Motion) -> LawRanges:
 
     A step that starts outside, after a harder saturation say, is not covered; `share_within` tells how many of a flight's did.
     """
-    psi_limit_rad = motion.psi_limit_rad + table.elevation.resolution_rad
-    phi_limit_rad = motion.phi_limit_rad + table.azimuth.resolution_rad
-    elevation = _axis_ranges(table, table.elevation, psi_limit_rad, motion.psi_rate_rad_s)
-    azimuth = _axis_ranges(table, table.azimuth, phi_limit_rad, motion.phi_rate_rad_s)
-    psi_rad, phi_rad = _around_zero(psi_limit_rad), _around_zero(phi_limit_rad)
-    psi_ref_rad, phi_ref_rad = _reference(table.elevation), _reference(table.azimuth)
-    return LawRanges(
-        LawState(elevation, azimuth, psi_rad, phi_rad, psi_ref_rad, phi_ref_rad),
-        LawInput(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad),
+    limits_rad = [limit + axis.resolution_rad for limit, axis in zip(motion.limits_rad, table.axes, strict=True)]
+    errors_rad = tuple(
+        _error_ranges(table, axis, limit_rad, rate_rad_s)
+        for axis, limit_rad, rate_rad_s in zip(table.axes, limits_rad, motion.rates_rad_s, strict=True)
     )
+    axes = tuple(_axis_ranges(table, axis, ranges) for axis, ranges in zip(table.axes, errors_rad, strict=True))
+    angles_rad = tuple(_around_zero(limit_rad) for limit_rad in limits_rad)
+    references_rad = tuple(_reference(axis) for axis in table.axes)
+    return LawRanges(LawState(axes, angles_rad, references_rad), LawInput(references_rad, angles_rad), errors_rad)
 
 
 def share_within(ranges: LawRanges, states: NDArray[np.uint32]) -> float:
@@ -66,32 +68,38 @@ def share_within(ranges: LawRanges, states: NDArray[np.uint32]) -> float:
     return float(np.mean(np.all((numbers >= low) & (numbers <= high), axis=-1)))
 
 
-def _axis_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_rad_s: float) -> AxisState[Range]:
+def _error_ranges(table: ControllerTable, axis: AxisLaw, limit_rad: float, rate_rad_s: float) -> tuple[Range, ...]:
     low_rad, high_rad = _reference(axis)
     gain = axis.prefilter_gain(table.sample_period_s)
     measured_move_rad = rate_rad_s * table.sample_period_s + axis.resolution_rad
     move_rad = _SLACK * (measured_move_rad + gain * (high_rad - low_rad))
-    psi_ref_rad = np.linspace(*_reference(table.elevation), 201)
-    u_ff_V = np.polynomial.polynomial.polyval(psi_ref_rad, axis.feedforward_V)
+    differences = (_around_zero(2.0**power * move_rad) for power in range(table.order))
+    return (_SLACK * (low_rad - limit_rad), _SLACK * (high_rad + limit_rad)), *differences
+
+
+def _axis_ranges(table: ControllerTable, axis: AxisLaw, error_rad: tuple[Range, ...]) -> Any:
+    record = axis_state(table.order)
+    region = table.scheduled
+    region_rad = np.linspace(*((0.0, 0.0) if region is None else _reference(region)), 201)
+    u_ff_V = np.polynomial.polynomial.polyval(region_rad, axis.feedforward_V)
     span_V = _SLACK * (axis.u_max_V - axis.u_min_V)
     slack_V = (_SLACK - 1.0) * span_V
     s_V = (axis.u_min_V - float(u_ff_V.max()) - slack_V, axis.u_max_V - float(u_ff_V.min()) + slack_V)
     s_span_V = _SLACK * (s_V[1] - s_V[0])
-    return AxisState(
-        reference_1_rad=(low_rad, high_rad),
-        reference_2_rad=(low_rad, high_rad),
-        e_0_rad=(_SLACK * (low_rad - limit_rad), _SLACK * (high_rad + limit_rad)),
-        e_1_rad=_around_zero(move_rad),
-        e_2_rad=_around_zero(2.0 * move_rad),
+    return record(
+        reference_1_rad=_reference(axis),
+        reference_2_rad=_reference(axis),
         v_V=(s_V[0] - span_V, s_V[1] + span_V),
-        s_0_V=s_V,
-        s_1_V=_around_zero(s_span_V),
-        s_2_V=_around_zero(2.0 * s_span_V),
-        s_3_V=_around_zero(_SLACK * 4.0 * s_span_V),
-        w_0_V=_around_zero(span_V),
-        w_1_V=_around_zero(_SLACK * 2.0 * span_V),
-        w_2_V=_around_zero(_SLACK * 4.0 * span_V),
+        **dict(zip(record.E, error_rad, strict=False)),
+        **_moving(record.S, s_V, s_span_V),
+        **_moving(record.W, _around_zero(span_V), _SLACK * 2.0 * span_V),
     )
+
+
+def _moving(names: tuple[str, ...], value: Range, move: float) -> dict[str, Range]:
+    """A number and its differences, of which the first stays within +-move and each further one within twice the one before."""
+    bounds = (move * 2.0**power * (_SLACK if power > 1 else 1.0) for power in range(len(names) - 1))
+    return {names[0]: value, **dict(zip(names[1:], map(_around_zero, bounds), strict=True))}
 
 
 def _reference(axis: AxisLaw) -> Range:

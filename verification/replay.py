@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from codegen.fixed.formats import law_formats
 from records.errors import BadInput
 from records.log import RunLog
-from records.loops import LOOPS
+from records.loops import Loop
 from records.table import ControllerTable
 from records.verification import Equality
 from verification.equality import BatchStepper, first_output
@@ -25,19 +25,20 @@ ANGLES = (("psi_rad", "phi_rad"), ("theta_rad", "psi_rad"))
 
 @dataclass(frozen=True)
 class Replay:
-    """A log's references and angles, and the inputs [n, 2] that it says `table` sent, all as the arithmetic's words.
+    """A log's references and angles, and the inputs [n, loops] that it says `table` sent, all as the arithmetic's words.
 
     `sent` is None where another law, or none, flew.
     """
 
     stimulus: Stimulus
     sent: Bits | None
+    loops: tuple[Loop, ...]
 
 
 def replay_of(log: RunLog, table: ControllerTable, path: Path, arithmetic: str = "float32") -> Replay:
     """The log at `path` as a replay in an arithmetic; a log without references is replayed with references at zero.
 
-    Raises BadInput when it names another controller table, or has no two measured angles.
+    Raises BadInput when it names another controller table, or has not the measured angles of its loops.
     """
     if log.table_digest is not None and log.table_digest != table.digest:
         raise BadInput(
@@ -47,13 +48,13 @@ def replay_of(log: RunLog, table: ControllerTable, path: Path, arithmetic: str =
             f"one of table {table.digest[:16]}",
             "give the table that flew with --table, or a log of this table",
         )
-    psi, phi = _angles(log, path)
-    names = [loop.reference for loop in LOOPS]
+    angles = _angles(log, path, table)
+    names = [loop.reference for loop in table.loops]
     references = [log.extra.get(name, np.zeros(len(log.t_s))) for name in names]
     is_own = log.table_digest is not None and set(names) <= log.extra.keys()
-    inputs, sent = _as_words(np.stack([*references, psi, phi], axis=-1), log.u, table, arithmetic)
-    stimulus = Stimulus(path.name, inputs[:1, 2:].copy(), inputs[:, np.newaxis].copy())
-    return Replay(stimulus, sent if is_own else None)
+    inputs, sent = _as_words(np.stack([*references, *angles], axis=-1), log.u, table, arithmetic)
+    stimulus = Stimulus(path.name, inputs[:1, len(names) :].copy(), inputs[:, np.newaxis].copy())
+    return Replay(stimulus, sent if is_own else None, table.loops)
 
 
 def replayed_equality(replay: Replay, law: BatchStepper) -> Equality | None:
@@ -64,7 +65,7 @@ def replayed_equality(replay: Replay, law: BatchStepper) -> Equality | None:
     sent = replay.sent[:, np.newaxis]
     unequal: NDArray[np.bool_] = np.not_equal(sent, outputs)
     mismatches = int(unequal.any(axis=(1, 2)).sum())
-    first = first_output(replay.stimulus, unequal, (sent, outputs)) if mismatches else None
+    first = first_output(replay.stimulus, unequal, (sent, outputs), replay.loops) if mismatches else None
     return Equality(("log", law.name), law.arithmetic, len(unequal), mismatches, first)
 
 
@@ -77,11 +78,12 @@ def _as_words(angles_rad: Array, u_V: Array, table: ControllerTable, arithmetic:
     return words_from_floats(angles_rad, formats.angle_places), words_from_floats(u_V, formats.voltage_places)
 
 
-def _angles(log: RunLog, path: Path) -> tuple[Array, Array]:
-    for psi, phi in ANGLES:
-        if psi in log.columns.outputs and phi in log.columns.outputs:
-            return log.column(psi), log.column(phi)
-    expected = " or ".join(" and ".join(pair) for pair in ANGLES)
-    raise BadInput(
-        "run log", str(path), f"columns {', '.join(log.columns.outputs)}", expected, "replay a log of two angles"
-    )
+def _angles(log: RunLog, path: Path, table: ControllerTable) -> list[Array]:
+    own = tuple(loop.output for loop in table.loops)
+    known = (own, *(names for names in ANGLES if len(names) == len(own) and names != own))
+    for names in known:
+        if set(names) <= set(log.columns.outputs):
+            return [log.column(name) for name in names]
+    expected = " or ".join(" and ".join(names) for names in known)
+    remedy = "replay a log of the angles that the table's loops measure"
+    raise BadInput("run log", str(path), f"columns {', '.join(log.columns.outputs)}", expected, remedy)

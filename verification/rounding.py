@@ -6,7 +6,7 @@ and an affine form of the error (affine.py), for each of many slices of Psi, as 
 brings two numbers no further apart, the bound holds for the limited outputs too.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -15,23 +15,21 @@ import numpy as np
 from flint import arb
 
 from codegen.law_constants import LawConstants, law_constants
-from codegen.law_equations import (
+from codegen.law_equations import differences, drive, move, state_from_words
+from codegen.law_frame import (
     Arithmetic,
     LawInput,
-    LawOutput,
     LawState,
-    differences,
-    drive,
-    move,
     polynomial,
     prefilter,
-    state_from_words,
+    region,
+    scheduled,
     words_from_state,
 )
 from records.table import ControllerTable
 from records.verification import RoundingBound
 from verification.affine import AffineArithmetic, Tracked
-from verification.ranges import LawRanges, Motion, Range, declared_ranges
+from verification.ranges import CE150_MOTION, LawRanges, Motion, Range, declared_ranges
 
 SLICES = 48
 METHOD = "affine error forms over Arb balls (python-flint), Psi in {slices} slices, {motion}"
@@ -39,9 +37,9 @@ METHOD = "affine error forms over Arb balls (python-flint), Psi in {slices} slic
 Restriction = Callable[[Any, Range], Any]
 
 
-def rounding_bound(table: ControllerTable, motion: Motion | None = None, slices: int = SLICES) -> RoundingBound:
+def rounding_bound(table: ControllerTable, motion: Motion = CE150_MOTION, slices: int = SLICES) -> RoundingBound:
     """The bound per output [V] over the declared ranges of `motion`; raises ValueError where these are too wide to prove."""
-    return bound_by_slices(table, motion or Motion(), slices, METHOD, _slice_bound)
+    return bound_by_slices(table, motion, slices, METHOD, _slice_bound)
 
 
 def bound_by_slices(
@@ -49,20 +47,37 @@ def bound_by_slices(
     motion: Motion,
     slices: int,
     method: str,
-    bound_of: Callable[[ControllerTable, LawRanges], tuple[float, float]],
+    bound_of: Callable[[ControllerTable, LawRanges], tuple[float, ...]],
 ) -> RoundingBound:
-    """The largest bounds of u_M and u_T [V] over slices of the measured elevation; `method` has room for `slices` and `motion`."""
-    ranges = declared_ranges(table, motion)
-    edges_rad = np.linspace(*ranges.given.psi_rad, slices + 1).tolist()
-    parts = (replace(ranges, given=replace(ranges.given, psi_rad=psi_rad)) for psi_rad in pairwise(edges_rad))
-    u_M_V, u_T_V = (max(column) for column in zip(*(bound_of(table, part) for part in parts), strict=True))
-    return RoundingBound(u_M_V, u_T_V, method.format(slices=slices, motion=stated_motion(motion)))
+    """The largest bound of each output [V] over slices of the scheduling angle; `method` has room for `slices` and `motion`."""
+    parts = list(_sliced(declared_ranges(table, motion), table, slices))
+    bounds_V = [max(column) for column in zip(*(bound_of(table, part) for part in parts), strict=True)]
+    told = method.format(slices=len(parts), motion=stated_motion(table, motion))
+    return rounding_record(table, bounds_V, told)
 
 
-def stated_motion(motion: Motion) -> str:
+def rounding_record(table: ControllerTable, bounds_V: Sequence[float], method: str) -> RoundingBound:
+    """The record of the outputs' bounds [V], by their names."""
+    return RoundingBound({loop.voltage: bound for loop, bound in zip(table.loops, bounds_V, strict=True)}, method)
+
+
+def _sliced(ranges: LawRanges, table: ControllerTable, slices: int) -> Iterator[LawRanges]:
+    """The ranges cut into slices of the measured scheduling angle; whole without a schedule."""
+    if table.schedule is None:
+        yield ranges
+        return
+    index, angles_rad = table.index(table.schedule.axis), ranges.given.angles_rad
+    for slice_rad in pairwise(np.linspace(*angles_rad[index], slices + 1).tolist()):
+        given = replace(ranges.given, angles_rad=(*angles_rad[:index], slice_rad, *angles_rad[index + 1 :]))
+        yield replace(ranges, given=given)
+
+
+def stated_motion(table: ControllerTable, motion: Motion) -> str:
     """The assumptions of a bound, in words."""
-    angles = f"angles within {motion.psi_limit_rad:g} and {motion.phi_limit_rad:g} rad"
-    return f"{angles} moving at most {motion.psi_rate_rad_s:g} and {motion.phi_rate_rad_s:g} rad/s"
+    limits, rates = (
+        " and ".join(f"{value:g}" for value in values) for values in (motion.limits_rad, motion.rates_rad_s)
+    )
+    return f"angles within {limits} rad moving at most {rates} rad/s"
 
 
 def restricted_voltages(
@@ -72,42 +87,45 @@ def restricted_voltages(
     given: LawInput[Any],
     ranges: LawRanges,
     restrict: Restriction,
-) -> LawOutput[Any]:
+) -> tuple[Any, ...]:
     """The outputs of `law_step` for finite numbers, with `restrict` applied to the differences of the error on the way.
 
     State and input each within its range may still be a jump that no axis makes; a proof leaves those pairs out.
     """
-    schedule_rad = arithmetic.clamp(given.psi_rad, law.psi_min_rad, law.psi_max_rad)
-    schedule_rad = arithmetic.settle(schedule_rad, law.least_schedule_rad)
-    elevation = prefilter(law.elevation, arithmetic, state.elevation, given.psi_ref_rad)
-    azimuth = prefilter(law.azimuth, arithmetic, state.azimuth, given.phi_ref_rad)
+    schedule_rad = scheduled(law, arithmetic, given.angles_rad)
+    filtered = [
+        prefilter(axis, arithmetic, remembered, reference_rad)
+        for axis, remembered, reference_rad in zip(law.axes, state.axes, given.references_rad, strict=True)
+    ]
+    region_rad = region(law, filtered)
     voltages = []
-    for axis, now, angle_rad, allowed in (
-        (law.elevation, elevation, given.psi_rad, ranges.state.elevation),
-        (law.azimuth, azimuth, given.phi_rad, ranges.state.azimuth),
-    ):
-        u_ff_V = polynomial(axis.feedforward_V, elevation.reference_2_rad, law.zero)
-        third_rad = (2.0 * allowed.e_2_rad[0], 2.0 * allowed.e_2_rad[1])
-        limits_rad = (allowed.e_0_rad, allowed.e_1_rad, allowed.e_2_rad, third_rad)
+    for axis, now, angle_rad, limits_rad in zip(law.axes, filtered, given.angles_rad, ranges.errors_rad, strict=True):
+        u_ff_V = polynomial(axis.feedforward_V, region_rad, law.zero)
         e_rad = tuple(restrict(e, limit) for e, limit in zip(differences(now, angle_rad), limits_rad, strict=True))
         v_V = now.v_V + move(axis, now, e_rad, schedule_rad)
         voltages.append(drive(law, axis, arithmetic, now, e_rad, v_V, u_ff_V)[1])
-    return LawOutput(*voltages)
+    return tuple(voltages)
 
 
-def _slice_bound(table: ControllerTable, ranges: LawRanges) -> tuple[float, float]:
-    """The bound of u_M and u_T for measured elevations of one slice."""
+def _slice_bound(table: ControllerTable, ranges: LawRanges) -> tuple[float, ...]:
+    """The bound of each output for scheduling angles of one slice."""
     arithmetic = AffineArithmetic()
-    law = law_constants(table, arithmetic.constant)
-    output = restricted_voltages(
-        law,
+    voltages = restricted_voltages(
+        law_constants(table, arithmetic.constant),
         arithmetic,
-        state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
-        LawInput(*(arithmetic.within(*getattr(ranges.given, name)) for name in LawInput.__dataclass_fields__)),
+        state_from_words(table, [arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
+        given_within(ranges, arithmetic),
         ranges,
         _restricted,
     )
-    return output.u_M_V.error, output.u_T_V.error
+    return tuple(voltage.error for voltage in voltages)
+
+
+def given_within(ranges: LawRanges, arithmetic: Any) -> LawInput[Any]:
+    """References and angles as numbers of the arithmetic within their ranges."""
+    within = arithmetic.within
+    references, angles = ranges.given.references_rad, ranges.given.angles_rad
+    return LawInput(tuple(within(*limits) for limits in references), tuple(within(*limits) for limits in angles))
 
 
 def _restricted(number: Tracked, limits: Range) -> Tracked:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import STATE_WORDS
+from codegen.law_equations import state_words
 from records.law_table import AxisRange, FlownTable
+from records.table import ControllerTable
 
 Bits = NDArray[np.uint32]
 Numbers = NDArray[np.float32]
@@ -27,8 +28,8 @@ SPECIAL_BITS = np.array(
 class Stimulus:
     """Lanes of the law to be stepped together, all numbers as bits.
 
-    `angles` [lanes, 2] start the lanes at rest (psi, phi); `states` [lanes, words], where given, replace them.
-    `inputs` [steps, lanes, 4] hold psi_ref_rad, phi_ref_rad, psi_rad, phi_rad.
+    `angles` [lanes, loops] start the lanes at rest; `states` [lanes, words], where given, replace them.
+    `inputs` [steps, lanes, 2 loops] hold the references, then the angles, of all loops.
     """
 
     name: str
@@ -43,9 +44,12 @@ class Stimulus:
 
 
 def standard_stimuli(
-    table: FlownTable, steps: int = 100_000, seed: int = 1, state_words: int = STATE_WORDS
+    table: FlownTable, steps: int = 100_000, seed: int = 1, words: int | None = None
 ) -> tuple[Stimulus, ...]:
-    """At least `steps` control steps: reference jumps, saturation, missing and special numbers, broken and random states, arrivals."""
+    """At least `steps` control steps: reference jumps, saturation, missing and special numbers, broken and random states, arrivals.
+
+    `words` are those of a state; None for a table of the scheduled law.
+    """
     rng = np.random.default_rng(seed)
     share = -(-steps // 5)
     lanes = -(-share // 250)
@@ -54,8 +58,8 @@ def standard_stimuli(
         reference_jumps(table, rng, 250, lanes),
         saturating(table, rng, 250, lanes),
         with_special_numbers(table, rng, 250, lanes),
-        from_random_states(table, rng, 2 * lanes, 125, state_words),
-        from_random_bits(rng, max(1, share - 125 * arrivals), state_words),
+        from_random_states(table, rng, 2 * lanes, 125, words),
+        from_random_bits(table, rng, max(1, share - 125 * arrivals), words),
         arriving(table, rng, 125, arrivals),
     )
 
@@ -73,18 +77,18 @@ def sequences(table: FlownTable, steps: int = 100_000, seed: int = 1) -> tuple[S
 
 def reference_jumps(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """Angles that wander by encoder steps, references that jump every now and then to anywhere within their range."""
-    angles = np.stack([_wander(axis, rng, steps, lanes) for axis in (table.elevation, table.azimuth)], axis=-1)
-    references = np.stack([_jumps(axis, rng, steps, lanes) for axis in (table.elevation, table.azimuth)], axis=-1)
+    angles = np.stack([_wander(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
+    references = np.stack([_jumps(axis, rng, steps, lanes) for axis in table.axes], axis=-1)
     inputs = np.concatenate([references, angles], axis=-1).astype(np.float32)
-    return Stimulus("reference jumps", _bits(inputs[0, :, 2:]), _bits(inputs))
+    return _from_rest("reference jumps", _bits(inputs))
 
 
 def saturating(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """References beyond their range and angles that jump from stop to stop, so that both outputs dwell at their limits."""
-    dwell = rng.integers(0, 20, (steps, lanes, 4)) == 0
-    levels = rng.uniform(-3.0, 3.0, (steps, lanes, 4))
-    inputs = _held_where_not(dwell, levels).astype(np.float32)
-    return Stimulus("saturation", _bits(inputs[0, :, 2:]), _bits(inputs))
+    shape = (steps, lanes, 2 * len(table.loops))
+    dwell = rng.integers(0, 20, shape) == 0
+    inputs = _held_where_not(dwell, rng.uniform(-3.0, 3.0, shape)).astype(np.float32)
+    return _from_rest("saturation", _bits(inputs))
 
 
 def with_special_numbers(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
@@ -92,42 +96,39 @@ def with_special_numbers(table: FlownTable, rng: np.random.Generator, steps: int
     plain = reference_jumps(table, rng, steps, lanes)
     special = rng.choice(SPECIAL_BITS, plain.inputs.shape)
     inputs = np.where(rng.integers(0, 30, plain.inputs.shape) == 0, special, plain.inputs)
-    return Stimulus("special numbers", inputs[0, :, 2:].copy(), inputs)
+    return _from_rest("special numbers", inputs)
 
 
 def from_random_states(
-    table: FlownTable, rng: np.random.Generator, lanes: int, steps: int, state_words: int = STATE_WORDS
+    table: FlownTable, rng: np.random.Generator, lanes: int, steps: int, words: int | None = None
 ) -> Stimulus:
     """States of ordinary size, one number in fifty special, then ordinary inputs: broken states must heal alike."""
     plain = reference_jumps(table, rng, steps, lanes)
-    ordinary = _bits(rng.normal(0.0, 3.0, (lanes, state_words)).astype(np.float32))
+    ordinary = _bits(rng.normal(0.0, 3.0, (lanes, _words(table, words))).astype(np.float32))
     special = rng.choice(SPECIAL_BITS, ordinary.shape)
     states = np.where(rng.integers(0, 50, ordinary.shape) == 0, special, ordinary)
     return Stimulus("random states", plain.angles, plain.inputs, states)
 
 
-def from_random_bits(rng: np.random.Generator, lanes: int, state_words: int = STATE_WORDS) -> Stimulus:
+def from_random_bits(table: FlownTable, rng: np.random.Generator, lanes: int, words: int | None = None) -> Stimulus:
     """One step from states and inputs of any bits: in half of the lanes all words, in the others one in eight.
 
     With all words random nearly every state is broken; with a few, each guard is met with the rest of the law in order.
     """
     wild = np.arange(lanes)[:, np.newaxis] % 2 == 0
-    words = rng.normal(0.0, 1.0, (lanes, state_words + 4)).astype(np.float32).view(np.uint32)
-    any_bits = rng.integers(0, 2**32, words.shape, dtype=np.uint32)
-    special = rng.choice(SPECIAL_BITS, words.shape)
-    draw = rng.integers(0, 16, words.shape)
-    words = np.where(wild | (draw == 0), any_bits, np.where(draw == 1, special, words))
-    inputs = words[np.newaxis, :, state_words:].copy()
-    return Stimulus("random bits", inputs[0, :, 2:].copy(), inputs, words[:, :state_words].copy())
+    size = _words(table, words)
+    bits = rng.normal(0.0, 1.0, (lanes, size + 2 * len(table.loops))).astype(np.float32).view(np.uint32)
+    any_bits = rng.integers(0, 2**32, bits.shape, dtype=np.uint32)
+    special = rng.choice(SPECIAL_BITS, bits.shape)
+    draw = rng.integers(0, 16, bits.shape)
+    bits = np.where(wild | (draw == 0), any_bits, np.where(draw == 1, special, bits))
+    return _from_rest("random bits", bits[np.newaxis, :, size:].copy(), bits[:, :size].copy())
 
 
 def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int) -> Stimulus:
     """References up to 60 last places from where the filters rest: too near for a rounded step."""
     starts = np.stack(
-        [
-            rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes)
-            for axis in (table.elevation, table.azimuth)
-        ],
+        [rng.uniform(axis.reference_min_rad, axis.reference_max_rad, lanes) for axis in table.axes],
         axis=-1,
     ).astype(np.float32)
     references = starts + rng.integers(-60, 61, starts.shape).astype(np.float32) * np.abs(np.spacing(starts))
@@ -135,10 +136,22 @@ def arriving(table: FlownTable, rng: np.random.Generator, steps: int, lanes: int
     return Stimulus("arrivals", _bits(starts), _bits(inputs))
 
 
-def replayed(name: str, psi_ref_rad: Numbers, phi_ref_rad: Numbers, psi_rad: Numbers, phi_rad: Numbers) -> Stimulus:
-    """Recorded or made-up series of equal length, one lane."""
-    inputs = np.stack([psi_ref_rad, phi_ref_rad, psi_rad, phi_rad], axis=-1)[:, np.newaxis].astype(np.float32)
-    return Stimulus(name, _bits(inputs[0, :, 2:]), _bits(inputs))
+def replayed(name: str, *series_rad: Numbers) -> Stimulus:
+    """Recorded or made-up series of equal length of all references, then all angles, one lane."""
+    inputs = np.stack(series_rad, axis=-1)[:, np.newaxis].astype(np.float32)
+    return _from_rest(name, _bits(inputs))
+
+
+def _from_rest(name: str, inputs: Bits, states: Bits | None = None) -> Stimulus:
+    """Lanes that begin at rest at the angles of their first row, or in `states`."""
+    return Stimulus(name, inputs[0, :, inputs.shape[-1] // 2 :].copy(), inputs, states)
+
+
+def _words(table: FlownTable, words: int | None) -> int:
+    if words is not None:
+        return words
+    assert isinstance(table, ControllerTable), "another controller's states have a size of their own"
+    return state_words(table)
 
 
 def _wander(axis: AxisRange, rng: np.random.Generator, steps: int, lanes: int) -> NDArray[np.float64]:

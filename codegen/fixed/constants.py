@@ -6,6 +6,7 @@ from typing import Generic, Protocol, TypeVar
 from codegen.fixed.formats import LawFormats, gain_word, law_formats
 from codegen.fixed.polynomials import WORD_BITS, PolynomialFormat
 from codegen.law_constants import law_constants
+from codegen.law_frame import ScheduleNumbers, schedule_numbers
 from records.table import AxisLaw, ControllerTable
 
 N = TypeVar("N")
@@ -72,14 +73,13 @@ class FixedAxis(Generic[N]):
 
 @dataclass(frozen=True)
 class FixedLaw(Generic[N]):
-    """Words of both axes, and the ranges in which the law keeps its numbers."""
+    """Words of all axes, the schedule's range, and the ranges in which the law keeps its numbers; `order` as the table's."""
 
-    elevation: FixedAxis[N]
-    azimuth: FixedAxis[N]
+    order: int
+    axes: tuple[FixedAxis[N], ...]
     angle_min_rad: N
     angle_max_rad: N
-    psi_min_rad: N
-    psi_max_rad: N
+    schedule: ScheduleNumbers[N] | None
     schedule_doublings: int
     reference_doublings: int
     degree: int
@@ -101,14 +101,13 @@ def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N
     angle = formats.angle_places
     limit_rad = formats.angle_limit_rad - 2.0**-angle
     return FixedLaw(
-        elevation=_axis(table, "elevation", formats, number),
-        azimuth=_axis(table, "azimuth", formats, number),
+        order=table.order,
+        axes=tuple(_axis(table, loop.axis, formats, number) for loop in table.loops),
         angle_min_rad=number(-limit_rad, angle),
         angle_max_rad=number(limit_rad, angle),
-        psi_min_rad=number(table.psi_min_rad, angle),
-        psi_max_rad=number(table.psi_max_rad, angle),
+        schedule=schedule_numbers(table, lambda value: number(value, angle)),
         schedule_doublings=WORD_BITS - formats.schedule_bits - angle,
-        reference_doublings=WORD_BITS - formats.reference_bits - formats.elevation.reference_places,
+        reference_doublings=WORD_BITS - formats.reference_bits - formats.region_places,
         degree=formats.degree,
         error_bits=formats.error_bits,
         s_bits=formats.s_bits,
@@ -118,7 +117,7 @@ def fixed_constants(table: ControllerTable, number: MakeNumber[N]) -> FixedLaw[N
 
 
 def _axis(table: ControllerTable, name: str, formats: LawFormats, number: MakeNumber[N]) -> FixedAxis[N]:
-    axis, own = table.axis(name), formats.axis(name)
+    axis, own = table.axis(name), formats.axes[table.index(name)]
     angle, voltage = formats.angle_places, formats.voltage_places
     residue_places = own.sum_places - voltage
     terms = tuple(

@@ -3,16 +3,16 @@
 from dataclasses import dataclass
 from typing import Any
 
-from codegen.fixed.constants import FixedAxis, FixedLaw, FixedPolynomial, FixedTerm, fixed_constants, word_number
-from codegen.fixed.equations import AXIS_STATE_FIELDS
-from codegen.fixed.formats import FILTERED_BITS, AxisFormats, CountFormat, LawFormats, count_format, law_formats
+from codegen.fixed.constants import FixedLaw, FixedPolynomial, FixedTerm, fixed_constants, word_number
+from codegen.fixed.equations import fixed_axis_state
+from codegen.fixed.formats import FILTERED_BITS, CountFormat, LawFormats, count_format, law_formats
 from codegen.fixed.polynomials import PolynomialFormat
 from codegen.fixed.ranges import OverflowProof, Range, prove_no_overflow
 from codegen.fixed.twin import duty_ratio
-from codegen.law_equations import LAST_ACCEPTED_FIELDS
-from codegen.law_terms import PREFIXES, UNITS
+from codegen.law_terms import UNITS, Names
 from codegen.twin import FULL_SCALE_V
-from records.table import AxisLaw, ControllerTable
+from records.loops import Loop
+from records.table import ControllerTable
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Term:
 class Axis:
     """One axis as the template sees it."""
 
-    name: str
+    loop: Loop
     angle: str
     voltage: str
     filter: str
@@ -56,42 +56,48 @@ class Axis:
     prefilter_time_constant_s: float
     polynomials: tuple[Polynomial, ...]
     terms: tuple[Term, ...]
-    uses_third: bool
+    uses_last: bool
     sum_places: int
     residue_places: int
     residue_mask: str
     half_residue: int
     reference_doublings: int
+    reference_places: int
     half_step: int
     steps: int
     counts: CountFormat
     reference_spans_zero: bool
+
+    @property
+    def name(self) -> str:
+        """The loop's."""
+        return self.loop.axis
 
 
 def fixed_context(table: ControllerTable) -> dict[str, Any]:
     """Names of the templates law_fixed.*.j2; raises BadInput for a table whose law could not run, or could overflow."""
     proof = prove_no_overflow(table)
     law, formats = fixed_constants(table, word_number), law_formats(table)
-    axes = (
-        _axis(table.elevation, law.elevation, formats, formats.elevation, proof),
-        _axis(table.azimuth, law.azimuth, formats, formats.azimuth, proof),
-    )
+    axes = tuple(_axis(table, index, law, formats, proof) for index in range(len(table.loops)))
     factor, shift = duty_ratio(formats.voltage_places)
     return {
         "formats": formats,
         "voltage_limits": _voltage_limits(table, law),
         "angle_limits": _angle_limits(table, law, formats),
-        "axis_state_fields": AXIS_STATE_FIELDS,
-        "last_accepted_fields": LAST_ACCEPTED_FIELDS,
+        "axis_state_fields": tuple(fixed_axis_state(table.order).__dataclass_fields__),
+        "powers": list(range(table.order + 1)),
+        "angle": "x" if table.schedule is None else table.loops[table.index(table.schedule.axis)].symbol,
         "axes": axes,
         "filters": {axis.filter for axis in axes},
+        "multiplies_scaled": formats.degree > 1
+        or any(part.products == 3 for p in _all_polynomials(law) for part in p.powers),
         "multiplies_short": any(part.products == 2 for p in _all_polynomials(law) for part in p.powers),
-        "multiplies_narrow": any(term.is_narrow for axis in (law.elevation, law.azimuth) for term in axis.terms),
-        "multiplies_short_words": any(term.is_short for axis in (law.elevation, law.azimuth) for term in axis.terms),
-        "shifts_products": any(term.excess for axis in (law.elevation, law.azimuth) for term in axis.terms),
+        "multiplies_narrow": any(term.is_narrow for axis in law.axes for term in axis.terms),
+        "multiplies_short_words": any(term.is_short for axis in law.axes for term in axis.terms),
+        "shifts_products": any(term.excess for axis in law.axes for term in axis.terms),
         "places": {
             "schedule": formats.angle_places + law.schedule_doublings,
-            "reference": formats.elevation.reference_places + law.reference_doublings,
+            "reference": formats.region_places + law.reference_doublings,
         },
         "degree": formats.degree,
         "bits": {"filtered": FILTERED_BITS, "error": law.error_bits, "s": law.s_bits, "w": law.w_bits},
@@ -105,44 +111,49 @@ def fixed_context(table: ControllerTable) -> dict[str, Any]:
 
 
 def _all_polynomials(law: FixedLaw[int]) -> list[FixedPolynomial[int]]:
-    axes = (law.elevation, law.azimuth)
-    return [p for axis in axes for p in (*(term.polynomial for term in axis.terms), axis.feedforward_V)]
+    return [p for axis in law.axes for p in (*(term.polynomial for term in axis.terms), axis.feedforward_V)]
 
 
-def _axis(law: AxisLaw, axis: FixedAxis[int], formats: LawFormats, own: AxisFormats, proof: OverflowProof) -> Axis:
-    angle, voltage = PREFIXES[axis.name]
+def _axis(table: ControllerTable, index: int, law: FixedLaw[int], formats: LawFormats, proof: OverflowProof) -> Axis:
+    loop, axis, own = table.loops[index], law.axes[index], formats.axes[index]
+    names, stated = Names(loop), table.axes[index]
+    of = "x" if table.schedule is None else table.loops[table.index(table.schedule.axis)].symbol
     polynomials = [
-        _polynomial(axis.name, term.coefficient, term.polynomial, form.polynomial, "psi", proof)
+        _polynomial(axis.name, term.coefficient, term.polynomial, form.polynomial, of, proof)
         for term, form in zip(axis.terms, own.terms, strict=True)
     ]
-    polynomials.append(_polynomial(axis.name, "u_ff_V", axis.feedforward_V, own.feedforward, "psi_ref", proof))
+    polynomials.append(_polynomial(axis.name, "u_ff_V", axis.feedforward_V, own.feedforward, f"{of}_ref", proof))
+    last = f"e_{table.order}_rad"
     return Axis(
-        name=axis.name,
-        angle=angle,
-        voltage=voltage,
+        loop=loop,
+        angle=names.angle,
+        voltage=names.voltage,
         filter="take_reference" if axis.prefilter_gain is None else "prefilter",
         prefilter_gain=axis.prefilter_gain or 0,
-        prefilter_time_constant_s=law.prefilter_time_constant_s,
+        prefilter_time_constant_s=stated.prefilter_time_constant_s,
         polynomials=tuple(polynomials),
-        terms=tuple(Term("+" if term.sign > 0 else "-", _product(axis.name, term)) for term in axis.terms),
-        uses_third=any(term.factor == "e_3_rad" for term in axis.terms),
+        terms=tuple(Term("+" if term.sign > 0 else "-", _product(axis.name, term, last, of)) for term in axis.terms),
+        uses_last=any(term.factor == last for term in axis.terms),
         sum_places=own.sum_places,
         residue_places=axis.residue_places,
         residue_mask=f"0x{2**axis.residue_places - 1:X}",
         half_residue=axis.half_residue,
         reference_doublings=axis.reference_doublings,
+        reference_places=own.reference_places,
         half_step=2 ** (axis.reference_doublings - 1),
         steps=2**axis.reference_doublings,
-        counts=count_format(formats, law),
+        counts=count_format(formats, stated),
         reference_spans_zero=axis.reference_spans_zero,
     )
 
 
-def _product(axis: str, term: FixedTerm[int]) -> str:
-    places = {"e_3_rad": "e_3_rad", **{f"e_{i}_rad": f"self->e_{i}_rad" for i in range(3)}}
-    factor = places.get(term.factor, f"past->{term.factor}")
+def _product(axis: str, term: FixedTerm[int], last: str, of: str) -> str:
+    if term.factor.startswith("e_"):
+        factor = term.factor if term.factor == last else f"self->{term.factor}"
+    else:
+        factor = f"past->{term.factor}"
     function = "short_product" if term.is_short else "narrow_product" if term.is_narrow else "product"
-    product = f"{function}({axis}_{term.coefficient}(psi), {factor})"
+    product = f"{function}({axis}_{term.coefficient}({of}), {factor})"
     if term.doublings:
         return f"({product} << {term.doublings}u)"
     return f"floored_product({product}, {term.excess}u)" if term.excess else product
@@ -172,8 +183,8 @@ def _polynomial(
 
 def _voltage_limits(table: ControllerTable, law: FixedLaw[int]) -> list[tuple[str, int, float]]:
     rows = []
-    for axis, own in ((law.elevation, table.elevation), (law.azimuth, table.azimuth)):
-        _, prefix = PREFIXES[axis.name]
+    for loop, axis, own in zip(table.loops, law.axes, table.axes, strict=True):
+        prefix = Names(loop).voltage
         rows += [
             (f"{prefix}_MIN_V", axis.u_min_V, own.u_min_V),
             (f"{prefix}_MAX_V", axis.u_max_V, own.u_max_V),
@@ -183,14 +194,18 @@ def _voltage_limits(table: ControllerTable, law: FixedLaw[int]) -> list[tuple[st
 
 
 def _angle_limits(table: ControllerTable, law: FixedLaw[int], formats: LawFormats) -> list[tuple[str, int, str]]:
-    limit_rad = formats.angle_limit_rad
-    rows = [
-        ("PSI_REF_MIN_RAD", law.elevation.reference_min_rad, table.elevation.reference_min_rad),
-        ("PSI_REF_MAX_RAD", law.elevation.reference_max_rad, table.elevation.reference_max_rad),
-        ("PHI_REF_MIN_RAD", law.azimuth.reference_min_rad, table.azimuth.reference_min_rad),
-        ("PHI_REF_MAX_RAD", law.azimuth.reference_max_rad, table.azimuth.reference_max_rad),
-        ("PSI_MIN_RAD", law.psi_min_rad, table.psi_min_rad),
-        ("PSI_MAX_RAD", law.psi_max_rad, table.psi_max_rad),
-        ("ANGLE_LIMIT_RAD", law.angle_max_rad, limit_rad),
-    ]
+    rows = []
+    for loop, axis, own in zip(table.loops, law.axes, table.axes, strict=True):
+        prefix = Names(loop).angle
+        rows += [
+            (f"{prefix}_REF_MIN_RAD", axis.reference_min_rad, own.reference_min_rad),
+            (f"{prefix}_REF_MAX_RAD", axis.reference_max_rad, own.reference_max_rad),
+        ]
+    if law.schedule is not None and table.schedule is not None:
+        prefix = Names(table.loops[law.schedule.index]).angle
+        rows += [
+            (f"{prefix}_MIN_RAD", law.schedule.min_rad, table.schedule.min_rad),
+            (f"{prefix}_MAX_RAD", law.schedule.max_rad, table.schedule.max_rad),
+        ]
+    rows.append(("ANGLE_LIMIT_RAD", law.angle_max_rad, formats.angle_limit_rad))
     return [(name, word, f"{value:.9g}") for name, word, value in rows]

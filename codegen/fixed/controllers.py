@@ -16,19 +16,21 @@ Array = NDArray[np.float64]
 
 
 def fixed_controllers(table: ControllerTable, axis: str, psi_rad: Array) -> tuple[DeltaForm, ...]:
-    """q and p of (D.1) and (D.2) of one axis at the elevations psi_rad (angles,), each what its word stands for.
+    """q and p of (D.1) and (D.2) of one axis at the scheduling angles psi_rad (angles,), each what its word stands for.
 
     Raises BadInput for a table that has no fixed-point law.
     """
     words: Any = LaneWords()
     law, formats = fixed_constants(table, word_number), law_formats(table)
-    own, places = {"elevation": (law.elevation, formats.elevation), "azimuth": (law.azimuth, formats.azimuth)}[axis]
+    index = table.index(axis)
+    own, places = law.axes[index], formats.axes[index]
     angles = np.array([word_of(float(psi), formats.angle_places) for psi in psi_rad], dtype=np.int64)
-    powers = schedule(law, words, angles)
-    found = {letter: np.zeros((len(psi_rad), size)) for letter, size in (("q", 4), ("p", len(table.axis(axis).p)))}
+    powers = schedule(law, words, [angles] * len(law.axes))
+    stated = table.axes[index]
+    found = {letter: np.zeros((len(psi_rad), len(rows))) for letter, rows in (("q", stated.q_V_rad), ("p", stated.p))}
     for term, format_ in zip(own.terms, places.terms, strict=True):
-        letter, index = term.coefficient.split("_")[:2]
+        letter, power = term.coefficient.split("_")[:2]
         if letter in found:
             value = polynomial(term.polynomial, words, powers, term.coefficient)
-            found[letter][:, int(index)] = value / 2.0**format_.polynomial.places
+            found[letter][:, int(power)] = value / 2.0**format_.polynomial.places
     return tuple(DeltaForm(q, p) for q, p in zip(found["q"], found["p"], strict=True))

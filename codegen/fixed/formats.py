@@ -16,10 +16,11 @@ from codegen.fixed.polynomials import (
     room_for,
     short_places,
 )
+from codegen.law_constants import widest_region_rad
 from codegen.law_frame import polynomial_bound, without_vanishing_powers
 from codegen.law_terms import Coefficient, coefficients
 from records.errors import BadInput
-from records.table import AxisLaw, BothAxes, ControllerTable, Polynomial
+from records.table import AxisLaw, ControllerTable, Polynomial
 
 MISSING = -(2**31)  # the word that stands for "no number", as NaN does in float32
 HEADROOM_BITS = 5  # feedback may reach 2^5 times the limits at least
@@ -63,9 +64,10 @@ class AxisFormats:
 
 
 @dataclass(frozen=True)
-class LawFormats(BothAxes[AxisFormats]):
-    """Formats of both axes. States are kept within +-2^bits words: e within error_bits, s and w within theirs, and twice and four
-    times that for their first and second differences. `schedule_bits` and `reference_bits`: |psi| and |psi_ref| < 2^bits rad."""
+class LawFormats:
+    """Formats of all axes. States are kept within +-2^bits words: e within error_bits, s and w within theirs, and twice that for each
+    further difference. `schedule_bits` and `reference_bits`: |psi| and |psi_ref| of the scheduling angle < 2^bits rad;
+    `region_places` are those of its filtered reference."""
 
     angle_places: int
     voltage_places: int
@@ -75,13 +77,13 @@ class LawFormats(BothAxes[AxisFormats]):
     w_bits: int
     schedule_bits: int
     reference_bits: int
-    elevation: AxisFormats
-    azimuth: AxisFormats
+    region_places: int
+    axes: tuple[AxisFormats, ...]
 
     @property
     def degree(self) -> int:
         """Highest power of an angle in any polynomial, 1 at least."""
-        polynomials = [p for axis in (self.elevation, self.azimuth) for p in axis.polynomials]
+        polynomials = [p for axis in self.axes for p in axis.polynomials]
         return max([1, *(part.power for p in polynomials for part in p.powers)])
 
 
@@ -99,22 +101,21 @@ def value_of(word: int, places: int) -> float:
 
 def law_formats(table: ControllerTable) -> LawFormats:
     """The formats of a table; raises BadInput when its numbers span more than 32-bit words can hold."""
-    axes = (table.elevation, table.azimuth)
+    axes = table.axes
     widest_reference_rad = max(_widest_reference(axis) for axis in axes)
     angle_limit_rad = 2.0 ** bits_of(widest_reference_rad + math.pi / 2.0)
-    # The third difference of an error is up to eight times the error.
+    # The n-th difference of an error is up to 2^n times the error; few states have the room of three as well.
+    order = max(3, table.order)
     error_rad_bits = bits_of(widest_reference_rad + angle_limit_rad)
-    angle_places = WORD_BITS - 3 - error_rad_bits
+    angle_places = WORD_BITS - order - error_rad_bits
     s_V_bits = bits_of(max(_widest_s(table, axis) for axis in axes))
     limit_V_bits = bits_of(max(max(abs(axis.u_min_V), abs(axis.u_max_V)) for axis in axes))
     v_V = max(_widest_feedback(table, axis, angle_limit_rad) + 2.0 * _widest_s(table, axis) for axis in axes)
     w_V_bits = max(HEADROOM_BITS + limit_V_bits, 2 + s_V_bits, 1 + bits_of(v_V))  # v may take half of it
-    voltage_places = WORD_BITS - 2 - w_V_bits
+    voltage_places = WORD_BITS - (order - 1) - w_V_bits
     _refuse_coarse(axes, voltage_places, v_V)
-    schedule_bits = max(0, bits_of(max(abs(table.psi_min_rad), abs(table.psi_max_rad))))
-    reference_bits = 1 + max(
-        0, bits_of(_widest_reference(table.elevation))
-    )  # a broken filter may reach the end of its word
+    schedule_bits = max(0, bits_of(table.widest_schedule_rad))
+    reference_bits = 1 + max(0, bits_of(widest_region_rad(table)))  # a broken filter may reach the end of its word
     shared = _Shared(
         table, angle_places, voltage_places, error_rad_bits, s_V_bits, w_V_bits, schedule_bits, reference_bits
     )
@@ -127,8 +128,8 @@ def law_formats(table: ControllerTable) -> LawFormats:
         w_bits=voltage_places + w_V_bits,
         schedule_bits=schedule_bits,
         reference_bits=reference_bits,
-        elevation=_axis_formats(shared, "elevation", table.elevation),
-        azimuth=_axis_formats(shared, "azimuth", table.azimuth),
+        region_places=FILTERED_BITS - bits_of(widest_region_rad(table)),
+        axes=tuple(_axis_formats(shared, loop.axis, axis) for loop, axis in zip(table.loops, axes, strict=True)),
     )
 
 
@@ -146,7 +147,7 @@ def _refuse_coarse(axes: tuple[AxisLaw, ...], voltage_places: int, v_V: float) -
 
 @dataclass(frozen=True)
 class _Shared:
-    """What the formats of both axes depend on."""
+    """What the formats of all axes depend on."""
 
     table: ControllerTable
     angle_places: int
@@ -159,13 +160,13 @@ class _Shared:
 
     @property
     def psi_rad(self) -> float:
-        return max(abs(self.table.psi_min_rad), abs(self.table.psi_max_rad))
+        return self.table.widest_schedule_rad
 
 
 def _axis_formats(shared: _Shared, name: str, axis: AxisLaw) -> AxisFormats:
     sum_places = _sum_places(shared, name, axis)
     terms = tuple(_term(shared, coefficient, sum_places) for coefficient in _present(axis))
-    psi_ref_rad = _widest_reference(shared.table.elevation)
+    psi_ref_rad = widest_region_rad(shared.table)
     return AxisFormats(
         reference_places=FILTERED_BITS - bits_of(_widest_reference(axis)),
         sum_places=sum_places,
@@ -251,10 +252,10 @@ def _widest_reference(axis: AxisLaw) -> float:
 
 def _widest_feedback(table: ControllerTable, axis: AxisLaw, angle_limit_rad: float) -> float:
     """Bound of v while the axis moves no faster than FASTEST_RAD_S and saturation is no deeper than the span of the limits [V]."""
-    psi_rad = max(abs(table.psi_min_rad), abs(table.psi_max_rad))
+    psi_rad = table.widest_schedule_rad
     reference_move_rad = axis.prefilter_gain(table.sample_period_s) * (axis.reference_max_rad - axis.reference_min_rad)
     move_rad = 1.01 * (FASTEST_RAD_S * table.sample_period_s + axis.resolution_rad + reference_move_rad)
-    e_rad = (_widest_reference(axis) + angle_limit_rad, move_rad, 2.0 * move_rad, 4.0 * move_rad)
+    e_rad = (_widest_reference(axis) + angle_limit_rad, *(move_rad * 2.0**i for i in range(axis.order)))
     span_V, s_V = axis.u_max_V - axis.u_min_V, 2.0 * _widest_s(table, axis)
     from_e_V = sum(polynomial_bound(q, psi_rad) * e for q, e in zip(axis.q_V_rad, e_rad, strict=True))
     from_s_V = sum(polynomial_bound(p, psi_rad) * s_V * 2.0**i for i, p in enumerate(axis.p))
@@ -269,7 +270,7 @@ def _widest_s(table: ControllerTable, axis: AxisLaw) -> float:
 
 def widest_feedforward(table: ControllerTable, axis: AxisLaw) -> float:
     """Bound of the feed-forward voltage over all references that a filtered word can hold [V]."""
-    return polynomial_bound(axis.feedforward_V, 2.0 ** max(0, bits_of(_widest_reference(table.elevation))))
+    return polynomial_bound(axis.feedforward_V, 2.0 ** max(0, bits_of(widest_region_rad(table))))
 
 
 @dataclass(frozen=True)

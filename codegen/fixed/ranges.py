@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from codegen.fixed.constants import FixedLaw, fixed_constants, word_number
-from codegen.fixed.equations import AXIS_STATE_FIELDS, law_reset, law_step, state_from_words
-from codegen.law_equations import LawInput
+from codegen.fixed.equations import fixed_axis_state, law_reset, law_step, state_from_words
+from codegen.law_frame import LawInput, state_size
 from records.errors import BadInput
 from records.table import ControllerTable
 
@@ -138,19 +138,18 @@ def prove_no_overflow(table: ControllerTable) -> OverflowProof:
     """Run the law on any words; raises BadInput, naming the result, when one could leave its 32 or 64 bits."""
     law: FixedLaw[Any] = fixed_constants(table, _exactly)
     words = Intervals()
-    any_words = [Interval(*ANY_WORD) for _ in range(2 * len(AXIS_STATE_FIELDS) + 4)]
-    state, output = law_step(law, words, state_from_words(any_words), LawInput(*_any(4)))
-    law_reset(law, words, *_any(2))
-    for name, remembered, axis in (
-        ("elevation", state.elevation, law.elevation),
-        ("azimuth", state.azimuth, law.azimuth),
-    ):
+    loops = len(table.loops)
+    remembered_words = _any(state_size(fixed_axis_state(table.order), loops))
+    state, voltages = law_step(law, words, state_from_words(law, remembered_words), LawInput.of(_any(2 * loops)))
+    law_reset(law, words, _any(loops))
+    for remembered, axis in zip(state.axes, law.axes, strict=True):
+        name = axis.name
         words.word(f"{name}.v_residue", remembered.v_residue)
         for field, bits in (("e_0_rad", law.error_bits), ("s_0_V", law.s_bits), ("w_0_V", law.w_bits)):
             _demand_kept(f"{name}.{field}", getattr(remembered, field), bits)
         _demand_half(name, axis)
-    words.word("u_M_V", output.u_M_V)
-    words.word("u_T_V", output.u_T_V)
+    for loop, voltage in zip(table.loops, voltages, strict=True):
+        words.word(loop.input, voltage)
     return OverflowProof(words.ranges)
 
 

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from codegen.fixed.arithmetic import LaneWords, Scalars
 from codegen.fixed.constants import fixed_constants, word_number
-from codegen.fixed.equations import law_reset, law_step, state_from_words
+from codegen.fixed.equations import fixed_axis_state, law_reset, law_step, state_from_words
 from codegen.fixed.formats import MISSING, count_format, law_formats, value_of, word_of
-from codegen.law_equations import STATE_WORDS, LawInput, LawState, words_from_state
+from codegen.law_frame import LawInput, LawState, state_size, words_from_state
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
-from records.table import AxisLaw, ControllerTable
+from records.table import ControllerTable
 
 Bits = NDArray[np.uint32]
 
@@ -25,53 +25,47 @@ class FixedTwin:
     def __init__(self, table: ControllerTable) -> None:
         self.law = fixed_constants(table, word_number)
         self.formats = law_formats(table)
-        self._elevation, self._azimuth = table.elevation, table.azimuth
-        self._state: LawState[int] = law_reset(self.law, Scalars(), 0, 0)
+        self._table = table
+        self.state_words = state_size(fixed_axis_state(table.order), len(table.loops))
+        self.reset(*[0.0] * len(table.loops))
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start afresh at these angles."""
-        self._state = law_reset(self.law, Scalars(), self._angle(psi_rad), self._angle(phi_rad))
+        self._state: LawState[int] = law_reset(self.law, Scalars(), [self._angle(value) for value in angles_rad])
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample; returns (u_M_V, u_T_V) within their limits."""
-        given = LawInput(*(self._angle(value) for value in (psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)))
-        self._state, output = law_step(self.law, Scalars(), self._state, given)
-        places = self.formats.voltage_places
-        return value_of(output.u_M_V, places), value_of(output.u_T_V, places)
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample of references, then angles; returns the voltages within their limits."""
+        given = LawInput.of([self._angle(value) for value in given_rad])
+        self._state, voltages = law_step(self.law, Scalars(), self._state, given)
+        return tuple(value_of(word, self.formats.voltage_places) for word in voltages)
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest, words [lanes, STATE_WORDS], for angles psi, phi as words [lanes, 2]."""
-        psi_rad, phi_rad = _signed(angles).T
-        return _state_bits(law_reset(self.law, LaneWords(), psi_rad, phi_rad), len(angles))
+        """States at rest, words [lanes, state_words], for angles as words [lanes, loops]."""
+        return self._state_bits(law_reset(self.law, LaneWords(), tuple(_signed(angles).T)), len(angles))
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """All lanes through all steps: inputs [steps, lanes, 4] as words give final states and outputs [steps, lanes, 2]."""
+        """All lanes through all steps: inputs [steps, lanes, 2 loops] as words give final states and outputs [steps, lanes, loops]."""
         steps, lanes = inputs.shape[:2]
-        outputs = np.empty((steps, lanes, 2), dtype=np.int64)
+        outputs = np.empty((steps, lanes, len(self.law.axes)), dtype=np.int64)
         # One lane goes faster as single numbers than as arrays of one.
         words: Any = Scalars() if lanes == 1 else LaneWords()
         columns: Any = (lambda rows: rows[0].tolist()) if lanes == 1 else np.transpose
-        state = state_from_words(columns(_signed(states)))
+        state = state_from_words(self.law, columns(_signed(states)))
         for given, output in zip(_signed(inputs), outputs, strict=True):
-            state, voltages = law_step(self.law, words, state, LawInput(*columns(given)))
-            output[:, 0], output[:, 1] = voltages.u_M_V, voltages.u_T_V
-        return _state_bits(state, lanes), outputs.astype(np.uint32)
+            state, voltages = law_step(self.law, words, state, LawInput.of(columns(given)))
+            for index, word in enumerate(voltages):
+                output[:, index] = word
+        return self._state_bits(state, lanes), outputs.astype(np.uint32)
 
-    def angle_from_counts_psi(self, counts: int) -> float:
-        """Elevation [rad] of an encoder count."""
-        return self._angle_from_counts(self._elevation, counts)
+    def angle_from_counts(self, loop: int, counts: int) -> float:
+        """Angle [rad] of an encoder count of the loop at this place."""
+        form = count_format(self.formats, self._table.axes[loop])
+        product = Scalars().clamp(counts, -form.limit, form.limit) * form.step
+        return value_of((product + (1 << form.shift - 1)) >> form.shift, self.formats.angle_places)
 
-    def angle_from_counts_phi(self, counts: int) -> float:
-        """Azimuth [rad] of an encoder count."""
-        return self._angle_from_counts(self._azimuth, counts)
-
-    def duty_main(self, u_V: float) -> int:
-        """Signed PWM ticks of the main rotor's voltage."""
-        return duty(self.voltage_word(u_V), self.law.elevation.u_safe_V, self.formats.voltage_places)
-
-    def duty_tail(self, u_V: float) -> int:
-        """Signed PWM ticks of the tail rotor's voltage."""
-        return duty(self.voltage_word(u_V), self.law.azimuth.u_safe_V, self.formats.voltage_places)
+    def duty(self, loop: int, u_V: float) -> int:
+        """Signed PWM ticks of a voltage of the loop at this place."""
+        return duty(self.voltage_word(u_V), self.law.axes[loop].u_safe_V, self.formats.voltage_places)
 
     def voltage_word(self, u_V: float) -> int:
         """The 32 bits of a voltage, as an unsigned integer."""
@@ -85,10 +79,11 @@ class FixedTwin:
     def _angle(self, angle_rad: float) -> int:
         return word_of(angle_rad, self.formats.angle_places)
 
-    def _angle_from_counts(self, axis: AxisLaw, counts: int) -> float:
-        form = count_format(self.formats, axis)
-        product = Scalars().clamp(counts, -form.limit, form.limit) * form.step
-        return value_of((product + (1 << form.shift - 1)) >> form.shift, self.formats.angle_places)
+    def _state_bits(self, state: LawState[Any], lanes: int) -> Bits:
+        words = np.empty((lanes, self.state_words), dtype=np.int64)
+        for index, word in enumerate(words_from_state(state)):
+            words[:, index] = word
+        return words.astype(np.uint32)
 
 
 def duty_ratio(voltage_places: int) -> tuple[int, int]:
@@ -114,10 +109,3 @@ def duty(word: int, safe_V: int, voltage_places: int) -> int:
 
 def _signed(bits: Bits) -> NDArray[np.int64]:
     return np.ascontiguousarray(bits).view(np.int32).astype(np.int64)
-
-
-def _state_bits(state: LawState[Any], lanes: int) -> Bits:
-    words = np.empty((lanes, STATE_WORDS), dtype=np.int64)
-    for index, word in enumerate(words_from_state(state)):
-        words[:, index] = word
-    return words.astype(np.uint32)

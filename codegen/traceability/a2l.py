@@ -16,12 +16,12 @@ from toolchain.dwarf import Member
 
 _FLOAT = ("FLOAT32_IEEE", -3.40282347e38, 3.40282347e38)
 _UNITS: Mapping[str, str] = {"V": "V", "rad": "rad", "us": "us", "counts": "1", "ticks": "1", "cycles": "1"}
-_FIXED_SIGNALS = re.compile(r"^(law|input|output)\.|^(elevation|azimuth)_limits\.")
+_FIXED_SIGNALS = re.compile(r"^(law|input|output)\.|^\w+_limits\.")
 
 
 @dataclass(frozen=True)
 class ImageMap:
-    """Where an image keeps what is described: the path's state, the limits of both axes, and the digest."""
+    """Where an image keeps what is described: the path's state, the limits of all axes, and the digest."""
 
     signals: Sequence[Member]
     limits: Sequence[Member]
@@ -145,5 +145,6 @@ def _places(table: ControllerTable, path: str, unit: str) -> int:
     if unit == "V":
         return formats.voltage_places
     if path.endswith(("reference_1_rad", "reference_2_rad")):
-        return formats.elevation.reference_places if ".elevation." in path else formats.azimuth.reference_places
+        (index,) = (index for index, loop in enumerate(table.loops) if f".{loop.axis}." in path)
+        return formats.axes[index].reference_places
     return formats.angle_places

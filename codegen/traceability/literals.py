@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from codegen.fixed.constants import FixedPolynomial, fixed_constants, word_number
 from codegen.fixed.formats import count_format, law_formats
-from codegen.law_terms import PREFIXES, array_name
+from codegen.law_terms import Names, array_name
 from codegen.numbers import c_float32
 from records.table import ControllerTable
 
@@ -61,8 +61,8 @@ def _word(value: float, places: int, made_up: float = 0.0, neglected: float = 0.
 
 def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
     law = fixed_constants(table, _word)
-    for axis in (law.elevation, law.azimuth):
-        angle, voltage = PREFIXES[axis.name]
+    for loop, axis in zip(table.loops, law.axes, strict=True):
+        angle, voltage = Names(loop).angle, Names(loop).voltage
         for term in axis.terms:
             yield from _coefficients(array_name(axis.name, term.coefficient), term.polynomial)
         yield from _coefficients(array_name(axis.name, "u_ff_V"), axis.feedforward_V)
@@ -74,12 +74,13 @@ def _words(table: ControllerTable) -> Iterator[tuple[str, Literal]]:
         if axis.prefilter_gain is not None:
             yield f"{axis.name}_limits.prefilter_gain", axis.prefilter_gain
     formats = law_formats(table)
-    for name, (angle, _) in PREFIXES.items():
-        own = table.axis(name)
+    for loop, own in zip(table.loops, table.axes, strict=True):
         places = formats.angle_places + count_format(formats, own).shift
-        yield f"LAW_{angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
-    yield "LAW_PSI_MIN_RAD", law.psi_min_rad
-    yield "LAW_PSI_MAX_RAD", law.psi_max_rad
+        yield f"LAW_{Names(loop).angle}_RESOLUTION_RAD", _word(own.resolution_rad, places)
+    if law.schedule is not None:
+        angle = Names(table.loops[law.schedule.index]).angle
+        yield f"LAW_{angle}_MIN_RAD", law.schedule.min_rad
+        yield f"LAW_{angle}_MAX_RAD", law.schedule.max_rad
     yield "LAW_ANGLE_LIMIT_RAD", law.angle_max_rad
 
 

@@ -8,26 +8,17 @@ from dataclasses import dataclass, replace
 from codegen.fixed.formats import MISSING, law_formats
 from codegen.law import ARITHMETIC_CODES
 from codegen.law_frame import without_vanishing_powers
-from codegen.law_terms import PREFIXES, UNITS, array_name, coefficients
+from codegen.law_terms import UNITS, Names, array_name, coefficients
 from codegen.traceability.literals import LEFT_OUT, LITERALS, Literal
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.errors import BadInput
-from records.table import AXES, LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
+from records.loops import Loop
+from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTable, Polynomial
 
+# The parameters of the helicopter's equations that are the limits of an input.
+_LIMITS = {"u_M_V": ("u_min", "u_max"), "u_T_V": ("uT_min", "uT_max")}
 _FIT = "least squares over the operating points, coefficient of Psi^{power} [rad^-{power}]"
-# Members of the C's structures that hold a constant of the header.
-_MEMBERS = {
-    f"{axis}_limits.{member}": f"LAW_{own}_{suffix}"
-    for axis, (angle, voltage) in PREFIXES.items()
-    for member, own, suffix in (
-        ("reference_min_rad", angle, "REF_MIN_RAD"),
-        ("reference_max_rad", angle, "REF_MAX_RAD"),
-        ("u_min_V", voltage, "MIN_V"),
-        ("u_max_V", voltage, "MAX_V"),
-        ("u_safe_V", voltage, "SAFE_V"),
-    )
-}
-_OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^3 in powers of delta"
+_OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^{order} in powers of delta"
 
 
 @dataclass(frozen=True)
@@ -66,12 +57,27 @@ def find_constant(table: ControllerTable, name: str, arithmetic: str = "float32"
     for constant in known:
         if constant.name == name:
             return constant
-    wanted = _plain(_MEMBERS.get(name, name))
+    wanted = _plain(_members(table).get(name, name))
     for constant in known:
         if _plain(constant.name) == wanted:
             return constant
     expected = _expected(wanted, [constant.name for constant in known])
     raise BadInput("constant", "twinlaw trace", repr(name), expected, "list them: twinlaw trace")
+
+
+def _members(table: ControllerTable) -> dict[str, str]:
+    """Members of the C's structures that hold a constant of the header."""
+    return {
+        f"{loop.axis}_limits.{member}": f"LAW_{own}_{suffix}"
+        for loop in table.loops
+        for member, own, suffix in (
+            ("reference_min_rad", Names(loop).angle, "REF_MIN_RAD"),
+            ("reference_max_rad", Names(loop).angle, "REF_MAX_RAD"),
+            ("u_min_V", Names(loop).voltage, "MIN_V"),
+            ("u_max_V", Names(loop).voltage, "MAX_V"),
+            ("u_safe_V", Names(loop).voltage, "SAFE_V"),
+        )
+    }
 
 
 def _expected(wanted: str, names: Sequence[str]) -> str:
@@ -86,13 +92,16 @@ def _expected(wanted: str, names: Sequence[str]) -> str:
 
 
 def _constants(table: ControllerTable) -> Iterator[Constant]:
-    for axis in AXES:
-        yield from _coefficients(table, axis, table.axis(axis))
-    for axis in AXES:
-        yield from _limits(table, axis, table.axis(axis))
+    for loop in table.loops:
+        yield from _coefficients(table, loop.axis, table.axis(loop.axis))
+    for loop in table.loops:
+        yield from _limits(table, loop, table.axis(loop.axis))
     design = "wish of the plant file, [design]"
-    yield Constant("LAW_PSI_MIN_RAD", table.psi_min_rad, "rad", f"{design} psi_min_rad, or the stop of the plant")
-    yield Constant("LAW_PSI_MAX_RAD", table.psi_max_rad, "rad", f"{design} psi_max_rad, or the stop of the plant")
+    if table.schedule is not None:
+        loop = table.loops[table.index(table.schedule.axis)]
+        for end, value in (("min", table.schedule.min_rad), ("max", table.schedule.max_rad)):
+            made_as = f"{design} {loop.symbol}_{end}_rad, or the stop of the plant"
+            yield Constant(f"LAW_{Names(loop).angle}_{end.upper()}_RAD", value, "rad", made_as)
     yield Constant("LAW_PWM_TICKS", PWM_TICKS, "1", f"constant of the board: its timer's ticks of {FULL_SCALE_V:g} V")
     yield Constant("LAW_SAMPLE_PERIOD_US", table.sample_period_s * 1e6, "us", f"{design} sample_period_s")
     yield Constant("PLAUSIBLE_V", PLAUSIBLE_V, "V", "constant of the method: beyond it v is a broken state")
@@ -131,7 +140,7 @@ def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[C
     for entry in coefficients(law):
         letter, polynomial = entry.letter, entry.polynomial
         for power, value in enumerate(without_vanishing_powers(polynomial)):
-            made_as = _OBSERVER.format(pole=pole) if letter == "a" else _FIT.format(power=power)
+            made_as = _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else _FIT.format(power=power)
             name = f"{array_name(axis, entry.name)}[{power}]"
             yield Constant(name, value, entry.unit, made_as, axis, letter, entry.index, power, polynomial)
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
@@ -140,16 +149,16 @@ def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[C
         yield Constant(name, value, UNITS["u_ff"], made_as, axis, "u_ff", 0, power, law.feedforward_V)
 
 
-def _limits(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
-    angle, voltage = PREFIXES[axis]
-    low, high = ("u_min", "u_max") if axis == "elevation" else ("uT_min", "uT_max")
+def _limits(table: ControllerTable, loop: Loop, law: AxisLaw) -> Iterator[Constant]:
+    axis, angle, voltage = loop.axis, Names(loop).angle, Names(loop).voltage
+    low, high = _LIMITS.get(loop.input, (None, None))
     yield Constant(f"LAW_{voltage}_MIN_V", law.u_min_V, "V", "limit of the plant's input", axis, parameter=low)
     yield Constant(f"LAW_{voltage}_MAX_V", law.u_max_V, "V", "limit of the plant's input", axis, parameter=high)
     yield Constant(f"LAW_{voltage}_SAFE_V", law.u_safe_V, "V", "0 V, or the limit nearest to it", axis)
     wish = f"wish of the plant file, [design.{axis}]"
     yield Constant(f"LAW_{angle}_REF_MIN_RAD", law.reference_min_rad, "rad", f"{wish} reference_min_rad", axis)
     yield Constant(f"LAW_{angle}_REF_MAX_RAD", law.reference_max_rad, "rad", f"{wish} reference_max_rad", axis)
-    sensor = f"encoder step, [sensors.{angle.lower()}_rad] resolution_rad"
+    sensor = f"encoder step, [sensors.{loop.output}] resolution_rad"
     yield Constant(f"LAW_{angle}_RESOLUTION_RAD", law.resolution_rad, "rad", sensor, axis)
     T_s = law.prefilter_time_constant_s
     gain = law.prefilter_gain(table.sample_period_s)

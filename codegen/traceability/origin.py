@@ -4,21 +4,19 @@ The sensitivity of a designed coefficient to a parameter is d ln(coefficient) / 
 level, by central differences of the whole design: the parameters that it names are those that the coefficient rests on.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from codegen.traceability.names import Constant, constants, find_constant, identity
-from design.operating_points import design_point
+from design.operating_points import design_point, rest, rest_V
 from design.settings import DesignSettings
 from records.errors import BadInput
 from records.plant import Parameter, plant_digest
-from records.table import AXES, ControllerTable
+from records.table import ControllerTable
 from sim.bind import BoundPlant
-from sim.equilibrium import equilibrium
 
 _STEP = 1e-4
 _LEAST_SENSITIVITY = 1e-6
@@ -105,15 +103,17 @@ def _points(table: ControllerTable, constant: Constant) -> Iterator[PointTrace]:
     """What was designed at each operating point for the polynomial that holds the constant."""
     if constant.letter not in ("q", "p", "u_ff"):
         return
+    angle = "" if table.schedule is None else table.loops[table.index(table.schedule.axis)].output
     for index, point in enumerate(table.origin["operating_points"]):
-        designed = _designed(table.origin, constant, index)
-        fitted = float(polyval(point["psi_rad"], constant.polynomial))
-        yield PointTrace(point["psi_rad"], tuple(point["u0_V"]), designed, fitted)
+        psi_rad = point.get(angle, 0.0)
+        fitted = float(polyval(psi_rad, constant.polynomial))
+        yield PointTrace(psi_rad, tuple(point["u0_V"]), _designed(table, constant, index), fitted)
 
 
-def _designed(origin: Mapping[str, Any], constant: Constant, point: int) -> float:
+def _designed(table: ControllerTable, constant: Constant, point: int) -> float:
+    origin = table.origin
     if constant.letter == "u_ff":
-        return float(origin["operating_points"][point]["u0_V"][AXES.index(constant.axis)])
+        return float(origin["operating_points"][point]["u0_V"][table.index(constant.axis)])
     group = "q_V_rad" if constant.letter == "q" else "p"
     return float(origin[constant.axis][group][point][constant.index])
 
@@ -161,11 +161,10 @@ def _design_at(
     p = np.array(bound.p)
     p[index] *= factor
     changed = replace(bound, p=p)
-    point = equilibrium(changed, psi_rad)
+    point, axis = rest(changed, settings, psi_rad), constant.axis
     if constant.letter == "u_ff":
-        return float(point.u0[AXES.index(constant.axis)])
-    axis = constant.axis
-    delta = design_point(changed, point, axis, settings.axis(axis), settings.sample_period_s).delta
+        return float(rest_V(changed, [point], settings.loop(axis))[0])
+    delta = design_point(changed, point, settings, settings.axis(axis), psi_rad).delta
     return float((delta.q if constant.letter == "q" else delta.p)[constant.index])
 
 

@@ -19,13 +19,13 @@ class BoardController:
         self._session = LoopSession(client, 0.0, 0.0)
         self.law_cycles = 0
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start anew at rest at these angles, with the next step."""
-        self._session = LoopSession(self._client, psi_rad, phi_rad)
+        self._session = LoopSession(self._client, *angles_rad)
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        """One sample through the serial line; returns (u_M_V, u_T_V). Raises BadInput when the board refuses or is lost."""
-        answer = self._session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        """One sample through the serial line; returns the voltages. Raises BadInput when the board refuses or is lost."""
+        answer = self._session.step(given_rad)
         self.law_cycles = answer.law_cycles
         self._stepped()
         return answer.u_M_V, answer.u_T_V

@@ -35,13 +35,11 @@ class LineLaw:
         return states, np.stack(lanes, axis=1)
 
     def _lane(self, angles: Bits, inputs: Bits) -> Bits:
-        psi_rad, phi_rad = self._values(angles)
-        session = LoopSession(self._client, psi_rad, phi_rad)
+        session = LoopSession(self._client, *self._values(angles))
         return np.array([self._step(session, row) for row in inputs])
 
     def _step(self, session: LoopSession, row: Bits) -> Bits:
-        psi_ref_rad, phi_ref_rad, psi_rad, phi_rad = self._values(row)
-        answer = session.step((psi_ref_rad, phi_ref_rad, psi_rad, phi_rad))
+        answer = session.step(tuple(self._values(row)))
         self.cycles_max = max(self.cycles_max, answer.law_cycles)
         self._stepped()
         to_word = self._client.numbers.to_word

@@ -8,18 +8,18 @@ the same state: what comes out is the same whatever the computer does meanwhile.
 from rig.link.client import BoardClient, Refused
 from rig.link.replies import Answer
 
-Given = tuple[float, float, float, float]
+Given = tuple[float, ...]
 
 ATTEMPTS = 20
 
 
 class LoopSession:
-    """Samples since the law's reset at two angles; `losses` counts how often the board had given its host up."""
+    """Samples since the law's reset at its angles; `losses` counts how often the board had given its host up."""
 
-    def __init__(self, client: BoardClient, psi_rad: float, phi_rad: float) -> None:
+    def __init__(self, client: BoardClient, *angles_rad: float) -> None:
         self.losses = 0
         self._client = client
-        self._start_rad = (psi_rad, phi_rad)
+        self._start_rad = angles_rad
         self._given: list[Given] = []
         self._is_armed = False
 

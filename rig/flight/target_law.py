@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import STATE_WORDS
+from codegen.law_equations import axis_state
+from codegen.law_frame import state_size
+from records.loops import LOOPS
 from rig.emulator.answers import CallsResult
 from rig.emulator.bench import Speed, measure
 from rig.emulator.board import EmulatedBoard
@@ -11,7 +13,9 @@ from rig.link.numbers import Numbers
 
 Bits = NDArray[np.uint32]
 
-_INPUT_BYTES, _OUTPUT_BYTES = 16, 8
+# The image's law is one of the helicopter's loops.
+_INPUT_BYTES, _OUTPUT_BYTES = 8 * len(LOOPS), 4 * len(LOOPS)
+STATE_WORDS = state_size(axis_state(3), len(LOOPS))  # of the scheduled law
 
 
 class TargetLaw:

@@ -21,9 +21,11 @@ def law_step(table: ControllerTable, ops: Any, state: Any, reference: Any, y: An
     """One sample of the law: `ops` has `minimum` and `maximum`; returns the new state and the inputs."""
     new: list[Any] = []
     u: list[Any] = []
-    psi = ops.maximum(ops.minimum(y[0], table.psi_max_rad), table.psi_min_rad)
+    schedule = table.schedule
+    assert schedule is not None
+    psi = ops.maximum(ops.minimum(y[0], schedule.max_rad), schedule.min_rad)
     filtered = None
-    for place, axis in enumerate((table.elevation, table.azimuth)):
+    for place, axis in enumerate(table.axes):
         own = [state[place * LAW_STATES + index] for index in range(LAW_STATES)]
         x1, x2 = _prefilter(axis, table.sample_period_s, own, reference[place])
         filtered = x2 if filtered is None else filtered

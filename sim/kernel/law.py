@@ -3,21 +3,40 @@
 from typing import Any
 
 from records.errors import BadInput
+from records.loops import LOOPS
 from records.table import AxisLaw, ControllerTable, Polynomial
 from sim.kernel.kernel import Kernel
 
 MAX_COEFFICIENTS = 12  # as in sim/kernel/c/law_table.h
+ORDER = 3  # states of an axis
 NO_ROLL_OFF: Polynomial = ()  # p_3 of an axis without
 
 
+def is_kernel_s(table: ControllerTable) -> bool:
+    """Whether the kernels' own law can fly a table: both loops of a helicopter, three states each, scheduled by the first."""
+    schedule = table.schedule
+    return (
+        table.loops == LOOPS
+        and schedule is not None
+        and schedule.axis == LOOPS[0].axis
+        and all(axis.order == ORDER for axis in table.axes)
+    )
+
+
 def law_struct(kernel: Kernel, table: ControllerTable) -> Any:
-    """The C struct `law_table`; raises BadInput when a polynomial has more coefficients than it has room for."""
+    """The C struct `law_table`; raises BadInput when a polynomial has more coefficients than it has room for, or for other loops."""
+    axes, schedule = table.axes, table.schedule
+    if schedule is None or not is_kernel_s(table):
+        names = ", ".join(loop.axis for loop in table.loops)
+        raise BadInput(
+            "controller table", kernel.model.name, f"loops {names} of up to {table.order} states",
+            f"the helicopter's two of {ORDER}, which the kernel's own law has", "fly it as generated, or by its float law",
+        )  # fmt: skip
     result = kernel.ffi.new("law_table *")
-    axes = (table.elevation, table.azimuth)
     rows = [row for axis in axes for row in (*axis.q_V_rad, *(*axis.p, NO_ROLL_OFF)[:4])]
     result.coefficients = _checked(max(len(row) for row in rows))
     result.feedforward_coefficients = _checked(max(len(axis.feedforward_V) for axis in axes))
-    result.psi_min_rad, result.psi_max_rad = table.psi_min_rad, table.psi_max_rad
+    result.psi_min_rad, result.psi_max_rad = schedule.min_rad, schedule.max_rad
     for column, row in enumerate(rows):
         for power, coefficient in enumerate(row):
             result.scheduled[power][column] = coefficient

@@ -76,7 +76,7 @@ def test_arrays_have_the_three_dimensions_that_older_tools_demand(arithmetic: st
 def test_the_epk_is_the_digest_and_the_coefficients_are_told() -> None:
     table, _, text = image()
     assert f'EPK "{table.digest}"' in text
-    value = f"{table.elevation.q_V_rad[1][0]:.4g}"
+    value = f"{table.axes[0].q_V_rad[1][0]:.4g}"
     (told,) = re.findall(r'SYSTEM_CONSTANT "elevation_q_1_V_rad\[0\]" "([^"]+)"', text)
     assert f"{float(told):.4g}" == value
 
@@ -95,7 +95,7 @@ def test_a_tool_that_reads_by_the_file_sees_what_the_board_computes() -> None:
     assert read("self_test_mismatches", 4) == bytes(4)
     assert 10 <= int.from_bytes(read("tick", 4), "little") <= 21
     limit = named(text, "CHARACTERISTIC")["elevation_limits.u_max_V"]
-    assert struct.unpack("<f", board.read_memory(int(limit[3], 16), 4))[0] == table.elevation.u_max_V
+    assert struct.unpack("<f", board.read_memory(int(limit[3], 16), 4))[0] == table.axes[0].u_max_V
 
 
 def test_fixed_point_words_are_told_with_their_places() -> None:
@@ -106,7 +106,7 @@ def test_fixed_point_words_are_told_with_their_places() -> None:
     limit = named(text, "CHARACTERISTIC").get("elevation_limits.u_max_V")
     law_h = generate_law(ce150_table(), "fixed")["law.h"]
     (word,) = re.findall(r"#define LAW_U_M_MAX_V \((\d+)\)", law_h)
-    assert int(word) * factor == ce150_table().elevation.u_max_V
+    assert int(word) * factor == ce150_table().axes[0].u_max_V
     assert limit is None or limit[2] == "VALUE"
 
 
@@ -118,7 +118,7 @@ def test_coefficients_are_told_as_the_words_of_the_c_have_them() -> None:
     word, places = re.findall(r"elevation_q_2\(.*?\[1\] = (-?\d+), /\* (\d+) places", law_c, flags=re.DOTALL)[0]
     assert float(told["elevation_q_2_V_rad[1]"]) == int(word) / 2.0 ** int(places)
     assert float(told["elevation_q_2_V_rad[1]"]) == pytest.approx(
-        ce150_table().elevation.q_V_rad[2][1], abs=2.0 ** -int(places)
+        ce150_table().axes[0].q_V_rad[2][1], abs=2.0 ** -int(places)
     )
 
 

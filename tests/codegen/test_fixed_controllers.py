@@ -1,7 +1,5 @@
 """The controllers of the fixed-point words against the table's polynomials, from which its poles and margins are computed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyval
@@ -9,6 +7,7 @@ from numpy.polynomial.polynomial import polyval
 from codegen.fixed.controllers import fixed_controllers
 from design.rounding import FLOAT32
 from records.errors import BadInput
+from records.table import changed_axis
 from tests.law_tables import ce150_table
 
 PSI_RAD = np.linspace(-0.6, 0.6, 41)
@@ -18,7 +17,7 @@ PSI_RAD = np.linspace(-0.6, 0.6, 41)
 def test_each_coefficient_is_the_tables_to_a_millionth_of_its_largest_value(axis: str) -> None:
     """Truth: polynomials of the table in double precision; the words are not those numbers, and float32's are others again."""
     table = ce150_table()
-    law = {"elevation": table.elevation, "azimuth": table.azimuth}[axis]
+    law = {"elevation": table.axes[0], "azimuth": table.axes[1]}[axis]
     found, rounded = fixed_controllers(table, axis, PSI_RAD), FLOAT32.controllers(table, axis, PSI_RAD)
     for letter, polynomials in (("q", law.q_V_rad), ("p", law.p)):
         true = np.array([polyval(PSI_RAD, row) for row in polynomials]).T
@@ -35,6 +34,6 @@ def test_integral_action_stays_exact() -> None:
 
 def test_a_table_without_a_law_in_words_is_refused() -> None:
     table = ce150_table()
-    steep = replace(table, elevation=replace(table.elevation, q_V_rad=((1e5,), *table.elevation.q_V_rad[1:])))
+    steep = changed_axis(table, "elevation", q_V_rad=((1e5,), *table.axes[0].q_V_rad[1:]))
     with pytest.raises(BadInput, match="--arithmetic float32"):
         fixed_controllers(steep, "elevation", PSI_RAD)

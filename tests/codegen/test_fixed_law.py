@@ -16,10 +16,10 @@ from codegen.fixed.formats import MISSING, law_formats, value_of, word_of
 from codegen.fixed.ranges import Interval, Intervals, prove_no_overflow
 from codegen.fixed.twin import FixedTwin
 from codegen.law import generate_law
-from codegen.law_equations import STATE_WORDS, LawInput
+from codegen.law_frame import LawInput
 from records.errors import BadInput
 from records.table import ControllerTable
-from tests.law_tables import ce150_table, changed_axis, dense_table
+from tests.law_tables import STATE_WORDS, ce150_table, changed_axis, dense_table
 from tests.soak import sampled
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared
 from toolchain.target import TARGET_FLAGS, compile_objects
@@ -71,8 +71,8 @@ def test_every_stored_word_of_hostile_steps_lies_within_its_proved_range(table: 
     watched = _Watched(proved)
     law = fixed_constants(table, word_number)
     for state, given in _any_words(np.random.default_rng(4), 300):
-        law_step(law, watched, state_from_words(state), LawInput(*given))
-        law_reset(law, watched, *given[:2])
+        law_step(law, watched, state_from_words(law, state), LawInput.of(given))
+        law_reset(law, watched, given[:2])
     assert watched.seen > 10_000
     assert max(max(-low, high) for low, high in proved.values()) < 2**31
 
@@ -140,11 +140,11 @@ def test_the_filtered_reference_arrives_exactly_and_stays() -> None:
     twin = FixedTwin(ce150_table())
     for reference_rad in (0.3, -0.123456, 0.7):
         words = [word_of(value, 25) for value in (reference_rad, 0.0, 0.0, 0.0)]
-        state = law_reset(twin.law, Scalars(), 0, 0)
+        state = law_reset(twin.law, Scalars(), (0, 0))
         for _ in range(1500):
-            state, _output = law_step(twin.law, Scalars(), state, LawInput(*words))
-        held = max(twin.law.elevation.reference_min_rad, min(twin.law.elevation.reference_max_rad, words[0]))
-        assert state.elevation.reference_2_rad == held * 2**twin.law.elevation.reference_doublings
+            state, _output = law_step(twin.law, Scalars(), state, LawInput.of(words))
+        held = max(twin.law.axes[0].reference_min_rad, min(twin.law.axes[0].reference_max_rad, words[0]))
+        assert state.axes[0].reference_2_rad == held * 2 ** twin.law.axes[0].reference_doublings
 
 
 def test_the_integrator_is_exact_whatever_the_number_of_steps() -> None:
@@ -156,7 +156,7 @@ def test_the_integrator_is_exact_whatever_the_number_of_steps() -> None:
     twin.reset(0.0, 0.0)
     for _ in range(steps):
         u_T_V = twin.step(0.0, e_rad, 0.0, 0.0)[1]
-    (q_0,) = (term for term in twin.law.azimuth.terms if term.coefficient == "q_0")
+    (q_0,) = (term for term in twin.law.axes[1].terms if term.coefficient == "q_0")
     assert u_T_V == pytest.approx(steps * 1.7e-7 * e_rad, abs=2.0**-twin.formats.voltage_places)
     assert q_0.polynomial.constant >= 2**16
 
@@ -167,21 +167,21 @@ def test_the_integrator_is_exact_whatever_the_number_of_steps() -> None:
 )
 def test_volts_become_the_nearest_pwm_tick_and_never_leave_full_scale(u_V: float, ticks: int) -> None:
     twin = FixedTwin(changed_axis(ce150_table(), "azimuth", u_safe_V=1.25))
-    assert twin.duty_tail(u_V) == ticks
-    assert twin.duty_tail(math.nan) == 400
+    assert twin.duty(1, u_V) == ticks
+    assert twin.duty(1, math.nan) == 400
 
 
 def test_encoder_counts_become_the_nearest_angle() -> None:
     twin, table = FixedTwin(ce150_table()), ce150_table()
     for counts in (0, 1, -1, 455, -1480, 2607):
-        assert abs(twin.angle_from_counts_phi(counts) - counts * table.azimuth.resolution_rad) <= 2.0**-25
+        assert abs(twin.angle_from_counts(1, counts) - counts * table.axes[1].resolution_rad) <= 2.0**-25
     limit_rad = law_formats(table).angle_limit_rad
-    assert limit_rad <= twin.angle_from_counts_psi(2**31 - 1) < limit_rad + 2 * table.elevation.resolution_rad
+    assert limit_rad <= twin.angle_from_counts(0, 2**31 - 1) < limit_rad + 2 * table.axes[0].resolution_rad
 
 
 def test_a_range_of_references_on_one_side_of_zero_flies() -> None:
     table = changed_axis(ce150_table(), "elevation", reference_min_rad=0.1, reference_max_rad=0.7)
-    twin = FixedTwin(replace(table, psi_min_rad=0.05))
+    twin = FixedTwin(replace(table, schedule=replace(table.schedule, min_rad=0.05)))
     twin.reset(0.0, 0.0)
     for _ in range(800):
         u_M_V, _ = twin.step(-0.5, 0.0, 0.1, 0.0)

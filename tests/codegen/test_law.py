@@ -40,7 +40,7 @@ def test_every_coefficient_stands_in_the_text_exactly_once_rounded_to_float32() 
     table = dense_table()
     initialisers = re.findall(r"\[\d\] = (\S+)f,", generate_law(table)["law.c"])
     found = np.sort([np.float32(text) for text in initialisers])
-    wanted = [c for axis in (table.elevation, table.azimuth) for c in _coefficients(axis)]
+    wanted = [c for axis in (table.axes[0], table.axes[1]) for c in _coefficients(axis)]
     assert np.array_equal(found, np.sort(np.array(wanted, dtype=np.float32)))
 
 

@@ -89,7 +89,7 @@ def test_a_coefficient_leads_to_poles_points_and_parameters_with_sources() -> No
     bound, table = designed()
     found = traced("LAW_ELEVATION_Q1[2]")
     assert found.name == "elevation_q_1_V_rad[2]"
-    assert found.value == table.elevation.q_V_rad[1][2]
+    assert found.value == table.axes[0].q_V_rad[1][2]
     assert [re for re, _ in found.poles_rad_s] == [-3.25, -12.6, -3.4, -3.4, -10.1, -10.1, -21.8]
     assert len(found.points) == read_settings(bound).operating_points
     worst = max(abs(point.designed - point.fitted) / abs(point.designed) for point in found.points)

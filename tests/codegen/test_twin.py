@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from codegen.law_constants import law_constants
-from codegen.law_equations import AXIS_STATE_FIELDS, STATE_WORDS, LawInput, law_reset, law_step
+from codegen.law_equations import law_reset, law_step
+from codegen.law_frame import LawInput
 from codegen.twin import Float32Scalars, Float32Twin
 from design.law import FloatLaw
 from records.table import AxisLaw, ControllerTable
-from tests.law_tables import ce150_table, changed_axis, dense_table
+from tests.law_tables import AXIS_STATE_FIELDS, STATE_WORDS, ce150_table, changed_axis, dense_table
 
 PSI_RAD = 0.3
 
@@ -26,7 +27,7 @@ def test_at_constant_elevation_the_law_is_the_direct_form_of_its_polynomials(tab
     rng = np.random.default_rng(4)
     references = np.repeat(rng.uniform(-0.05, 0.05, (40, 2)), 10, axis=0) + np.array([PSI_RAD, 0.0])
     outputs = _run_in_float64(table, references, np.broadcast_to([PSI_RAD, 0.0], references.shape))
-    for axis, column, angle in ((table.elevation, 0, PSI_RAD), (table.azimuth, 1, 0.0)):
+    for axis, column, angle in ((table.axes[0], 0, PSI_RAD), (table.axes[1], 1, 0.0)):
         u_ff_V = np.polynomial.polynomial.polyval(references[:, 0], axis.feedforward_V)
         wanted = _direct_form(axis, references[:, column] - angle, u_ff_V)
         inside = (wanted > axis.u_min_V) & (wanted < axis.u_max_V)
@@ -45,7 +46,7 @@ def test_in_double_precision_the_equations_are_those_of_the_design_stage() -> No
     wanted = np.array([reference_law.step(*given) for given in np.hstack([references, angles]).tolist()])
     outputs = _run_in_float64(table, references, angles)
     assert np.abs(outputs - wanted).max() < 1e-9
-    assert 0.1 < np.mean(outputs[:, 0] == table.elevation.u_max_V) < 0.9
+    assert 0.1 < np.mean(outputs[:, 0] == table.axes[0].u_max_V) < 0.9
 
 
 def test_an_integrating_axis_under_a_constant_error_climbs_by_q_0_e_over_1_minus_p_1_each_sample() -> None:
@@ -54,7 +55,7 @@ def test_an_integrating_axis_under_a_constant_error_climbs_by_q_0_e_over_1_minus
     twin = Float32Twin(table)
     twin.reset(0.0, 0.0)
     u_M_V = [twin.step(0.0, 0.0, -0.001, 0.0)[0] for _ in range(1000)]
-    climb_V = table.elevation.q_V_rad[0][0] * 0.001 / (1.0 - table.elevation.p[1][0])
+    climb_V = table.axes[0].q_V_rad[0][0] * 0.001 / (1.0 - table.axes[0].p[1][0])
     assert np.mean(np.diff(u_M_V)[500:]) == pytest.approx(climb_V, rel=1e-2)
 
 
@@ -120,7 +121,7 @@ def test_a_missing_measurement_or_reference_is_replaced_by_the_last_accepted_one
     ],
 )
 def test_volts_become_the_nearest_pwm_tick_and_never_leave_full_scale(u_V: float, ticks: int) -> None:
-    assert Float32Twin(ce150_table()).duty_tail(u_V) == ticks
+    assert Float32Twin(ce150_table()).duty(1, u_V) == ticks
 
 
 def test_the_scheduling_angle_is_held_within_the_range_of_the_table() -> None:
@@ -146,11 +147,11 @@ def _run_in_float64(
 ) -> NDArray[np.float64]:
     law: Any = law_constants(table, float)
     decisions: Any = Float32Scalars()
-    state = law_reset(law, decisions, *angles[0].tolist())
+    state = law_reset(law, decisions, angles[0].tolist())
     outputs = []
     for given_now in np.hstack([references, angles]).tolist():
-        state, output = law_step(law, decisions, state, LawInput(*given_now))
-        outputs.append((output.u_M_V, output.u_T_V))
+        state, voltages_V = law_step(law, decisions, state, LawInput.of(given_now))
+        outputs.append(voltages_V)
     return np.array(outputs)
 
 

@@ -31,7 +31,7 @@ def test_twin_and_host_are_equal_in_all_bits_of_many_steps(name: str) -> None:
     row, table = designed(name)
     twin, host = row.twin(table), HostLaw(row.generate(table))
     assert host.state_words == twin.state_words
-    stimuli = standard_stimuli(table, 4 * STEPS, state_words=twin.state_words)
+    stimuli = standard_stimuli(table, 4 * STEPS, words=twin.state_words)
     result = compare(twin, host, [replace(entry, inputs=entry.inputs[:FIRST]) for entry in stimuli])
     assert (result.equality.mismatches, result.first_mismatch) == (0, None)
     assert result.equality.steps >= STEPS
@@ -43,7 +43,7 @@ def test_host_and_target_are_equal_and_the_board_names_the_table(name: str) -> N
     texts = row.generate(table)
     host = HostLaw(texts)
     target = TargetLaw(EmulatedBoard(build_firmware(texts).elf), state_words=host.state_words)
-    result = compare(host, target, standard_stimuli(table, TARGET_STEPS, state_words=host.state_words))
+    result = compare(host, target, standard_stimuli(table, TARGET_STEPS, words=host.state_words))
     assert (result.equality.mismatches, result.first_mismatch) == (0, None)
     assert (host.self_test(), target.self_test()) == (0, 0)
     assert host.table_digest() == target.table_digest() == table.digest
@@ -97,7 +97,7 @@ def test_a_flight_with_a_broken_state_comes_back_to_its_reference(name: str) -> 
 class _BrokenLaw(HostLaw):
     """A compiled law that starts with whatever stands in `wild`."""
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         self._state = self.wild.copy()
 
 

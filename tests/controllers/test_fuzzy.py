@@ -19,14 +19,14 @@ WORDS = {"elevation": ELEVATION, "azimuth": AZIMUTH}
 @pytest.mark.parametrize(("axis", "rules"), [("elevation", 90), ("azimuth", 18)])
 def test_the_rules_are_as_many_as_the_paper_s(axis: str, rules: int) -> None:
     assert sum(len(row) for table in WORDS[axis].rules.values() for row in table.values()) == rules
-    assert len(getattr(designed("fuzzy")[1], axis).gains.rules) == rules
+    assert len(designed("fuzzy")[1].axis(axis).gains.rules) == rules
 
 
 @pytest.mark.parametrize("axis", ["elevation", "azimuth"])
 def test_inference_is_max_min_and_centroid_of_a_fine_grid(axis: str) -> None:
     # Truth: Mamdani's rule written out on 16 001 points of the output's axis; tolerance 1.5 % of that axis, what the coarse nodes leave.
     _, table = designed("fuzzy")
-    gains = getattr(numbers_of(table, float), axis).gains
+    gains = numbers_of(table, float).axes[table.index(axis)].gains
     fuzzy, decisions, rng = Fuzzy(), Doubles(), np.random.default_rng(4)
     for _ in range(40):
         region, rate, error = rng.uniform(-40, 40), rng.uniform(-12, 12), rng.uniform(-60, 60) * rng.uniform() ** 2
@@ -69,7 +69,7 @@ def test_every_output_that_a_rule_asks_for_has_a_set() -> None:
 def test_a_big_positive_error_at_rest_asks_for_a_positive_voltage_and_its_mirror_for_a_negative_one(
     region: float,
 ) -> None:
-    gains = numbers_of(designed("fuzzy")[1], float).elevation.gains
+    gains = numbers_of(designed("fuzzy")[1], float).axes[0].gains
     for error, sign in ((35.0, 1.0), (-35.0, -1.0)):
         strengths = Fuzzy()._strengths(gains, Doubles(), 0.0, (region, 0.0, error))
         assert sign * Fuzzy()._centroid(gains, Doubles(), 0.0, strengths) > 0.05
@@ -78,9 +78,9 @@ def test_a_big_positive_error_at_rest_asks_for_a_positive_voltage_and_its_mirror
 @pytest.mark.parametrize("psi_deg", [-35.0, -25.0, 0.0, 15.0, 25.0, 40.0])
 def test_at_every_elevation_a_small_error_is_answered_more_strongly_than_the_arm_falls(psi_deg: float) -> None:
     # Truth: the voltage of rest changes by du_M0/dPsi a radian; a weaker answer to an error of 1 deg cannot hold an unstable arm.
-    table = designed("fuzzy")[1].elevation
+    table = designed("fuzzy")[1].axes[0]
     falls_V = -np.polynomial.Polynomial(table.feedforward_V).deriv()(np.radians(psi_deg)) * np.radians(1.0)
-    gains = numbers_of(designed("fuzzy")[1], float).elevation.gains
+    gains = numbers_of(designed("fuzzy")[1], float).axes[0].gains
     strengths = Fuzzy()._strengths(gains, Doubles(), 0.0, (psi_deg, 0.0, 1.0))
     assert gains.output_V * Fuzzy()._centroid(gains, Doubles(), 0.0, strengths) > 1.5 * max(falls_V, 0.0)
 

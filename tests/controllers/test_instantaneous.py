@@ -46,7 +46,7 @@ def test_it_flies_as_the_scheduled_law_does() -> None:
 
 def test_another_free_degree_is_refused_with_its_name() -> None:
     settings = read_settings(ce150())
-    other = replace(settings, azimuth=replace(settings.azimuth, free_degree="q3_zero"))
+    other = settings.with_axis("azimuth", free_degree="q3_zero")
     with pytest.raises(BadInput, match=r"design\.azimuth.*q3_zero.*scheduled"):
         CONTROLLER.design(ce150(), other)
 

@@ -10,7 +10,7 @@ import pytest
 from controllers.designing import points_of
 from controllers.pid_tuning import LARGEST_SENSITIVITY
 from design.settings import read_settings
-from records.table import AXES
+from records.table import AXES, changed_axis
 from tests.controllers.rows import ce150, designed
 from tests.soak import sampled
 
@@ -40,8 +40,8 @@ def test_a_long_saturation_leaves_nothing_in_the_integral() -> None:
     # Truth: after 20 s against a held arm the voltage leaves its limit within 0.1 s of the error's change of sign.
     row, table = designed("pid")
     assert _late_s(row.float_law(table)) < 0.1
-    gains = replace(table.elevation.gains, tracking_gain=0.0)
-    winding = replace(table, elevation=replace(table.elevation, gains=gains))
+    gains = replace(table.axes[0].gains, tracking_gain=0.0)
+    winding = changed_axis(table, "elevation", gains=gains)
     assert _late_s(row.float_law(winding)) > 0.5
 
 

@@ -12,6 +12,7 @@ from design.settings import read_settings
 from records.errors import BadInput
 from records.plant import load_plant
 from records.quality import Colour
+from records.table import changed_axis
 from sim.activity import Activity
 from sim.bind import bind
 from sim.equilibrium import equilibrium
@@ -19,6 +20,7 @@ from sim.loop import fly
 from sim.manoeuvres import Leg, manoeuvre
 from sim.tracking import Tracking, left, longest, settling_s
 from tests.controllers.rows import designed
+from tests.other_plants import AEROSHIELD
 from twinlaw.command import main
 from twinlaw.pages.run.tracking import flight_quality
 
@@ -45,9 +47,9 @@ def test_what_holds_its_plant_is_given_out(name: str) -> None:
 def test_what_does_not_hold_its_plant_is_refused() -> None:
     # Truth: with its gains' sign turned, every controller pushes the arm away from its reference.
     row, table = designed("pid")
-    gains = table.elevation.gains
+    gains = table.axes[0].gains
     turned = replace(gains, k_p_V_rad=-gains.k_p_V_rad, k_i_Ts_V_rad=0.0, k_d_Tf_V_rad=-gains.k_d_Tf_V_rad)
-    wrong = replace(table, elevation=replace(table.elevation, gains=turned))
+    wrong = changed_axis(table, "elevation", gains=turned)
     with pytest.raises(BadInput, match="elevation that is"):
         demand_settling(CE150, wrong, row.float_law(wrong), row.plants)
 
@@ -65,8 +67,11 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
     for row in CONTROLLERS.values():
         assert "ce150" in row.plants
     aeroshield = bind(load_plant(Path("plants/aeroshield.toml")))
-    with pytest.raises(BadInput, match="without the input u_M_V"):
-        read_settings(aeroshield)
+    wished = bind(replace(aeroshield.plant, design=AEROSHIELD))
+    settings = read_settings(wished)
+    for name in set(CONTROLLERS) - {"scheduled"}:
+        with pytest.raises(BadInput, match=r"without the input u_M_V.*this controller"):
+            CONTROLLERS[name].design(wished, settings)
 
 
 def test_a_flight_that_left_its_references_is_told() -> None:

@@ -62,8 +62,7 @@ def settings_for(
 ) -> DesignSettings:
     return replace(
         base_settings(),
-        elevation=axis_settings("elevation", *elevation),
-        azimuth=axis_settings("azimuth", *azimuth),
+        axes=(axis_settings("elevation", *elevation), axis_settings("azimuth", *azimuth)),
         coefficient_degree=coefficient_degree,
         recursion_degree=coefficient_degree,
     )
@@ -84,7 +83,7 @@ def polynomials(axis: str, psi_rad: float) -> PlantPolynomials:
 def sampled(axis: str, psi_rad: float) -> SampledPlant:
     """The sampled plant of one axis at an elevation."""
     linear = linearise(helicopter(), equilibrium(helicopter(), psi_rad))
-    return sample(subsystem(helicopter(), linear, axis), SAMPLE_PERIOD_S)
+    return sample(subsystem(helicopter(), linear, base_settings().loop(axis)), SAMPLE_PERIOD_S)
 
 
 def wide_angles() -> np.ndarray:

@@ -11,22 +11,23 @@ from design.discretise import exponential_minus_identity, sample
 from design.linearise import linearise, subsystem
 from design.transfer import transfer_function
 from records.errors import VerificationFailed
+from records.loops import LOOPS
 from sim.equilibrium import equilibrium
 from tests.design.helicopter import SAMPLE_PERIOD_S, helicopter
 
 
 def elevation(psi_rad: float):
-    return subsystem(helicopter(), linearise(helicopter(), equilibrium(helicopter(), psi_rad)), "elevation")
+    return subsystem(helicopter(), linearise(helicopter(), equilibrium(helicopter(), psi_rad)), LOOPS[0])
 
 
 def test_elevation_at_the_horizontal_has_the_published_coefficients():
-    found = transfer_function(elevation(0.0), SAMPLE_PERIOD_S, "elevation")
+    found = transfer_function(elevation(0.0), SAMPLE_PERIOD_S, LOOPS[0])
     np.testing.assert_allclose(found.b, [0.0, 3.469e-6, 1.361e-5, 3.338e-6], rtol=5e-4)
     np.testing.assert_allclose(found.a, [1.0, -2.92574, 2.85178, -0.92603], atol=6e-6)
 
 
 def test_zeros_are_the_sampling_zeros_that_no_design_may_cancel():
-    found = transfer_function(elevation(0.0), SAMPLE_PERIOD_S, "elevation")
+    found = transfer_function(elevation(0.0), SAMPLE_PERIOD_S, LOOPS[0])
     np.testing.assert_allclose(sorted(np.roots(found.b[1:])), [-3.66, -0.263], rtol=2e-3)
 
 
@@ -42,7 +43,7 @@ def test_exponential_agrees_with_forty_digits(size):
 def test_the_transfer_function_is_that_of_forty_digits(psi_deg):
     """B is kept to 1e-13 of its coefficients; python-control's own keeps nine digits of it."""
     linear = elevation(np.radians(psi_deg))
-    found = transfer_function(linear, SAMPLE_PERIOD_S, "elevation")
+    found = transfer_function(linear, SAMPLE_PERIOD_S, LOOPS[0])
     with mpmath.workdps(40):
         block = mpmath.zeros(4)
         for row in range(3):

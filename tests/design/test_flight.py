@@ -22,11 +22,7 @@ AZIMUTH = (E4, "q3_zero")
 
 def table(elevation, azimuth=AZIMUTH, prefilter_s: float = 0.0) -> ControllerTable:
     made = table_for(settings_for(elevation, azimuth))
-    return replace(
-        made,
-        elevation=replace(made.elevation, prefilter_time_constant_s=prefilter_s),
-        azimuth=replace(made.azimuth, prefilter_time_constant_s=prefilter_s),
-    )
+    return replace(made, axes=tuple(replace(axis, prefilter_time_constant_s=prefilter_s) for axis in made.axes))
 
 
 def flown(law, duration_s: float = 95.0, rate_deg_s: float | None = None) -> Flown:

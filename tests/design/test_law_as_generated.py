@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from codegen import law_equations
 from codegen.law_constants import law_constants
-from codegen.law_equations import LawInput, words_from_state
+from codegen.law_frame import LawInput, words_from_state
 from codegen.twin import Float32Scalars
 from design.law import AxisState, LawState, law_reset, law_step
 from design.settings import read_settings
@@ -46,19 +46,19 @@ def words(state: LawState) -> list[float]:
     def axis(a: AxisState) -> list[float]:
         return [a.x1_rad, a.x2_rad, *a.e, a.v_V, *a.s, *a.w]
 
-    accepted = [[a.angle_rad for a in (state.elevation, state.azimuth)]]
-    accepted += [[a.reference_rad for a in (state.elevation, state.azimuth)]]
-    return [*axis(state.elevation), *axis(state.azimuth), *accepted[0], *accepted[1]]
+    accepted = [[a.angle_rad for a in (state[0], state[1])]]
+    accepted += [[a.reference_rad for a in (state[0], state[1])]]
+    return [*axis(state[0]), *axis(state[1]), *accepted[0], *accepted[1]]
 
 
 def side_by_side(state: LawState, samples: list[tuple[float, ...]]) -> None:
     """Step both from `state` and demand the same voltages and the same memory after every sample."""
-    other = law_equations.state_from_words(words(state))
+    other = law_equations.state_from_words(TABLE, words(state))
     for sample in samples:
-        state, u_M_V, u_T_V = law_step(TABLE, state, *sample)
+        state, voltages_V = law_step(TABLE, state, *sample)
         with np.errstate(all="ignore"):
-            other, output = law_equations.law_step(CONSTANTS, DECISIONS, other, LawInput(*sample))
-        assert (u_M_V, u_T_V) == pytest.approx((output.u_M_V, output.u_T_V), rel=1e-9, abs=1e-6)
+            other, wanted_V = law_equations.law_step(CONSTANTS, DECISIONS, other, LawInput.of(sample))
+        assert voltages_V == pytest.approx(wanted_V, rel=1e-9, abs=1e-6)
         assert words(state) == pytest.approx(list(words_from_state(other)), rel=1e-9, abs=1e-6)
 
 
@@ -66,7 +66,7 @@ def side_by_side(state: LawState, samples: list[tuple[float, ...]]) -> None:
 @pytest.mark.parametrize("phi_rad", RESETS)
 def test_both_start_alike_also_outside_the_range_of_the_reference(psi_rad, phi_rad):
     state = law_reset(TABLE, psi_rad, phi_rad)
-    assert words(state) == list(words_from_state(law_equations.law_reset(CONSTANTS, DECISIONS, psi_rad, phi_rad)))
+    assert words(state) == list(words_from_state(law_equations.law_reset(CONSTANTS, DECISIONS, (psi_rad, phi_rad))))
     side_by_side(state, [(0.1, -0.2, psi_rad, phi_rad), (math.nan, 9.0, 0.0, 0.0), (0.2, 0.2, 1e-12, -1e-12)])
 
 
@@ -87,21 +87,21 @@ def from_words(numbers: list[float]) -> LawState:
             numbers[28 + place], numbers[26 + place], x1, x2, v, (e_0, e_1, e_2), (v - w[0], s_1, s_2, s_3), tuple(w)
         )
 
-    return LawState(axis(0, 0), axis(13, 1))
+    return axis(0, 0), axis(13, 1)
 
 
 def test_a_restart_keeps_the_present_error_so_that_the_next_sample_sees_no_jump():
     state = law_reset(TABLE, 0.0, 0.0)
     for _ in range(50):
-        state, _, _ = law_step(TABLE, state, 0.2, 0.0, 0.0, 0.0)
-    broken = replace(state, elevation=replace(state.elevation, v_V=math.nan))
-    healed, _, _ = law_step(TABLE, broken, 0.2, 0.0, 0.0, 0.0)
-    assert healed.elevation.e == (pytest.approx(healed.elevation.x2_rad), 0.0, 0.0)
-    assert healed.elevation.v_V == 0.0
+        state, _ = law_step(TABLE, state, 0.2, 0.0, 0.0, 0.0)
+    broken = (replace(state[0], v_V=math.nan), state[1])
+    healed, _ = law_step(TABLE, broken, 0.2, 0.0, 0.0, 0.0)
+    assert healed[0].e == (pytest.approx(healed[0].x2_rad), 0.0, 0.0)
+    assert healed[0].v_V == 0.0
 
 
 def test_a_broken_prefilter_heals_within_one_sample():
     state = law_reset(TABLE, 0.0, 0.0)
-    broken = replace(state, elevation=replace(state.elevation, x1_rad=math.nan, x2_rad=math.inf))
-    healed, _, _ = law_step(TABLE, broken, 0.1, 0.0, 0.0, 0.0)
-    assert (healed.elevation.x1_rad, healed.elevation.x2_rad) == (0.1, 0.1)
+    broken = (replace(state[0], x1_rad=math.nan, x2_rad=math.inf), state[1])
+    healed, _ = law_step(TABLE, broken, 0.1, 0.0, 0.0, 0.0)
+    assert (healed[0].x1_rad, healed[0].x2_rad) == (0.1, 0.1)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from design.linearise import linearise, subsystem
+from records.loops import LOOPS
 from sim.equilibrium import equilibrium
 from tests.design.helicopter import helicopter
 
@@ -17,7 +18,7 @@ def linear(psi_deg):
     [(-40.0, (-0.211 + 2.364j, -0.211 - 2.364j)), (0.0, (0.0, -0.421)), (20.0, (1.534,)), (40.0, (2.172,))],
 )
 def test_body_has_the_published_eigenvalues_beside_the_rotor(psi_deg, eigenvalues):
-    found = np.linalg.eigvals(subsystem(helicopter(), linear(psi_deg), "elevation").A)
+    found = np.linalg.eigvals(subsystem(helicopter(), linear(psi_deg), LOOPS[0]).A)
     for wanted in eigenvalues:
         assert np.min(np.abs(found - wanted)) < 1e-3
     assert -7.4 < np.min(found.real) < -6.5

@@ -34,7 +34,7 @@ from tests.design.helicopter import (
 
 def controller(axis, poles, free_degree, psi_rad):
     table = table_for(settings_for(**{axis: (poles, free_degree)}))
-    return evaluate(schedule_of(getattr(table, axis)), psi_rad)
+    return evaluate(schedule_of(table.axis(axis)), psi_rad)
 
 
 def whole(psi_rad):
@@ -69,7 +69,7 @@ def test_plant_polynomials_are_those_of_the_resolvent():
 )
 def test_both_loops_on_the_coupled_plant_have_the_published_slowest_pole(elevation, azimuth, slowest_rad_s):
     table = table_for(settings_for(elevation, azimuth))
-    schedules = [schedule_of(law) for law in (table.elevation, table.azimuth)]
+    schedules = [schedule_of(law) for law in (table.axes[0], table.axes[1])]
     worst = max(
         slowest(coupled_poles(whole(psi), tuple(evaluate(schedule, psi) for schedule in schedules)))
         for psi in wide_angles()[::4]
@@ -124,7 +124,7 @@ def test_the_fit_moves_equal_poles_a_lot_and_distinct_ones_hardly(poles, free_de
     ],
 )
 def test_feedforward_from_the_measured_elevation_moves_the_slowest_pole_as_published(poles, free_degree, slowest_rad_s):
-    law = table_for(settings_for(elevation=(poles, free_degree))).elevation
+    law = table_for(settings_for(elevation=(poles, free_degree))).axes[0]
     slope = np.polynomial.Polynomial(law.feedforward_V).deriv()
 
     def hidden_loop(psi):

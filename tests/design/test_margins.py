@@ -13,7 +13,7 @@ from tests.design.helicopter import AZ_DOM, DOM, DOM2, equal, polynomials, setti
 
 def loops(axis, poles, free_degree, angles):
     table = table_for(settings_for(**{axis: (poles, free_degree)}))
-    schedule = schedule_of(getattr(table, axis))
+    schedule = schedule_of(table.axis(axis))
     return [open_loop(polynomials(axis, psi), evaluate(schedule, psi)) for psi in angles]
 
 
@@ -87,7 +87,7 @@ def test_delay_margin_is_where_whole_samples_of_delay_destabilise():
 def test_an_integrating_loop_has_the_textbook_margins():
     # L = K gamma^-1, a sampled integrator: gain margin 2/K, phase margin pi/2 - omega Ts/2 with 2 sin(omega Ts/2) = K.
     loop = replace(
-        open_loop(polynomials("azimuth", 0.0), evaluate(schedule_of(table_for(settings_for()).azimuth), 0.0)),
+        open_loop(polynomials("azimuth", 0.0), evaluate(schedule_of(table_for(settings_for()).axes[1]), 0.0)),
         b=np.array([0.5, 0.0, 0.0, 0.0]),
         a=np.array([0.0, 1.0, 0.0, 0.0]),
         q=np.array([1.0, 0.0, 0.0, 0.0]),

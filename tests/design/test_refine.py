@@ -11,6 +11,8 @@ from design.loop import plant_polynomials
 from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z
 from design.refine import refined
 from design.transfer import transfer_function
+from records.loops import LOOPS
+from records.table import AXES
 from sim.equilibrium import equilibrium
 from tests.design.helicopter import DOM2, SAMPLE_PERIOD_S, helicopter
 
@@ -55,7 +57,9 @@ def convolved(one, other):
 @pytest.mark.parametrize("psi_deg", [-40.0, 0.0, 40.0])
 def test_every_coefficient_is_known_to_rounding(axis, psi_deg):
     # Truth: forty digits. 1e-12 of each coefficient, Q(1) included, whose neighbours are 3e4 times larger.
-    linear = subsystem(helicopter(), linearise(helicopter(), equilibrium(helicopter(), np.radians(psi_deg))), axis)
+    linear = subsystem(
+        helicopter(), linearise(helicopter(), equilibrium(helicopter(), np.radians(psi_deg))), LOOPS[AXES.index(axis)]
+    )
     plant = plant_polynomials(sample(linear, SAMPLE_PERIOD_S))
     transfer = transfer_function(linear, SAMPLE_PERIOD_S, axis)
     wanted = characteristic(poles_z(DOM2, SAMPLE_PERIOD_S))
@@ -69,7 +73,7 @@ def test_every_coefficient_is_known_to_rounding(axis, psi_deg):
 
 
 def test_a_condition_on_the_paper_s_coefficients_still_holds():
-    linear = subsystem(helicopter(), linearise(helicopter(), equilibrium(helicopter(), 0.0)), "elevation")
+    linear = subsystem(helicopter(), linearise(helicopter(), equilibrium(helicopter(), 0.0)), LOOPS[0])
     plant = plant_polynomials(sample(linear, SAMPLE_PERIOD_S))
     transfer = transfer_function(linear, SAMPLE_PERIOD_S, "elevation")
     wanted = characteristic(poles_z(DOM2, SAMPLE_PERIOD_S))

@@ -60,10 +60,10 @@ def test_angles_hold_the_grid_and_two_hundred_between():
 
 def test_distinct_poles_stay_where_they_were_designed_through_fit_and_float32():
     _, report = designed()
-    assert report.elevation.designed_slowest_rad_s == -3.0
-    assert -3.0 < report.elevation.after_fit.worst_rad_s < -2.97
-    assert -3.0 < report.elevation.after_rounding.worst_rad_s < -2.97
-    assert abs(report.elevation.after_rounding.worst_rad_s - report.elevation.after_fit.worst_rad_s) < 1e-3
+    assert report.axes[0].designed_slowest_rad_s == -3.0
+    assert -3.0 < report.axes[0].after_fit.worst_rad_s < -2.97
+    assert -3.0 < report.axes[0].after_rounding.worst_rad_s < -2.97
+    assert abs(report.axes[0].after_rounding.worst_rad_s - report.axes[0].after_fit.worst_rad_s) < 1e-3
 
 
 @pytest.mark.parametrize("axis", ["elevation", "azimuth"])
@@ -85,7 +85,7 @@ def test_slow_poles_in_direct_form_are_unstable_when_printed_with_six_digits_and
     settings = settings_for((equal(-2.0), "integral"), (equal(-2.0), "integral"))
     points = design_points(helicopter(), settings)
     report = make_report(helicopter(), settings, make_table(helicopter(), settings, points), points)
-    for found in (report.elevation, report.azimuth):
+    for found in report.axes:
         for source in ("design", "fit"):
             assert not slowest(found, "direct", source, "%.6g").stable
             assert slowest(found, "delta", source, "%.6g").stable
@@ -105,10 +105,10 @@ def test_entries_for_the_verification_record_name_both_axes_and_are_plain():
 
 def test_worst_margins_are_those_of_the_worst_angle_each():
     _, report = designed()
-    worst = report.elevation.worst_margins
+    worst = report.axes[0].worst_margins
     assert worst.sensitivity == pytest.approx(1.73, abs=6e-3)
     assert math.degrees(worst.phase_rad) == pytest.approx(37.0, abs=0.6)
-    assert worst.phase_rad == min(m.phase_rad for m in report.elevation.margins)
+    assert worst.phase_rad == min(m.phase_rad for m in report.axes[0].margins)
 
 
 def test_table_reads_back_with_its_digest_and_is_the_same_from_the_same_plant(tmp_path):
@@ -126,7 +126,7 @@ def test_origin_leads_from_a_coefficient_back_to_its_operating_point():
     assert origin["operating_points"][middle]["psi_rad"] == pytest.approx(0.0, abs=1e-12)
     assert origin["operating_points"][middle]["u0_V"][0] == pytest.approx(5.607, abs=1e-3)
     designed_q = origin["elevation"]["q_V_rad"][middle]
-    fitted_q = [row[0] for row in table.elevation.q_V_rad]
+    fitted_q = [row[0] for row in table.axes[0].q_V_rad]
     np.testing.assert_allclose(fitted_q, designed_q, rtol=1e-2)
 
 
@@ -165,9 +165,9 @@ KEPT = [PUBLISHED[4], PUBLISHED[17]]
 @pytest.mark.parametrize(("elevation", "azimuth"), sampled(PUBLISHED, keep=KEPT))
 def test_every_published_set_passes_the_gate(elevation, azimuth):
     _, report = designed((elevation, azimuth))
-    assert (report.elevation.free_degree, report.azimuth.free_degree) == (elevation[1], azimuth[1])
-    assert report.elevation.after_rounding.stable
-    assert report.azimuth.after_rounding.stable
+    assert (report.axes[0].free_degree, report.axes[1].free_degree) == (elevation[1], azimuth[1])
+    assert report.axes[0].after_rounding.stable
+    assert report.axes[1].after_rounding.stable
     assert report.coupled.stable
 
 
@@ -215,7 +215,7 @@ def test_default_plant_file_passes_with_room():
     """6 dB of gain either way and 35 deg of phase are what textbooks ask for."""
     table, report = design(helicopter(), read_settings(helicopter()))
     assert table_text(table) == table_text(stated_table("ce150"))
-    for axis in (report.elevation, report.azimuth):
+    for axis in report.axes:
         worst = axis.worst_margins
         assert worst.sensitivity < 1.8
         assert math.degrees(worst.phase_rad) > 35.0

@@ -1,6 +1,5 @@
 """The roll-off of the default plant file: its poles are placed, its inputs are quiet, and what that costs is told."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -29,7 +28,8 @@ def stated() -> DesignSettings:
 def at_level(axis: str, *, roll_off: bool) -> PointDesign:
     wishes = stated().axis(axis)
     point = equilibrium(helicopter(), 0.0)
-    return design_point(helicopter(), point, axis, wishes if roll_off else wishes.without_roll_off, 0.01)
+    own = wishes if roll_off else wishes.without_roll_off
+    return design_point(helicopter(), point, stated(), own, point.psi_rad)
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -75,7 +75,7 @@ def test_a_faster_roll_off_gives_way_less_and_is_busier() -> None:
 
 
 def test_without_a_roll_off_nothing_is_traded() -> None:
-    bare = replace(stated(), elevation=stated().elevation.without_roll_off)
+    bare = stated().with_axis("elevation", roll_off_pole_rad_s=0.0)
     assert trade_off(helicopter(), bare, table_for(stated())) == ()
 
 
@@ -84,4 +84,4 @@ def test_a_table_with_a_roll_off_is_read_back_as_it_was_written(tmp_path) -> Non
     (tmp_path / "controller.json").write_text(table_text(table))
     read: ControllerTable = load_table(tmp_path / "controller.json")
     assert read.digest == table.digest
-    assert len(read.elevation.p) == 4
+    assert len(read.axes[0].p) == 4

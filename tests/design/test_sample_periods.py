@@ -42,8 +42,8 @@ def test_encoder_steps_are_not_rectified_at_any_period(period_s: float) -> None:
     legs = [(Leg(0.0, -30.0), Leg(0.5, 0.0)), (Leg(0.0, 0.0),)]
     whole = manoeuvre("up", equilibrium(BOUND, begin).x0, 6.0, period_s, legs)
     psi_rad = fly_law(BOUND, table, whole).y[:, 0]
-    assert abs(psi_rad[-1] - end) < 1.5 * table.elevation.resolution_rad
-    assert psi_rad.max() < end + 2.5 * table.elevation.resolution_rad
+    assert abs(psi_rad[-1] - end) < 1.5 * table.axes[0].resolution_rad
+    assert psi_rad.max() < end + 2.5 * table.axes[0].resolution_rad
 
 
 @pytest.mark.parametrize("arithmetic", sampled(("float32", "fixed"), keep=["float32"]))

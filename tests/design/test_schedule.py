@@ -7,13 +7,13 @@ from design.direct_form import to_direct
 from design.operating_points import design_points
 from design.schedule import Degrees, fit, fit_error, fit_schedule, schedule_of
 from design.table import observer
-from records.table import SHORT_BITS
+from records.table import AXES, SHORT_BITS
 from tests.design.helicopter import AZ_DOM, DOM2, base_settings, equal, helicopter, settings_for, table_for
 
 
 def designs(axis, poles, free_degree):
     points = design_points(helicopter(), settings_for(**{axis: (poles, free_degree)}))
-    return points.psi_rad, [design.delta for design in points.axis(axis)]
+    return points.psi_rad, [design.delta for design in points.axes[AXES.index(axis)]]
 
 
 @pytest.mark.parametrize(
@@ -54,15 +54,15 @@ def test_sums_of_fits_are_fits_of_sums_although_single_coefficients_are_off_by_f
 
 
 def test_integral_action_and_the_missing_q3_are_exactly_zero_at_every_angle():
-    integral = schedule_of(table_for(settings_for()).elevation)
-    without = schedule_of(table_for(settings_for(elevation=(equal(-8.0), "q3_zero"))).elevation)
+    integral = schedule_of(table_for(settings_for()).axes[0])
+    without = schedule_of(table_for(settings_for(elevation=(equal(-8.0), "q3_zero"))).axes[0])
     assert integral.p[0] == (0.0,) * 4
     assert without.q[3] == (0.0,) * 4
     assert without.p[0][0] != 0.0
 
 
 def test_azimuth_does_not_know_up_from_down_and_its_polynomials_are_even():
-    law = table_for(settings_for()).azimuth
+    law = table_for(settings_for()).axes[1]
     for row in (*law.q_V_rad, *law.p, law.feedforward_V):
         assert row[1::2] == (0.0,) * len(row[1::2])
 
@@ -70,7 +70,7 @@ def test_azimuth_does_not_know_up_from_down_and_its_polynomials_are_even():
 def test_feedforward_misses_the_equilibrium_by_the_published_millivolts():
     table, points = table_for(settings_for()), design_points(helicopter(), base_settings())
     voltages = np.array([point.u0 for point in points.equilibria])
-    for column, (law, error_mV) in enumerate(((table.elevation, 2.9), (table.azimuth, 1.8))):
+    for column, (law, error_mV) in enumerate(((table.axes[0], 2.9), (table.axes[1], 1.8))):
         fitted = np.polynomial.polynomial.polyval(points.psi_rad, law.feedforward_V)
         assert 1e3 * np.max(np.abs(fitted - voltages[:, column])) == pytest.approx(error_mV, abs=0.06)
 
@@ -84,7 +84,7 @@ def test_fit_reproduces_a_polynomial_of_its_degree_and_drops_rounding():
 
 @pytest.mark.parametrize("pole", [0.0, 0.5, 0.9])
 def test_observer_is_a_triple_pole(pole):
-    a_0, a_1, a_2 = observer(pole)
+    a_0, a_1, a_2 = observer(pole, 3)
     for z in (0.3 + 0.4j, -0.8 + 0.1j, 1.0 + 0.0j):
         delta = 1.0 - 1.0 / z
         found = 1.0 - (1.0 - a_0 + a_1 * delta + a_2 * delta**2) / z

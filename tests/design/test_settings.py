@@ -25,9 +25,9 @@ def test_a_plant_file_without_a_design_section_gets_the_documented_defaults():
     assert settings.sample_period_s == DEFAULTS["sample_period_s"] == 0.01
     assert settings.operating_points == 17
     assert (settings.coefficient_degree, settings.recursion_degree, settings.feedforward_degree) == (3, 3, 2)
-    assert settings.psi_max_rad == -settings.psi_min_rad == pytest.approx(0.69813, abs=1e-5)
-    assert len(settings.elevation.placed_rad_s) == len(settings.azimuth.placed_rad_s) == 7
-    assert settings.azimuth.reference_max_rad == pytest.approx(2.0944, abs=1e-4)
+    assert settings.schedule.max_rad == -settings.schedule.min_rad == pytest.approx(0.69813, abs=1e-5)
+    assert [len(axis.placed_rad_s) for axis in settings.axes] == [7, 7]
+    assert settings.axis("azimuth").reference_max_rad == pytest.approx(2.0944, abs=1e-4)
     assert settings.margins.max_sensitivity == MARGIN_DEFAULTS["max_sensitivity"]
 
 
@@ -45,7 +45,7 @@ def test_defaults_are_what_the_plant_file_of_the_helicopter_states():
 
 
 def test_real_poles_and_pairs_are_read_in_any_order():
-    poles = read({"elevation": {"poles_rad_s": [-3, PAIR[0], -7, -10, PAIR[1], -12]}}).elevation.poles_rad_s
+    poles = read({"elevation": {"poles_rad_s": [-3, PAIR[0], -7, -10, PAIR[1], -12]}}).axis("elevation").poles_rad_s
     assert poles == (-3.0, -2.5 + 1.5j, -7.0, -10.0, -2.5 - 1.5j, -12.0)
 
 
@@ -68,8 +68,8 @@ BAD = [
     ({"psi_max_rad": 0.8}, r"operating range.*0\.8 rad.*hard stops at \+-0\.785398"),
     ({"elevation": {"reference_max_rad": 0.9}}, r"elevation: reference_min_rad.*hard stops"),
     ({"azimuth": {"reference_min_rad": 1.0, "reference_max_rad": -1.0}}, r"azimuth.*reference range.*empty"),
-    ({"elevation": {"poles_rad_s": [-3, -4, -5]}}, r"elevation\.poles_rad_s.*got 3 poles, expected 6 poles"),
-    ({"elevation": {"poles_rad_s": -3}}, r"elevation\.poles_rad_s.*expected 6 poles"),
+    ({"elevation": {"poles_rad_s": [-3, -4, -5]}}, r"elevation\.poles_rad_s.*got 3 poles, expected two .*6 poles"),
+    ({"elevation": {"poles_rad_s": -3}}, r"elevation\.poles_rad_s.*two poles for each state"),
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, -7, 0.0]}}, r"azimuth\.poles_rad_s\[5\].*outside the unit circle"),
     ({"azimuth": {"poles_rad_s": [-3, -4, -5, -6, [1, 2], [1, -2]]}}, r"poles_rad_s\[4\].*outside the unit circle"),
     ({"elevation": {"poles_rad_s": [-3, -4, -5, -6, -7, PAIR[0]]}}, r"\[-2\.5, 1\.5\] alone.*\[-2\.5, -1\.5\]"),
@@ -103,8 +103,10 @@ def test_an_operating_point_that_the_rotor_cannot_hold_is_named():
         make_table(bound, settings, design_points(bound, settings))
 
 
-def test_a_plant_without_an_elevation_is_told_what_the_design_is_for():
-    """The other plants have no schedule over Psi; a reader of the message learns which plants do."""
+def test_a_plant_that_names_no_loop_is_told_how_to_name_one():
     bound = bind(load_plant(Path("plants/emps.toml")))
-    with pytest.raises(BadInput, match=r"plant 'emps'.*a helicopter with elevation and azimuth"):
+    with pytest.raises(
+        BadInput,
+        match=r"plant 'emps': design: loops: got 0 sections.*\[design\.arm\] with output, input and poles_rad_s",
+    ):
         read_settings(bound)

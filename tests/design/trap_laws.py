@@ -47,12 +47,12 @@ class DirectLaw:
         self.measured_feedforward, self.delayed_coefficients = measured_feedforward, delayed_coefficients
         self.axes = [_Axis([0.0, 0.0]), _Axis([0.0, 0.0])]
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
-        self.axes = [_Axis([angle, angle]) for angle in (psi_rad, phi_rad)]
+    def reset(self, *angles_rad: float) -> None:
+        self.axes = [_Axis([angle, angle]) for angle in angles_rad]
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
-        references, angles = (psi_ref_rad, phi_ref_rad), (psi_rad, phi_rad)
-        laws = (self.table.elevation, self.table.azimuth)
+    def step(self, *given_rad: float) -> tuple[float, ...]:
+        references, angles = given_rad[:2], given_rad[2:]
+        psi_rad, laws = angles[0], self.table.axes
         for law, axis, reference in zip(laws, self.axes, references, strict=True):
             gain = law.prefilter_gain(self.table.sample_period_s)
             axis.x[0] += gain * (reference - axis.x[0])
@@ -65,7 +65,7 @@ class DirectLaw:
         return u_M, u_T
 
     def _axis(self, law: AxisLaw, axis: _Axis, angle: float, psi_rad: float, feedforward_at: float) -> float:
-        within = float(np.clip(psi_rad, self.table.psi_min_rad, self.table.psi_max_rad))
+        within = float(np.clip(psi_rad, self.table.schedule.min_rad, self.table.schedule.max_rad))
         axis.forms = [to_direct(evaluate(schedule_of(law), within)), *axis.forms][:4]
         errors = (axis.x[1] - angle, *axis.errors)
         v = feedback_V(self._form(axis), errors, axis.outputs)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from codegen.law import generate_law
-from codegen.law_equations import STATE_WORDS
-from tests.law_tables import ce150_table
+from tests.law_tables import STATE_WORDS, ce150_table
 from verification.host_law import HostLaw
 
 TABLE = ce150_table()

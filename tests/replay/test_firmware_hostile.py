@@ -111,7 +111,7 @@ def test_angles_of_different_age_are_named_with_each() -> None:
 
 
 def _one_place_up(axis: str, key: str) -> ControllerTable:
-    numbers = getattr(getattr(TABLE, axis), key)
+    numbers = getattr(TABLE.axis(axis), key)
     is_row = not isinstance(numbers[0], tuple)
     first = float(np.nextafter(np.float32(numbers[0] if is_row else numbers[1][0]), np.float32(np.inf)))
     changed = (first, *numbers[1:]) if is_row else (numbers[0], (first, *numbers[1][1:]), *numbers[2:])
@@ -130,7 +130,7 @@ def test_a_coefficient_that_is_off_by_one_place_is_named(axis: str, key: str, wo
 
 @pytest.mark.parametrize("factor", sampled([1.00001, 1.01], keep=[1.00001]))
 def test_other_coefficients_are_not_taken_for_a_log_that_begins_in_flight(factor: float) -> None:
-    rows = tuple(tuple(factor * value for value in row) for row in TABLE.elevation.q_V_rad)
+    rows = tuple(tuple(factor * value for value in row) for row in TABLE.axes[0].q_V_rad)
     assert _told(flown(host_law(changed_axis(TABLE, "elevation", q_V_rad=rows)))).cause == "not_found"
 
 

@@ -13,7 +13,7 @@ from tests.soak import sampled
 from verification.host_law import host_law
 
 TABLE = ce150_table()
-STEP_RAD = TABLE.azimuth.resolution_rad
+STEP_RAD = TABLE.axes[1].resolution_rad
 COMMAND = "const law_number u_V = v_V + u_ff_V;"
 
 

@@ -43,7 +43,7 @@ def _rounded(table: ControllerTable, digits: str) -> ControllerTable:
         return tuple(float(digits % number) for number in numbers)
 
     for name in ("elevation", "azimuth"):
-        axis = getattr(table, name)
+        axis = table.axis(name)
         rows = {key: tuple(written(row) for row in getattr(axis, key)) for key in ("q_V_rad", "p")}
         table = changed_axis(table, name, **rows, a=written(axis.a), feedforward_V=written(axis.feedforward_V))
     return table

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.law import generate_law
-from codegen.law_equations import STATE_WORDS
 from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
+from tests.law_tables import STATE_WORDS
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller
 from verification.stimuli import SPECIAL_BITS, Stimulus

@@ -9,11 +9,10 @@ import pytest
 from scipy.io import loadmat
 
 from codegen.law import generate_law
-from codegen.law_equations import STATE_WORDS
 from codegen.law_frame import without_vanishing_powers
 from codegen.twin import Float32Twin
-from records.table import AxisLaw, ControllerTable
-from tests.law_tables import ce150_table, changed_axis, dense_table
+from records.table import ControllerTable
+from tests.law_tables import STATE_WORDS, ce150_table, changed_axis, dense_table
 from tests.soak import SOAK, sampled
 from toolchain.host import STRICT_FLOAT_FLAGS
 from verification.equality import EqualityResult, compare, differing
@@ -84,14 +83,12 @@ def test_digest_angles_and_duties_of_the_c_are_those_of_table_and_twin() -> None
     shifts = np.arange(500, dtype=np.int32)[:, np.newaxis] % 31
     counts = np.random.default_rng(7).integers(-(2**31), 2**31, (500, 2), dtype=np.int32) >> shifts
     angles = host.angles_from_counts(counts).view(np.float32)
-    assert [twin.angle_from_counts_psi(int(count)) for count in counts[:, 0]] == list(angles[:, 0])
-    assert [twin.angle_from_counts_phi(int(count)) for count in counts[:, 1]] == list(angles[:, 1])
+    assert [twin.angle_from_counts(0, int(count)) for count in counts[:, 0]] == list(angles[:, 0])
+    assert [twin.angle_from_counts(1, int(count)) for count in counts[:, 1]] == list(angles[:, 1])
     voltages = np.random.default_rng(8).uniform(-11.0, 11.0, (2000, 2)).astype(np.float32)
     voltages[:3] = [[np.nan, np.nan], [np.inf, -np.inf], [1e-45, -0.0]]
     ticks = host.duties(voltages.view(np.uint32))
-    assert [(twin.duty_main(u_M_V), twin.duty_tail(u_T_V)) for u_M_V, u_T_V in voltages] == [
-        tuple(row) for row in ticks
-    ]
+    assert [(twin.duty(0, u_M_V), twin.duty(1, u_T_V)) for u_M_V, u_T_V in voltages] == [tuple(row) for row in ticks]
     assert tuple(ticks[0]) == (0, 400)
 
 
@@ -155,7 +152,7 @@ def test_a_swapped_pair_and_a_dropped_sign_in_the_c_are_noticed(old: str, new: s
 
 def test_swapped_polynomials_in_the_table_are_noticed() -> None:
     table = dense_table()
-    q = table.azimuth.q_V_rad
+    q = table.axes[1].q_V_rad
     swapped = changed_axis(table, "azimuth", q_V_rad=(q[1], q[0], *q[2:]))
     assert compare(Float32Twin(swapped), host_law(table), standard_stimuli(table, 5000)).equality.mismatches
 
@@ -203,7 +200,7 @@ def _mismatches(table: ControllerTable, texts: dict[str, str]) -> int:
     An input that is no number meets a state that holds none in its place in one lane of random bits in 1500.
     """
     changed = HostLaw(texts, flags=UNOPTIMISED_FLAGS)
-    stimuli = [*standard_stimuli(table, 3_000), from_random_bits(np.random.default_rng(1), 20_000)]
+    stimuli = [*standard_stimuli(table, 3_000), from_random_bits(table, np.random.default_rng(1), 20_000)]
     result: EqualityResult = compare(host_law(table), changed, stimuli)
     assert table.digest in texts["law.c"]
     assert STATE_WORDS == 30
@@ -218,7 +215,7 @@ def _with(texts: dict[str, str], old: str, new: str) -> dict[str, str]:
 def _one_ulp_mutants(table: ControllerTable) -> list[tuple[str, ControllerTable]]:
     mutants = []
     for axis_name in ("elevation", "azimuth"):
-        axis: AxisLaw = getattr(table, axis_name)
+        axis = table.axis(axis_name)
         for field in ("q_V_rad", "p"):
             polynomials = getattr(axis, field)
             for row, polynomial in enumerate(polynomials):

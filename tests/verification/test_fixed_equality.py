@@ -92,7 +92,7 @@ def test_the_stimuli_reach_limits_missing_words_and_broken_states() -> None:
     assert total_steps(stimuli) >= 100_000
     saturation = stimuli[1]
     outputs = twin.run(twin.start(saturation.angles), saturation.inputs)[1].view(np.int32)
-    axes = (twin.law.elevation, twin.law.azimuth)
+    axes = (twin.law.axes[0], twin.law.axes[1])
     for column, axis in enumerate(axes):
         for limit in (axis.u_min_V, axis.u_max_V):
             assert (outputs[..., column] == limit).mean() > 0.02
@@ -138,14 +138,14 @@ def test_digest_angles_and_duties_of_the_c_are_those_of_table_and_twin() -> None
     shifts = np.arange(500, dtype=np.int32)[:, np.newaxis] % 31
     counts = np.random.default_rng(7).integers(-(2**31), 2**31, (500, 2), dtype=np.int32) >> shifts
     angles = host.angles_from_counts(counts).view(np.int32) * 2.0**-twin.formats.angle_places
-    assert [twin.angle_from_counts_psi(int(count)) for count in counts[:, 0]] == list(angles[:, 0])
-    assert [twin.angle_from_counts_phi(int(count)) for count in counts[:, 1]] == list(angles[:, 1])
+    assert [twin.angle_from_counts(0, int(count)) for count in counts[:, 0]] == list(angles[:, 0])
+    assert [twin.angle_from_counts(1, int(count)) for count in counts[:, 1]] == list(angles[:, 1])
     voltages = np.random.default_rng(8).integers(-(2**31), 2**31, (2000, 2), dtype=np.int32)
     voltages[1::2] >>= 6
     voltages[0] = MISSING
     values = np.where(voltages == MISSING, np.nan, voltages * 2.0**-twin.formats.voltage_places)
     ticks = host.duties(voltages.view(np.uint32))
-    assert [(twin.duty_main(u_M_V), twin.duty_tail(u_T_V)) for u_M_V, u_T_V in values] == [tuple(row) for row in ticks]
+    assert [(twin.duty(0, u_M_V), twin.duty(1, u_T_V)) for u_M_V, u_T_V in values] == [tuple(row) for row in ticks]
     assert tuple(ticks[0]) == (0, 400)
 
 

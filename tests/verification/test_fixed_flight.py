@@ -42,7 +42,7 @@ def test_the_closed_loops_stay_within_an_encoder_step_of_each_other() -> None:
     """Encoder steps make a pair of loops part and meet again by one step: no more than that, at any time."""
     bound, table, log = flown()
     double = fly_law(bound, table, flight(bound, table.sample_period_s))
-    assert np.abs(log.y - double.y).max() < 1.5 * table.elevation.resolution_rad
+    assert np.abs(log.y - double.y).max() < 1.5 * table.axes[0].resolution_rad
 
 
 def test_without_encoder_steps_both_closed_loops_command_the_same_within_half_a_pwm_tick() -> None:
@@ -59,6 +59,6 @@ def test_without_encoder_steps_both_closed_loops_command_the_same_within_half_a_
 def _double(table: ControllerTable, log: RunLog) -> NDArray[np.float64]:
     state, outputs = law_reset(table, *log.y[0].tolist()), []
     for psi_ref_rad, phi_ref_rad, y in zip(log.extra["psi_ref_rad"], log.extra["phi_ref_rad"], log.y, strict=True):
-        state, u_M_V, u_T_V = law_step(table, state, float(psi_ref_rad), float(phi_ref_rad), *y.tolist())
-        outputs.append((u_M_V, u_T_V))
+        state, voltages_V = law_step(table, state, float(psi_ref_rad), float(phi_ref_rad), *y.tolist())
+        outputs.append(voltages_V)
     return np.array(outputs)

@@ -1,6 +1,7 @@
 """The proved bound on one step in fixed point holds on every step that is tried, is of use, and refuses what it cannot prove."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -15,7 +16,7 @@ from records.verification import RoundingBound
 from tests.law_tables import ce150_table, dense_table
 from verification.fixed_rounding import fixed_rounding_bound
 from verification.fixed_words import TrackedWords
-from verification.ranges import Motion
+from verification.ranges import CE150_MOTION
 
 HALF_TICK_V = FULL_SCALE_V / PWM_TICKS / 2.0
 
@@ -28,8 +29,8 @@ def usual_bound() -> RoundingBound:
 @pytest.mark.parametrize("bound_of", [usual_bound, lambda: fixed_rounding_bound(dense_table())], ids=["ce150", "dense"])
 def test_the_bound_is_below_half_a_pwm_tick(bound_of: Callable[[], RoundingBound]) -> None:
     bound = bound_of()
-    assert 0.0 < bound.u_M < HALF_TICK_V
-    assert 0.0 < bound.u_T < HALF_TICK_V
+    assert 0.0 < bound.volts["u_M"] < HALF_TICK_V
+    assert 0.0 < bound.volts["u_T"] < HALF_TICK_V
     assert "Arb" in bound.method
 
 
@@ -44,22 +45,22 @@ def test_first_steps_of_the_law_differ_from_real_arithmetic_by_less_than_the_bou
         references = [round(angle * 2**25) / 2**25 for angle in rng.uniform(-0.69, 0.69, 2)]
         twin.reset(psi_rad, phi_rad)
         fixed = twin.step(*references, *angles)
-        _, *real = law_step(table, law_reset(table, psi_rad, phi_rad), *references, *angles)
+        _, real = law_step(table, law_reset(table, psi_rad, phi_rad), *references, *angles)
         worst = np.maximum(worst, np.abs(np.subtract(fixed, real)))
-    assert (worst <= (bound.u_M, bound.u_T)).all()
-    assert (worst > 0.01 * np.array([bound.u_M, bound.u_T])).all()
+    assert (worst <= list(bound.volts.values())).all()
+    assert (worst > 0.01 * np.array(list(bound.volts.values()))).all()
 
 
 def test_more_slices_tighten_the_bound_and_more_motion_widens_it() -> None:
     table = ce150_table()
     usual, coarse = usual_bound(), fixed_rounding_bound(table, slices=4)
-    slow = fixed_rounding_bound(table, Motion(psi_rate_rad_s=5.0, phi_rate_rad_s=5.0))
-    assert slow.u_M < usual.u_M <= coarse.u_M
+    slow = fixed_rounding_bound(table, replace(CE150_MOTION, rates_rad_s=(5.0, 5.0)))
+    assert slow.volts["u_M"] < usual.volts["u_M"] <= coarse.volts["u_M"]
 
 
 def test_motion_that_could_make_the_law_give_up_its_feedback_is_refused() -> None:
     with pytest.raises(ValueError, match="ranges too wide: feedback of up to"):
-        fixed_rounding_bound(ce150_table(), Motion(psi_rate_rad_s=500.0, phi_rate_rad_s=500.0))
+        fixed_rounding_bound(ce150_table(), replace(CE150_MOTION, rates_rad_s=(500.0, 500.0)))
 
 
 def test_a_tracked_word_encloses_what_flooring_takes_off() -> None:
@@ -69,4 +70,4 @@ def test_a_tracked_word_encloses_what_flooring_takes_off() -> None:
     assert exact.error == 0.0
     assert 0.9 < words.floored(exact, 3).error <= 1.0 + 1e-9
     assert 0.49 < words.floored(exact + 4, 3).error <= 0.5 + 1e-9
-    assert words.scaled(law.elevation.terms[0].polynomial.constant, exact).error <= 3.01
+    assert words.scaled(law.axes[0].terms[0].polynomial.constant, exact).error <= 3.01

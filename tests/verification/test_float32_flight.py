@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from codegen import law_frame
+from codegen.law_equations import scheduled_law
 from codegen.law_frame import prefilter
 from codegen.twin import FULL_SCALE_V, PWM_TICKS, Float32Twin
 from design.law import law_reset, law_step
@@ -47,7 +49,7 @@ def _answers(law: Controller, references_rad: Array, y: Array) -> Array:
 def _double(table: ControllerTable, references_rad: Array, y: Array) -> Array:
     state, answers = law_reset(table, *y[0].tolist()), []
     for row in np.hstack([references_rad, y]).tolist():
-        state, *voltages = law_step(table, state, *row)
+        state, voltages = law_step(table, state, *row)
         answers.append(voltages)
     return np.array(answers)
 
@@ -71,8 +73,8 @@ def test_the_reference_filter_arrives_at_its_target_and_stays() -> None:
     targets, starts = np.meshgrid([0.3, -0.31, 0.0, 1e-44, -1e-44, 0.5], [0.5, -0.5, 0.3])
     targets_rad, starts_rad = (values.ravel().astype(np.float32) for values in (targets, starts))
     twin = Float32Twin(ce150_table())
-    state = twin.law_reset(twin.lanes, starts_rad, starts_rad)
-    for axis, numbers in ((state.elevation, twin.law.elevation), (state.azimuth, twin.law.azimuth)):
+    state = law_frame.law_reset(scheduled_law(3), twin.law, twin.lanes, (starts_rad, starts_rad))
+    for axis, numbers in ((state.axes[0], twin.law.axes[0]), (state.axes[1], twin.law.axes[1])):
         for _ in range(4500):
             axis = prefilter(numbers, twin.lanes, axis, targets_rad)
         assert np.array_equal(axis.reference_1_rad, targets_rad)

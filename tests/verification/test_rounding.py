@@ -11,22 +11,15 @@ from flint import arb
 from numpy.typing import NDArray
 
 from codegen.law_constants import law_constants
-from codegen.law_equations import (
-    LawInput,
-    LawState,
-    differences,
-    law_step,
-    prefilter,
-    state_from_words,
-    words_from_state,
-)
+from codegen.law_equations import differences, law_step, state_from_words
+from codegen.law_frame import LawInput, LawState, prefilter, words_from_state
 from codegen.twin import Float32Lanes, Float32Scalars, Float32Twin
 from records.table import ControllerTable
 from records.verification import RoundingBound
 from tests.law_tables import ce150_table, changed_axis, dense_table
 from tests.soak import SOAK
 from verification.affine import AffineArithmetic, half_ulp
-from verification.ranges import LawRanges, Motion, declared_ranges, share_within
+from verification.ranges import CE150_MOTION, LawRanges, Motion, declared_ranges, share_within
 from verification.rounding import restricted_voltages, rounding_bound
 
 SAMPLES = 200_000 if SOAK else 20_000
@@ -44,10 +37,10 @@ def usual_bound(of_ce150: bool) -> RoundingBound:
 @pytest.mark.parametrize("table", [ce150_table(), dense_table()], ids=["ce150", "dense"])
 def test_no_sample_exceeds_the_bound_and_the_bound_is_within_ten_times_the_worst_sample(table: ControllerTable) -> None:
     bound = usual_bound(table.digest == CE150.digest)
-    state, given = _samples(table, declared_ranges(table, Motion()))
+    state, given = _samples(table, declared_ranges(table, CE150_MOTION))
     before_limits = _float32_against_float64(_with_wide_limits(table), state, given)
     after_limits = _float32_against_float64(table, state, given)
-    for proved_V, free_V, limited_V in zip((bound.u_M, bound.u_T), before_limits.T, after_limits.T, strict=True):
+    for proved_V, free_V, limited_V in zip(bound.volts.values(), before_limits.T, after_limits.T, strict=True):
         assert limited_V.max() <= proved_V
         assert free_V.max() <= proved_V <= 10.0 * free_V.max()
 
@@ -55,9 +48,9 @@ def test_no_sample_exceeds_the_bound_and_the_bound_is_within_ten_times_the_worst
 def test_the_worst_samples_hold_in_exact_rational_arithmetic_too() -> None:
     table = _with_wide_limits(ce150_table())
     bound = usual_bound(True)
-    state, given = _samples(ce150_table(), declared_ranges(ce150_table(), Motion()))
+    state, given = _samples(ce150_table(), declared_ranges(ce150_table(), CE150_MOTION))
     found = _float32_against_float64(table, state, given)
-    for column, proved_V in enumerate((bound.u_M, bound.u_T)):
+    for column, proved_V in enumerate(bound.volts.values()):
         for lane in np.argsort(found[:, column])[-5:]:
             exact_V = _exact_difference(table, state, given, int(lane))[column]
             assert exact_V == pytest.approx(found[lane, column], rel=1e-6)
@@ -67,36 +60,35 @@ def test_the_worst_samples_hold_in_exact_rational_arithmetic_too() -> None:
 def test_a_law_that_rounds_more_coarsely_breaks_the_bound() -> None:
     """With the table's numbers cut to 16 bits, the float32 law leaves the bound: the check can fail."""
     table = ce150_table()
-    state, given = _samples(table, declared_ranges(table, Motion()))
+    state, given = _samples(table, declared_ranges(table, CE150_MOTION))
     coarse = _float32_against_float64(_with_wide_limits(table), state, given, number=_to_16_bits)
-    assert coarse[:, 0].max() > usual_bound(True).u_M
+    assert coarse[:, 0].max() > usual_bound(True).volts["u_M"]
 
 
 def test_faster_axes_and_fewer_slices_loosen_the_bound() -> None:
     table, bound = CE150, usual_bound(True)
-    assert rounding_bound(table, Motion(psi_rate_rad_s=60.0)).u_M > bound.u_M
-    assert rounding_bound(table, slices=4).u_M >= bound.u_M
+    assert rounding_bound(table, replace(CE150_MOTION, rates_rad_s=(60.0, 15.0))).volts["u_M"] > bound.volts["u_M"]
+    assert rounding_bound(table, slices=4).volts["u_M"] >= bound.volts["u_M"]
     assert "48 slices" in bound.method
     assert "15 and 15 rad/s" in bound.method
 
 
 def test_the_steps_of_the_proof_are_those_of_the_law() -> None:
     table = dense_table()
-    ranges = declared_ranges(table, Motion())
+    ranges = declared_ranges(table, CE150_MOTION)
     state, given = _samples(table, ranges)
     law = law_constants(table, np.float32)
     with np.errstate(all="ignore"):
         proof = restricted_voltages(law, Float32Lanes(), state, given, ranges, lambda e, _: e)
         _, output = law_step(law, Float32Lanes(), state, given)
-    assert np.array_equal(proof.u_M_V, output.u_M_V)
-    assert np.array_equal(proof.u_T_V, output.u_T_V)
+    assert np.array_equal(proof, output)
 
 
 def test_a_flight_with_reference_jumps_stays_within_the_declared_ranges() -> None:
     table = ce150_table()
     states = _flown_states(table)
-    assert share_within(declared_ranges(table, Motion()), states) == 1.0
-    assert share_within(declared_ranges(table, Motion(psi_limit_rad=0.1)), states) < 1.0
+    assert share_within(declared_ranges(table, CE150_MOTION), states) == 1.0
+    assert share_within(declared_ranges(table, replace(CE150_MOTION, limits_rad=(0.1, 2.269))), states) < 1.0
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -135,7 +127,7 @@ def test_half_an_ulp_is_that_of_the_largest_number_below_the_magnitude() -> None
 
 def test_ranges_that_reach_implausible_voltages_are_refused() -> None:
     with pytest.raises(ValueError, match="too wide"):
-        rounding_bound(ce150_table(), Motion(psi_limit_rad=1e4, psi_rate_rad_s=1e6))
+        rounding_bound(ce150_table(), Motion((1e4, 2.269), (1e6, 15.0)))
 
 
 def _samples(table: ControllerTable, ranges: LawRanges) -> tuple[LawState[Lanes], LawInput[Lanes]]:
@@ -151,19 +143,16 @@ def _samples(table: ControllerTable, ranges: LawRanges) -> tuple[LawState[Lanes]
         inside = low + (high - low) * (1e-6 + (1.0 - 2e-6) * share)
         return inside.astype(np.float32)
 
-    state: LawState[Any] = state_from_words([drawn(*limits) for limits in words_from_state(ranges.state)])
-    given = LawInput(*(drawn(*getattr(ranges.given, name)) for name in LawInput.__dataclass_fields__))
+    state: LawState[Any] = state_from_words(table, [drawn(*limits) for limits in words_from_state(ranges.state)])
+    given = LawInput.of([drawn(*limits) for limits in (*ranges.given.references_rad, *ranges.given.angles_rad)])
     law = law_constants(table, np.float64)
-    for name, reference_rad, angle_rad in (
-        ("elevation", given.psi_ref_rad, given.psi_rad),
-        ("azimuth", given.phi_ref_rad, given.phi_rad),
-    ):
-        axis = getattr(state, name)
-        filtered = prefilter(getattr(law, name), Float32Lanes(), axis, reference_rad.astype(np.float64))
-        e_0_rad = differences(filtered, angle_rad)[0]
-        before_rad = (e_0_rad - drawn(*getattr(ranges.state, name).e_1_rad)).astype(np.float32)
-        state = replace(state, **{name: replace(axis, e_0_rad=before_rad)})
-    return state, given
+    axes = []
+    for index, axis in enumerate(state.axes):
+        filtered = prefilter(law.axes[index], Float32Lanes(), axis, given.references_rad[index].astype(np.float64))
+        e_0_rad = differences(filtered, given.angles_rad[index])[0]
+        before_rad = (e_0_rad - drawn(*ranges.state.axes[index].e_1_rad)).astype(np.float32)
+        axes.append(replace(axis, e_0_rad=before_rad))
+    return replace(state, axes=tuple(axes)), given
 
 
 def _float32_against_float64(
@@ -172,10 +161,10 @@ def _float32_against_float64(
     """|float32 law - float64 law| of u_M and u_T [lanes, 2]; double precision stands for the reals, to 1e-9 of the bound."""
     with np.errstate(all="ignore"):
         _, single = law_step(law_constants(table, number), Float32Lanes(), state, given)
-        wide_state = state_from_words([word.astype(np.float64) for word in words_from_state(state)])
-        wide_given = LawInput(*(getattr(given, name).astype(np.float64) for name in LawInput.__dataclass_fields__))
+        wide_state = state_from_words(table, [word.astype(np.float64) for word in words_from_state(state)])
+        wide_given = LawInput.of([lanes.astype(np.float64) for lanes in (*given.references_rad, *given.angles_rad)])
         _, double = law_step(law_constants(table, np.float64), Float32Lanes(), wide_state, wide_given)
-    return np.abs(np.stack([single.u_M_V - double.u_M_V, single.u_T_V - double.u_T_V], axis=-1))
+    return np.abs(np.subtract(single, double)).T
 
 
 class _Rational(Float32Scalars):
@@ -187,19 +176,16 @@ class _Rational(Float32Scalars):
 
 def _exact_difference(
     table: ControllerTable, state: LawState[Lanes], given: LawInput[Lanes], lane: int
-) -> tuple[float, float]:
+) -> tuple[float, ...]:
     words = [Fraction(float(word[lane])) for word in words_from_state(state)]
-    inputs = [Fraction(float(getattr(given, name)[lane])) for name in LawInput.__dataclass_fields__]
+    numbers = [lanes[lane] for lanes in (*given.references_rad, *given.angles_rad)]
+    inputs = [Fraction(float(number)) for number in numbers]
     law: Any = law_constants(table, Fraction)
     decisions: Any = Float32Scalars()
-    _, exact = law_step(law, _Rational(), state_from_words(words), LawInput(*inputs))
-    single_state = state_from_words([word[lane] for word in words_from_state(state)])
-    single_given = LawInput(*(getattr(given, name)[lane] for name in LawInput.__dataclass_fields__))
-    _, single = law_step(law_constants(table, np.float32), decisions, single_state, single_given)
-    return (
-        abs(float(Fraction(float(single.u_M_V)) - exact.u_M_V)),
-        abs(float(Fraction(float(single.u_T_V)) - exact.u_T_V)),
-    )
+    _, exact = law_step(law, _Rational(), state_from_words(table, words), LawInput.of(inputs))
+    single_state = state_from_words(table, [word[lane] for word in words_from_state(state)])
+    _, single = law_step(law_constants(table, np.float32), decisions, single_state, LawInput.of(numbers))
+    return tuple(abs(float(Fraction(float(u_V)) - exact_V)) for u_V, exact_V in zip(single, exact, strict=True))
 
 
 def _with_wide_limits(table: ControllerTable) -> ControllerTable:
@@ -232,7 +218,7 @@ def _flown_states(table: ControllerTable) -> NDArray[np.uint32]:
     for step in range(3000 if SOAK else 1500):
         if step % 300 == 0:
             reference = (rng.uniform(-0.5, 0.5), rng.uniform(-1.0, 1.0))
-        measured = np.round(np.array([psi, phi]) / table.elevation.resolution_rad) * table.elevation.resolution_rad
+        measured = np.round(np.array([psi, phi]) / table.axes[0].resolution_rad) * table.axes[0].resolution_rad
         inputs = np.array([[[*reference, *measured]]], dtype=np.float32)
         state, outputs = twin.run(state, inputs.view(np.uint32))
         states.append(state[0])

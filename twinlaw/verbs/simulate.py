@@ -6,11 +6,10 @@ runs without a loop, its inputs changed in steps. The error of the integration i
 
 import argparse
 import json
-from collections.abc import Sequence
 from pathlib import Path
 
 from controllers import loading
-from design.structure import demand_helicopter, missing
+from design.structure import missing
 from records.law_table import FlownTable
 from records.log import save_log
 from records.quality import STEP_ERROR, quality_facts
@@ -39,10 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Fly, write the log, and tell how well the references were followed and how exactly the equations were solved."""
     bound = load_bound(chosen.plant)
-    lacking = missing(bound)
-    if lacking and chosen.table is None:
-        return _without_loop(chosen, bound, lacking)
-    demand_helicopter(bound)
+    if chosen.table is None and missing(bound) and not bound.plant.design:
+        return _without_loop(chosen, bound)
     table: FlownTable
     if chosen.table is None:
         table = design_controller(chosen.plant).table
@@ -68,12 +65,12 @@ def run(chosen: argparse.Namespace) -> int:
     return 0
 
 
-def _without_loop(chosen: argparse.Namespace, bound: BoundPlant, lacking: Sequence[str]) -> int:
+def _without_loop(chosen: argparse.Namespace, bound: BoundPlant) -> int:
     """A run of a plant for which no controller is designed: every input changed in steps."""
     log, error = stirred(bound)
     path = chosen.out / "simulation.csv"
     save_log(path, log)
-    told = f"no controller: the equations of {bound.plant.model} are no helicopter's, without {', '.join(lacking[:3])}"
+    told = f"no controller: the plant of {bound.plant.model} names no loops in [design]"
     moved = (
         "its inputs change in steps" if bound.model.inputs else "it has no input, and swings from a start off its rest"
     )

@@ -53,7 +53,7 @@ class BoardSource:
 
     def facts(self) -> Mapping[str, Any]:
         """Kind, mode, who the board is, and how far references may go."""
-        axes = (self._table.elevation, self._table.azimuth)
+        axes = self._table.axes
         limits = [[DEG * axis.reference_min_rad, DEG * axis.reference_max_rad] for axis in axes]
         own = {"kind": "board", "mode": self._flight.mode, "limits_deg": limits}
         return {**self._facts, **own, "table": self._table.digest[:16]}
@@ -127,7 +127,7 @@ class BoardSource:
 
     def _refer(self, angles_deg: Any) -> None:
         self._demand_armed()
-        axes = (self._table.elevation, self._table.azimuth)
+        axes = self._table.axes
         if not isinstance(angles_deg, list) or len(angles_deg) != len(axes):
             raise _refused(repr(angles_deg)[:40], "two angles in deg", "give elevation and azimuth")
         wanted = []

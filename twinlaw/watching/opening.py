@@ -87,7 +87,7 @@ def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
 def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: FlownTable) -> LiveFlight:
     if not fly:
         return LoopFlight(client, plant, time_of(port), table.sample_period_s)
-    steps = (table.elevation.resolution_rad, table.azimuth.resolution_rad)
+    steps = (table.axes[0].resolution_rad, table.axes[1].resolution_rad)
     psi, phi = (round(y / step) for y, step in zip(plant.measured(), steps, strict=True))
     rig = EmulatedRig(port, plant, steps) if isinstance(port, EmulatedSerial) else RealRig()
     flying = FlyingFlight(client, rig, time_of(port), table.sample_period_s)

@@ -1,7 +1,6 @@
 """The stages behind `twinlaw compare`: each controller designed, generated, linked, verified on the board, and flown."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from design.settings import read_settings
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.protocol import PROTOCOL
+from records.table import changed_axis
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
@@ -51,7 +51,7 @@ def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path)
         image = build_firmware(texts, place)
     twin, host = row.twin(table), HostLaw(texts)
     target = TargetLaw(EmulatedBoard(image.elf), state_words=twin.state_words)
-    stimuli = standard_stimuli(table, wanted.steps, state_words=twin.state_words)
+    stimuli = standard_stimuli(table, wanted.steps, words=twin.state_words)
     with stage(f"{name}: stepping twin, host and target side by side"):
         equality = tuple(compare(one, other, stimuli).equality for one, other in ((twin, host), (host, target)))
         mismatches = host.self_test() + target.self_test()
@@ -71,13 +71,10 @@ def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path)
 def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> Mapping[str, str]:
     """The controller's texts behind another reference filter, in shares of the plant file's time constants."""
     settings = read_settings(bound)
-    changed = {
-        axis: replace(
-            getattr(table, axis), prefilter_time_constant_s=share * settings.axis(axis).prefilter_time_constant_s
-        )
-        for axis in AXES
-    }
-    return row.generate(replace(table, **changed))
+    for axis in AXES:
+        time_constant_s = share * settings.axis(axis).prefilter_time_constant_s
+        table = changed_axis(table, axis, prefilter_time_constant_s=time_constant_s)
+    return row.generate(table)
 
 
 def eq26_errors(bound: BoundPlant, names: Sequence[str]) -> Mapping[tuple[str, str], FormError]:

@@ -19,7 +19,7 @@ from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import closed_loop_poles, open_loop, plant_polynomials
 from design.operating_points import design_point
-from design.pole_placement import FREE_DEGREES, ORDER, characteristic, poles_z, sylvester
+from design.pole_placement import FREE_DEGREES, characteristic, poles_z, sylvester
 from design.settings import AxisSettings, DesignSettings
 from design.transfer import TransferFunction
 from records.law_table import LawTable
@@ -53,15 +53,15 @@ def plain(settings: DesignSettings, axis: str) -> Solver:
 
     def solve(transfer: TransferFunction, psi_rad: float) -> DeltaForm:
         a, b = _single(transfer.a), _single(transfer.b)
-        scale = np.max(np.abs(b))
+        scale, order = np.max(np.abs(b)), len(a) - 1
         rows = [
-            *sylvester((b / scale).astype(float), a.astype(float)),
-            free.row(ORDER),
+            *sylvester((b / scale).astype(float), a.astype(float), order),
+            free.row(order, order + 1),
         ]  # exact: only single numbers are moved
         system = _single(np.array(rows))
-        target = _single(np.append(wanted[1:] - np.append(a[1:], np.zeros(ORDER)), free.value))
+        target = _single(np.append(wanted[1:] - np.append(a[1:], np.zeros(order)), free.value))
         solution = np.linalg.solve(system, target).astype(float)
-        found = to_delta(DirectForm(q=solution[ORDER:] / float(scale), p=np.append(1.0, solution[:ORDER])))
+        found = to_delta(DirectForm(q=solution[order:] / float(scale), p=np.append(1.0, solution[:order])))
         return DeltaForm(found.q, np.array([0.0, *found.p[1:]]))
 
     return solve
@@ -70,22 +70,25 @@ def plain(settings: DesignSettings, axis: str) -> Solver:
 def closed(table: LawTable[Any], axis: str) -> Solver:
     """The board's arithmetic."""
     law = numbers_of(table, np.float32)
+    numbers = law.axes[table.index(axis)]
 
     def solve(transfer: TransferFunction, psi_rad: float) -> DeltaForm:
-        found = [
-            float(value) for value in vars(EQUATIONS.placed(law, getattr(law, axis), np.float32(psi_rad))).values()
-        ]
+        found = [float(value) for value in vars(EQUATIONS.placed(law, numbers, np.float32(psi_rad))).values()]
         return DeltaForm(np.array(found[:4]), np.array([0.0, *found[4:]]))
 
     return solve
 
 
+def _range_rad(settings: DesignSettings) -> tuple[float, float]:
+    assert settings.schedule is not None
+    return settings.schedule.min_rad, settings.schedule.max_rad
+
+
 def form_error(bound: BoundPlant, settings: DesignSettings, axis: str, solver: Solver) -> FormError:
     """One form over ANGLES elevations, against the design stage in double precision."""
-    wishes, Ts_s = settings.axis(axis).without_roll_off, settings.sample_period_s
+    wishes = settings.axis(axis).without_roll_off
     rows = [
-        _at(bound, psi_rad, axis, wishes, Ts_s, solver)
-        for psi_rad in np.linspace(settings.psi_min_rad, settings.psi_max_rad, ANGLES).tolist()
+        _at(bound, psi_rad, settings, wishes, solver) for psi_rad in np.linspace(*_range_rad(settings), ANGLES).tolist()
     ]
     coefficients, sums, slowest = zip(*rows, strict=True)
     return FormError(max(coefficients), max(sums), max(slowest), min(slowest))
@@ -103,14 +106,15 @@ def form_errors(
 
 
 def _at(
-    bound: BoundPlant, psi_rad: float, axis: str, wishes: AxisSettings, Ts_s: float, solver: Solver
+    bound: BoundPlant, psi_rad: float, settings: DesignSettings, wishes: AxisSettings, solver: Solver
 ) -> tuple[float, float, float]:
     """Errors of coefficients and Q(1), and the slowest pole, at one angle."""
     point = equilibrium(bound, psi_rad)
-    exact = design_point(bound, point, axis, wishes, Ts_s)
+    exact = design_point(bound, point, settings, wishes, psi_rad)
     found = solver(exact.transfer, psi_rad)
     apart = np.abs(np.append(found.q / exact.delta.q, found.p[1:] / exact.delta.p[1:]) - 1.0)
-    plant = plant_polynomials(sample(subsystem(bound, linearise(bound, point), axis), Ts_s))
+    part = subsystem(bound, linearise(bound, point), settings.loop(wishes.axis))
+    plant = plant_polynomials(sample(part, settings.sample_period_s))
     poles = closed_loop_poles(open_loop(plant, found))
     return float(np.max(apart)), float(apart[0]), float(np.max(poles.real))
 

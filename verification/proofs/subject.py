@@ -1,12 +1,12 @@
 """What a proof is about, what a proof is, and how one is run."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from records.table import ControllerTable
 from records.verification import ProofResult
 from verification.proofs.tools import Tool
-from verification.ranges import Motion
+from verification.ranges import CE150_MOTION, Motion
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Subject:
     table: ControllerTable
     generated: Mapping[str, str]
     elf: bytes
-    motion: Motion = field(default_factory=Motion)
+    motion: Motion = CE150_MOTION
     arithmetic: str = "float32"
     everything: bool = False
     seed: int = 1

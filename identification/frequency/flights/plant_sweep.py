@@ -24,17 +24,17 @@ class SweptController:
     def __init__(self, controller: Controller, added: Array, limits: Array) -> None:
         self._controller, self._added, self._limits, self._row = controller, added, limits, 0
 
-    def reset(self, psi_rad: float, phi_rad: float) -> None:
+    def reset(self, *angles_rad: float) -> None:
         """Start anew."""
-        self._controller.reset(psi_rad, phi_rad)
+        self._controller.reset(*angles_rad)
         self._row = 0
 
-    def step(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> tuple[float, float]:
+    def step(self, *given_rad: float) -> tuple[float, ...]:
         """The controller's command and this row's sweep."""
-        command = self._controller.step(psi_ref_rad, phi_ref_rad, psi_rad, phi_rad)
+        command = self._controller.step(*given_rad)
         swept = np.clip(np.add(command, self._added[self._row]), self._limits[:, 0], self._limits[:, 1])
         self._row += 1
-        return float(swept[0]), float(swept[1])
+        return tuple(swept.tolist())
 
 
 def closed_loop_sweeps(
@@ -63,11 +63,11 @@ def closed_loop_sweeps(
 
 
 def _limits(table: ControllerTable) -> Array:
-    return np.array([[axis.u_min_V, axis.u_max_V] for axis in (table.elevation, table.azimuth)])
+    return np.array([[axis.u_min_V, axis.u_max_V] for axis in table.axes])
 
 
 def _check_range(table: ControllerTable, reference_rad: Array, name: str) -> None:
-    for axis, column in zip((table.elevation, table.azimuth), reference_rad.T, strict=True):
+    for axis, column in zip(table.axes, reference_rad.T, strict=True):
         if column.min() < axis.reference_min_rad or column.max() > axis.reference_max_rad:
             got = f"{np.degrees(column.min()):.3g} to {np.degrees(column.max()):.3g} deg"
             least, most = np.degrees([axis.reference_min_rad, axis.reference_max_rad])

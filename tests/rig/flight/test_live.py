@@ -28,7 +28,7 @@ from tests.soak import SOAK
 
 TABLE = ce150_table()
 PERIOD_S = TABLE.sample_period_s
-STEPS = (TABLE.elevation.resolution_rad, TABLE.azimuth.resolution_rad)
+STEPS = (TABLE.axes[0].resolution_rad, TABLE.axes[1].resolution_rad)
 SILENCE_S = (PROTOCOL.constant("HOST_LOSS_PERIODS") + PROTOCOL.constant("RAMP_PERIODS") + 2) * PERIOD_S
 
 

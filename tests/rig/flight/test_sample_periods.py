@@ -42,7 +42,7 @@ def test_the_board_ticks_at_the_table_s_period_and_watches_its_host_by_the_clock
     with BoardClient.over(port, url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client:
         assert client.identity.sample_period_s == pytest.approx(period_s)
         plant = SteppedPlant(BOUND, at_rest(BOUND))
-        steps = (table.elevation.resolution_rad, table.azimuth.resolution_rad)
+        steps = (table.axes[0].resolution_rad, table.axes[1].resolution_rad)
         psi, phi = (round(y / step) for y, step in zip(plant.measured(), steps, strict=True))
         flight = FlyingFlight(client, EmulatedRig(port, plant, steps), time_of(port), period_s)
         flight.preset(psi, phi)

@@ -36,7 +36,7 @@ def _stale() -> Wrapped:
 
 
 def _other_gains() -> Controller:
-    rows = tuple(tuple(1.05 * value for value in row) for row in TABLE.elevation.q_V_rad)
+    rows = tuple(tuple(1.05 * value for value in row) for row in TABLE.axes[0].q_V_rad)
     return host_law(changed_axis(TABLE, "elevation", q_V_rad=rows))
 
 

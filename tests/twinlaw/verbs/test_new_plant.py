@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from records.plant import load_plant
+from records.table import load_table
 from sim.added_effects import library
 from sim.bind import BoundPlant, bind
 from sim.simulate import simulate
@@ -30,6 +31,19 @@ def test_the_arm_swings_as_its_equation_says(arm: BoundPlant) -> None:
     assert run.y is not None
     expected = 1e-3 * np.exp(-decay * t_s) * (np.cos(omega * t_s) + decay / omega * np.sin(omega * t_s))
     np.testing.assert_allclose(run.y[:, 0], expected, rtol=0, atol=1e-8)
+
+
+def test_a_controller_is_designed_for_it_at_once(tmp_path: Path) -> None:
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "arm")]) == 0
+    assert main(["design", "--plant", str(tmp_path / "arm" / "plant.toml"), "--out", str(tmp_path)]) == 0
+    assert [loop.axis for loop in load_table(tmp_path / "controller.json").loops] == ["arm"]
+
+
+@pytest.mark.soak
+def test_it_flies_at_once(tmp_path: Path) -> None:
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path / "arm")]) == 0
+    assert main(["run", "--plant", str(tmp_path / "arm" / "plant.toml"), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "run.csv").exists()
 
 
 def test_the_library_has_effects_for_it(arm: BoundPlant) -> None:

@@ -31,7 +31,7 @@ def test_a_plant_runs_and_its_parameters_come_back(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     log = simulated(name, tmp_path)
-    assert capsys.readouterr().out.startswith(f"no controller: the equations of my_{name} are no helicopter's")
+    assert capsys.readouterr().out.startswith(f"no controller: the plant of my_{name} names no loops in [design]")
     bound = bind(load_plant(tmp_path / "plant.toml"))
     read = load_log(log, log_columns(bound.model))
     assert read.loop == "open"

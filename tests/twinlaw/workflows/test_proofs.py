@@ -15,7 +15,7 @@ from twinlaw.workflows.chain.verifying import demand
 from verification.proofs import Proof, Subject
 from verification.proofs.tools import Tool
 
-BALLS = RoundingBound(2e-3, 3e-3, "balls")
+BALLS = RoundingBound({"u_M": 2e-3, "u_T": 3e-3}, "balls")
 SOUND = Verification("0" * 64, (), (), BALLS, (), (), {"float32": BALLS})
 SUBJECT = Subject(ce150_table(), {}, b"")
 ABSENT = Tool("nosuchtool", "Debian: apt install nosuchtool", ("nosuchtool",))

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from codegen.law_constants import law_constants
-from codegen.law_equations import LawInput, state_from_words, words_from_state
-from records.table import ControllerTable
+from codegen.law_equations import state_from_words
+from codegen.law_frame import words_from_state
+from records.table import ControllerTable, Schedule
 from records.verification import ProofResult, RoundingBound
 from tests.law_tables import ce150_table
 from verification.fixed_rounding import fixed_rounding_bound
@@ -16,8 +17,8 @@ from verification.proofs.rounding.gappa_script import GappaArithmetic, Prover
 from verification.proofs.rounding.gappa_words import GappaWords
 from verification.proofs.rounding.proof import ask_gappa, gappa_bound, prove, tighter_bound
 from verification.proofs.tools import GAPPA, Tool
-from verification.ranges import Motion, declared_ranges
-from verification.rounding import restricted_voltages, rounding_bound
+from verification.ranges import CE150_MOTION, declared_ranges
+from verification.rounding import given_within, restricted_voltages, rounding_bound
 
 needs_gappa = pytest.mark.skipif(not GAPPA.found(), reason=f"gappa is not installed ({GAPPA.remedy})")
 
@@ -30,16 +31,12 @@ def _scripts(table: ControllerTable, prover: Prover) -> list[str]:
         asked.append(script)
         return prover(script)
 
-    arithmetic, ranges = GappaArithmetic(keep), declared_ranges(table, Motion())
-    state = state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)])
-    given = LawInput(*(arithmetic.within(*limits) for limits in words_of(ranges.given)))
+    arithmetic, ranges = GappaArithmetic(keep), declared_ranges(table, CE150_MOTION)
+    state = state_from_words(table, [arithmetic.within(*limits) for limits in words_from_state(ranges.state)])
+    given = given_within(ranges, arithmetic)
     law = law_constants(table, arithmetic.constant)
     restricted_voltages(law, arithmetic, state, given, ranges, arithmetic.restricted)
     return asked
-
-
-def words_of(given: LawInput[tuple[float, float]]) -> list[tuple[float, float]]:
-    return [getattr(given, name) for name in LawInput.__dataclass_fields__]
 
 
 def test_the_scripts_are_the_same_bytes_for_the_same_table_and_hold_what_their_goal_needs() -> None:
@@ -73,11 +70,13 @@ def test_gappa_s_answer_without_a_bound_is_refused() -> None:
 def test_both_bounds_are_near_each_other_and_a_coarser_table_is_not_within_them() -> None:
     """Truth: two sound bounds of one error; each is at most six times the other."""
     table = ce150_table()
-    gappa, balls = gappa_bound(table, Motion()), rounding_bound(table)
-    for one, other in ((gappa.u_M, balls.u_M), (gappa.u_T, balls.u_T)):
+    gappa, balls = gappa_bound(table, CE150_MOTION), rounding_bound(table)
+    for one, other in ((gappa.volts["u_M"], balls.volts["u_M"]), (gappa.volts["u_T"], balls.volts["u_T"])):
         assert 1 / 6 <= one / other <= 6
-    larger = gappa_bound(replace(table, psi_min_rad=-1.5, psi_max_rad=1.5), Motion(psi_limit_rad=1.5))
-    assert larger.u_M > gappa.u_M
+    larger = gappa_bound(
+        replace(table, schedule=Schedule("elevation", -1.5, 1.5)), replace(CE150_MOTION, limits_rad=(1.5, 2.269))
+    )
+    assert larger.volts["u_M"] > gappa.volts["u_M"]
 
 
 @needs_gappa
@@ -95,14 +94,14 @@ def test_in_fixed_point_both_bounds_agree_and_the_smaller_one_is_taken() -> None
     table = ce150_table()
     result, balls = prove(Subject(table, {}, b"", arithmetic="fixed")), fixed_rounding_bound(table)
     assert result.outcome == "proved"
-    for name, by_balls in (("u_M_V", balls.u_M), ("u_T_V", balls.u_T)):
+    for name, by_balls in (("u_M_V", balls.volts["u_M"]), ("u_T_V", balls.volts["u_T"])):
         assert 0.8 <= result.figures[name] / by_balls <= 1.25
-    assert tighter_bound(balls, result).u_M == min(balls.u_M, result.figures["u_M_V"])
+    assert tighter_bound(balls, result).volts["u_M"] == min(balls.volts["u_M"], result.figures["u_M_V"])
 
 
 @needs_gappa
 def test_motion_that_could_make_the_fixed_law_give_up_its_feedback_is_no_proof() -> None:
-    fast = Motion(psi_rate_rad_s=500.0, phi_rate_rad_s=500.0)
+    fast = replace(CE150_MOTION, rates_rad_s=(500.0, 500.0))
     assert prove(Subject(ce150_table(), {}, b"", motion=fast, arithmetic="fixed")).outcome == "failed"
 
 
@@ -122,7 +121,7 @@ def _fixed_scripts(prover: Prover) -> list[str]:
         return prover(script)
 
     table = ce150_table()
-    restricted_words(table, GappaWords(keep), declared_ranges(table, Motion()))
+    restricted_words(table, GappaWords(keep), declared_ranges(table, CE150_MOTION))
     return asked
 
 
@@ -135,10 +134,10 @@ def test_gappa_knows_what_a_floor_takes_off_a_word(places: int, known: float) ->
 
 
 def test_the_smaller_bound_is_taken_per_output_and_named() -> None:
-    balls = RoundingBound(2e-3, 1e-3, "balls")
+    balls = RoundingBound({"u_M": 2e-3, "u_T": 1e-3}, "balls")
     proved = ProofResult("rounding bound", "proved", "", figures={"u_M_V": 1e-3, "u_T_V": 5e-3})
     taken = tighter_bound(balls, proved)
-    assert (taken.u_M, taken.u_T) == (1e-3, 1e-3)
+    assert (taken.volts["u_M"], taken.volts["u_T"]) == (1e-3, 1e-3)
     assert "Gappa" in taken.method
     assert tighter_bound(balls, replace(proved, outcome="failed")) == balls
     assert tighter_bound(balls, ProofResult("totality", "proved", "")) == balls

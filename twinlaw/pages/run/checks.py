@@ -39,7 +39,7 @@ def verification_rows(verification: Verification) -> list[Row]:
     rows.append(
         (
             f"rounding of one step in {arithmetic}, proved",
-            f"u_M within {1e3 * bound.u_M:.2f} mV, u_T within {1e3 * bound.u_T:.2f} mV",
+            bound.told,
             "proved",
         )
     )

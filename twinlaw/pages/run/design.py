@@ -28,12 +28,19 @@ def design_heading(report: DesignReport) -> Row:
 
 
 def design_rows(report: DesignReport) -> list[Row]:
-    """One row per axis: slowest pole designed, worst after fit and rounding, worst of each margin over Psi; then both loops coupled."""
-    coupled = ("both, coupled", "", "", f"{report.coupled.worst_rad_s:.2f} rad/s", degrees(report.coupled.at_psi_rad))
-    return [
-        *(_design_row(axis) for axis in (report.elevation, report.azimuth)),
-        (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled))),
-    ]
+    """One row per axis: slowest pole designed, worst after fit and rounding, worst of each margin over Psi; then all loops coupled."""
+    rows = [_design_row(axis) for axis in report.axes]
+    if len(rows) == 1:
+        return rows
+    whose = "both" if len(rows) == 2 else "all"
+    coupled = (
+        f"{whose}, coupled",
+        "",
+        "",
+        f"{report.coupled.worst_rad_s:.2f} rad/s",
+        degrees(report.coupled.at_psi_rad),
+    )
+    return [*rows, (*coupled, *[""] * (len(_DESIGN_HEADING) - len(coupled)))]
 
 
 def _design_row(axis: AxisReport) -> Row:
@@ -54,7 +61,7 @@ def _design_row(axis: AxisReport) -> Row:
 
 def design_facts(report: DesignReport) -> dict[str, Any]:
     """The same for a program."""
-    axes = (report.elevation, report.azimuth)
+    axes = report.axes
     return {
         "arithmetic": report.arithmetic,
         "poles": report.pole_entries(),

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from design.report import AxisReport, DesignReport
 from records.quality import Colour, Quality, flag
 from twinlaw.pages.page import Page, Section, Table
-from twinlaw.pages.plots import BLACK, BLUE, GREY, ORANGE, Curve, Panel, grid, row, stack
+from twinlaw.pages.plots import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Curve, Panel, grid, row, stack
 from twinlaw.pages.quality import quality_section, quality_sentence
 from twinlaw.pages.run.design import design_heading, design_rows
 
 Array = NDArray[np.float64]
 FINE = 200  # angles at which a fit is drawn
+LOOKS = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (RED, ":"))  # of the loops, which are four at most
 
 
 def design_page(plant: str, report: DesignReport, digest: str) -> Page:
@@ -39,11 +40,11 @@ def design_sections(report: DesignReport) -> tuple[Section, ...]:
 
 
 def _poles(report: DesignReport) -> Section:
-    panels = [_pole_panel(axis) for axis in (report.elevation, report.azimuth)]
+    panels = [_pole_panel(axis) for axis in report.axes]
     return Section(
         "Closed-loop poles before and after fit and rounding",
         (f"Each dot is a pole at one of {len(report.psi_rad)} angles; the crosses are the poles that were asked for.",),
-        plots=(row(panels, ["real part [rad/s]"] * 2),),
+        plots=(row(panels, ["real part [rad/s]"] * len(panels)),),
     )
 
 
@@ -67,7 +68,7 @@ def _margins(report: DesignReport) -> Section:
     def panel(label: str, figure: str, scale: float) -> Panel:
         curves = [
             Curve(psi_deg, scale * np.array([getattr(m, figure) for m in axis.margins]), axis.axis, colour, dash)
-            for axis, colour, dash in ((report.elevation, BLUE, "-"), (report.azimuth, ORANGE, "--"))
+            for axis, (colour, dash) in zip(report.axes, LOOKS, strict=False)
         ]
         return Panel(label, curves)
 
@@ -75,22 +76,22 @@ def _margins(report: DesignReport) -> Section:
         panel("largest sensitivity Ms [-]", "sensitivity", 1.0),
         panel("phase margin [deg]", "phase_rad", 180.0 / math.pi),
         panel("delay margin [ms]", "delay_s", 1e3),
-        Panel("slowest pole, coupled [rad/s]", (Curve(psi_deg, report.coupled_slowest_rad_s, "both loops", GREY),)),
+        Panel("slowest pole, coupled [rad/s]", (Curve(psi_deg, report.coupled_slowest_rad_s, "all loops", GREY),)),
     )
     return Section(
-        "Margins over the elevation",
+        f"Margins over the {report.angle}",
         (
-            f"Of the {report.arithmetic} table, as it flies. The last panel closes both loops on the whole plant, cross-coupling included.",
+            f"Of the {report.arithmetic} table, as it flies. The last panel closes all loops on the whole plant, cross-coupling included.",
         ),
         (Table(design_rows(report), design_heading(report)),),
-        (stack(panels, "elevation Psi [deg]", panel_height_in=1.7),),
+        (stack(panels, f"{report.angle} Psi [deg]", panel_height_in=1.7),),
     )
 
 
 def _coefficients(report: DesignReport) -> Section:
-    worst = [f"{axis.axis} {1e3 * axis.feedforward_error_V:.2g} mV" for axis in (report.elevation, report.azimuth)]
+    worst = [f"{axis.axis} {1e3 * axis.feedforward_error_V:.2g} mV" for axis in report.axes]
     return Section(
-        "Coefficients over the elevation",
+        f"Coefficients over the {report.angle}",
         (
             f"The law's coefficients in powers of delta = 1 - z^-1, and the voltage of the operating point: dots as designed at each of "
             f"{len(report.points_rad)} operating points, lines as fitted by one polynomial each. p_0 = P(1) is 0 everywhere, as the law "
@@ -103,9 +104,9 @@ def _coefficients(report: DesignReport) -> Section:
 
 def coefficient_plot(report: DesignReport) -> str:
     """q_i, p_i and u_ff of both axes over Psi, as SVG text."""
-    axes = (report.elevation, report.azimuth)
-    lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.elevation)]
-    return grid(lines, [axis.axis for axis in axes], "elevation Psi [deg]", height_in=1.3)
+    axes = report.axes
+    lines = [[_coefficient(report, axis, *which) for axis in axes] for which in _which(report.axes[0])]
+    return grid(lines, [axis.axis for axis in axes], f"{report.angle} Psi [deg]", height_in=1.3)
 
 
 def _which(axis: AxisReport) -> list[tuple[str, int]]:
@@ -142,7 +143,7 @@ def _migration(report: DesignReport) -> Section:
             f"{m.slowest.worst_rad_s:.3f} rad/s",
             "yes" if m.slowest.stable else "no",
         )
-        for axis in (report.elevation, report.azimuth)
+        for axis in report.axes
         for m in axis.migrations
     ]
     return Section(

@@ -10,6 +10,7 @@ from design.trade_off import TradePoint
 from records.log import RunLog
 from records.quality import Colour, flag
 from records.verification import Verification
+from sim.columns import reference_name
 from sim.tracking import Tracking
 from toolchain.elf import ImageSizes
 from twinlaw.pages.page import Page, Section, Table
@@ -21,30 +22,37 @@ from twinlaw.pages.run.roll_off import roll_off_section
 from twinlaw.pages.run.tracking import TRACKING_HEADING, flight_quality, tracking_rows
 
 Array = NDArray[np.float64]
+_NAMES = {
+    "psi_rad": "elevation Psi",
+    "phi_rad": "azimuth Phi",
+    "u_M_V": "main rotor u_M",
+    "u_T_V": "tail rotor u_T",
+}
 
 
 def run_page(
     plant: str,
     report: DesignReport,
     verification: Verification,
-    sizes: ImageSizes,
+    sizes: ImageSizes | None,
     log: RunLog,
     tracking: Sequence[Tracking],
     counters: Mapping[str, int],
     trade: Sequence[TradePoint],
 ) -> Page:
-    """The whole page."""
+    """The whole page; without an image's `sizes` it was the generated C on this computer that flew."""
     failures = verification.failures
     quality = flight_quality(tracking, [flag(text, Colour.RED) for text in failures])
-    verdict = "Every check holds, and the firmware image has flown." if not failures else "; ".join(failures)
+    flown = "generated C" if sizes is None else "firmware image"
+    verdict = f"Every check holds, and the {flown} has flown." if not failures else "; ".join(failures)
     return Page(
-        title=f"{plant}: from its equations to a flight of the firmware",
+        title=f"{plant}: from its equations to a flight of the {'law' if sizes is None else 'firmware'}",
         verdict=verdict,
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Controller table", verification.table_digest),),
         sections=(
-            _flight(log, tracking, counters),
+            _flight(log, tracking, None if sizes is None else counters),
             _verified(verification, sizes),
             *design_sections(report),
             *roll_off_section(trade),
@@ -54,9 +62,10 @@ def run_page(
 
 
 def flight_plot(log: RunLog) -> str:
-    """Angles with their references, and both inputs, over time, as SVG text."""
-    angles = (("elevation Psi", "psi_rad", "psi_ref_rad"), ("azimuth Phi", "phi_rad", "phi_ref_rad"))
-    inputs = (("main rotor u_M", "u_M_V", GREEN), ("tail rotor u_T", "u_T_V", RED))
+    """Angles with their references, and all inputs, over time, as SVG text."""
+    columns = log.columns
+    angles = [(_told(output), output, reference_name(output)) for output in columns.outputs]
+    inputs = [(_told(name), name, (GREEN, RED)[index % 2]) for index, name in enumerate(columns.inputs)]
     panels = [
         Panel(
             f"{name} [deg]",
@@ -73,23 +82,44 @@ def flight_plot(log: RunLog) -> str:
     return stack(panels, "time [s]")
 
 
-def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
+def _told(column: str) -> str:
+    """The column's name for a reader; the helicopter's by what it is of."""
+    return _NAMES.get(column, column.rsplit("_", 1)[0])
+
+
+def _in_loop(counters: Mapping[str, int] | None) -> tuple[str, str]:
+    """What flew, and what the board's line counted."""
+    plant = "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the"
+    if counters is None:
+        return (
+            f"{plant} generated C, compiled for this computer.",
+            "There is no image: firmware and line are of the helicopter's two loops.",
+        )
     faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
+    return (
+        f"{plant} unmodified firmware image on the emulated STM32G071: angles go to the board through its serial line, voltages come "
+        "back, one frame each per sample.",
+        f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
+    )
+
+
+def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int] | None) -> Section:
+    flown, counted = _in_loop(counters)
     return Section(
         "Flight",
         (
-            "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
-            "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
+            flown,
             "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
             "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round.",
-            f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
+            counted,
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),
         (flight_plot(log),),
     )
 
 
-def _verified(verification: Verification, sizes: ImageSizes) -> Section:
+def _verified(verification: Verification, sizes: ImageSizes | None) -> Section:
+    memory = () if sizes is None else (Table(size_rows(sizes), ("memory", "bytes", "of")),)
     return Section(
         "Verification",
         (
@@ -98,6 +128,6 @@ def _verified(verification: Verification, sizes: ImageSizes) -> Section:
         ),
         (
             Table(verification_rows(verification), ("check", "figures", "")),
-            Table(size_rows(sizes), ("memory", "bytes", "of")),
+            *memory,
         ),
     )

@@ -8,8 +8,10 @@ from codegen.prefix import prefixed
 from codegen.protocol_source import protocol_source
 from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
+from records.errors import BadInput
 from records.files import write_atomic
 from records.law_table import FlownTable
+from records.loops import LOOPS
 from records.protocol import PROTOCOL
 from records.table import ControllerTable
 from rig.programming.image import FirmwareImage, build_firmware
@@ -25,9 +27,28 @@ def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mappin
     """Generate law and protocol and write them to `folder`; returns the law's texts by file name."""
     with stage("generating C"):
         law = loading.generate(table, arithmetic)
-        for name, text in {**law, **protocol_source(PROTOCOL)}.items():
+        for name, text in {**law, **_protocol(table)}.items():
             write_atomic(folder / name, text)
     return law
+
+
+def _protocol(table: FlownTable) -> Mapping[str, str]:
+    """The line's texts, which carry the helicopter's two loops; none for other loops."""
+    return protocol_source(PROTOCOL) if table.loops == LOOPS else {}
+
+
+def has_image(table: FlownTable) -> bool:
+    """Whether the firmware takes a law: its path and its line are of the helicopter's two loops."""
+    return table.loops == LOOPS
+
+
+def demand_image(table: FlownTable, what: str = "image") -> None:
+    """Raise BadInput for a table whose law the firmware does not take; `what` is what was asked for."""
+    if not has_image(table):
+        names = ", ".join(loop.axis for loop in table.loops)
+        expected = f"elevation and azimuth: {what}, board and line are of the helicopter's two loops"
+        remedy = "`generate`, `verify` and `simulate` take this table; its law is C for firmware of your own"
+        raise BadInput(f"loops of the {what}", f"controller table {table.digest[:16]}", names, expected, remedy)
 
 
 def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix: str, kind: str | None) -> list[Path]:
@@ -36,7 +57,9 @@ def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix:
     Returns the files. Raises BadInput for a prefix that cannot begin a name in C.
     """
     with stage("generating C"):
-        texts = {**loading.generate(table, arithmetic), **protocol_source(PROTOCOL)}
+        if kind is not None:
+            demand_image(table, "library")  # its example reads two encoders and drives two motors
+        texts = {**loading.generate(table, arithmetic), **_protocol(table)}
         files = prefixed(texts, prefix) if kind is None else library(kind, texts, prefix)
         for name, text in files.items():
             write_atomic(folder / name, text)

@@ -4,17 +4,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from controllers import loading
-from design.structure import demand_helicopter
 from records.law_table import FlownTable
 from records.log import RunLog
+from records.loops import LOOPS
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.columns import log_columns
 from sim.halving import StepError, step_error
-from sim.loop import fly, fly_law
-from sim.manoeuvres import flight, stir
+from sim.kernel.law import is_kernel_s
+from sim.loop import Wired, fly, fly_law
+from sim.manoeuvres import Manoeuvre, flight, steps, stir
 from sim.simulate import simulate
 from sim.tracking import Tracking, tracking
+from sim.wiring import wiring
 from twinlaw.cli.console import stage
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
@@ -30,15 +32,20 @@ class ChainFlight:
 
 
 def fly_double(bound: BoundPlant, table: FlownTable) -> ChainFlight:
-    """Fly the plant under the table's law in double precision; raises BadInput for a plant without a helicopter's columns."""
-    demand_helicopter(bound)
-    whole = flight(bound, table.sample_period_s)
+    """Fly the plant under the table's law in double precision; raises BadInput for a plant without the columns of its loops."""
+    wires, whole = wiring(bound, table.loops), flight_of(bound, table)
     with stage("flying the law in double precision"):
-        if isinstance(table, ControllerTable):
+        if isinstance(table, ControllerTable) and is_kernel_s(table):
             log = fly_law(bound, table, whole)
         else:
-            log = fly(bound, loading.row_of(table).float_law(table), whole, table_digest=table.digest)
+            law = Wired(loading.row_of(table).float_law(table), wires)
+            log = fly(bound, law, whole, table_digest=table.digest)
     return ChainFlight(log, tracked(log), {})
+
+
+def flight_of(bound: BoundPlant, table: FlownTable) -> Manoeuvre:
+    """The project's flight for the helicopter's loops, steps of each loop for any other."""
+    return flight(bound, table.sample_period_s) if table.loops == LOOPS else steps(bound, table)
 
 
 def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
@@ -53,20 +60,21 @@ def stirred(bound: BoundPlant) -> tuple[RunLog, StepError]:
 
 def fly_host(bound: BoundPlant, table: FlownTable, arithmetic: str) -> ChainFlight:
     """Fly the plant under the table's generated law, compiled for this computer; raises BadInput as `fly_double` does."""
-    demand_helicopter(bound)
-    law = HostLaw(loading.generate(table, arithmetic), arithmetic)
+    wires = wiring(bound, table.loops)
+    law = Wired(HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops), wires)
     with stage(f"flying the generated law in {arithmetic}"):
-        log = fly(bound, law, flight(bound, table.sample_period_s), table_digest=table.digest)
+        log = fly(bound, law, flight_of(bound, table), table_digest=table.digest)
     return ChainFlight(log, tracked(log), {})
 
 
 def halved_step(bound: BoundPlant, table: FlownTable) -> StepError:
     """The step-halving check of that flight: how large the error of one integration step a sample is."""
     with stage("flying it with steps of half the length"):
-        whole = flight(bound, table.sample_period_s)
-        if isinstance(table, ControllerTable):
+        whole = flight_of(bound, table)
+        if isinstance(table, ControllerTable) and is_kernel_s(table):
             return step_error(bound, whole.t_s, whole.x0, table, reference=whole.reference_rad)
-        law = FlownLaw(loading.generate(table, "float32"))  # must outlive the flights
+        texts, wires = loading.generate(table, "float32"), wiring(bound, table.loops)
+        law = FlownLaw(texts, table.loops, wires)  # must outlive the flights
         return step_error(bound, whole.t_s, whole.x0, law.controller(whole.t_s.size), reference=whole.reference_rad)
 
 

@@ -1,13 +1,17 @@
 """Verification as the verbs run it: twin, host and target step by step in every arithmetic, bounds and cost."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from codegen.law import generate_law
+from codegen.law_equations import state_words
+from design.structure import stops
 from logcheck.integrity import as_read, examine
 from records.board import STM32G071
 from records.errors import VerificationFailed
+from records.loops import LOOPS, Loop
 from records.table import ControllerTable
 from records.verification import Equality, PoleMigration, RoundingBound, SelfTest, TargetCost, Verification
 from replay.firmware import CLEARED
@@ -18,12 +22,13 @@ from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
 from sim.columns import log_columns
+from sim.kernel.law import is_kernel_s
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
 from verification.equality import BatchStepper, compare
 from verification.host_law import HostLaw
-from verification.ranges import Motion
+from verification.ranges import FASTEST_RAD_S, Motion
 from verification.replay import Replay, replay_of, replayed_equality
 from verification.static_bound import kept_bound
 from verification.stimuli import Stimulus
@@ -39,18 +44,21 @@ def verify_table(
     table: ControllerTable,
     poles: Sequence[PoleMigration],
     law: Mapping[str, str],
-    image: FirmwareImage,
+    image: FirmwareImage | None,
     recorded: Sequence[Replay] = (),
     steps: int = STEPS,
     arithmetic: str = "float32",
 ) -> Verification:
-    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
+    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`.
+
+    Without an image, which the firmware makes of a helicopter's table alone, those on this computer.
+    """
     checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
     for other in ARITHMETICS:
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = build_firmware(texts)
+                built = None if image is None else build_firmware(texts)
             checks[other] = _check(bound, table, other, texts, built, (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
@@ -59,7 +67,7 @@ def verify_table(
         self_tests=tuple(row for check in ordered for row in check.self_tests),
         rounding=checks[arithmetic].rounding,
         poles=tuple(poles),
-        target=tuple(check.cost for check in ordered),
+        target=tuple(check.cost for check in ordered if check.cost is not None),
         roundings={name: checks[name].rounding for name in ARITHMETICS},
     )
 
@@ -71,7 +79,7 @@ class _Check:
     equality: tuple[Equality, ...]
     self_tests: tuple[SelfTest, ...]
     rounding: RoundingBound
-    cost: TargetCost
+    cost: TargetCost | None
 
 
 def _check(
@@ -79,38 +87,54 @@ def _check(
     table: ControllerTable,
     arithmetic: str,
     law: Mapping[str, str],
-    image: FirmwareImage,
+    image: FirmwareImage | None,
     recorded: Sequence[Replay],
     steps: int,
 ) -> _Check:
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
-    chosen = ARITHMETICS[arithmetic]
-    twin, host = chosen.twin(table), HostLaw(law, arithmetic)
-    target = TargetLaw(EmulatedBoard(image.elf), arithmetic)
+    chosen, loops = ARITHMETICS[arithmetic], table.loops
+    twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
+    target = None if image is None else TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table))
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
-    equality = [equal_steps(one, other, stimuli) for one, other in ((twin, host), (host, target))]
+    pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), *([(host, target)] if target else [])]
+    equality = [equal_steps(one, other, stimuli, loops) for one, other in pairs]
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
     with stage(f"proving a bound on rounding in {arithmetic}"):
-        rounding = chosen.bound(table, Motion(bound.parameter("Psi_lim"), bound.parameter("Phi_lim")))
-    with stage("bounding cycles and stack from the image"):
-        cost = kept_bound(image.elf, "law_step")
-    tests = (("host", host.self_test()), ("target", target.self_test()))
+        rounding = chosen.bound(table, motion_of(bound, table))
+    tests = [("host", host.self_test()), *([("target", target.self_test())] if target else [])]
     return _Check(
         equality=tuple(equality),
         self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        cost=TargetCost(
-            arithmetic=arithmetic,
-            cycles_min=target.cycles_min,
-            cycles_max=target.cycles_max,
-            cycles_bound=cost.cycles_bound,
-            stack_bytes=cost.stack_bytes,
-            flash_bytes=image.sizes.flash_bytes,
-            ram_bytes=image.sizes.ram_bytes,
-            cycles_budget=round((table.sample_period_s - TICK_RESERVE_S) * STM32G071.clock_hz),
-        ),
+        cost=None if image is None or target is None else _cost(table, arithmetic, image, target),
     )
+
+
+def _cost(table: ControllerTable, arithmetic: str, image: FirmwareImage, target: TargetLaw) -> TargetCost:
+    """What a step took on the target at most, and what it can take."""
+    with stage("bounding cycles and stack from the image"):
+        cost = kept_bound(image.elf, "law_step")
+    return TargetCost(
+        arithmetic=arithmetic,
+        cycles_min=target.cycles_min,
+        cycles_max=target.cycles_max,
+        cycles_bound=cost.cycles_bound,
+        stack_bytes=cost.stack_bytes,
+        flash_bytes=image.sizes.flash_bytes,
+        ram_bytes=image.sizes.ram_bytes,
+        cycles_budget=round((table.sample_period_s - TICK_RESERVE_S) * STM32G071.clock_hz),
+    )
+
+
+def motion_of(bound: BoundPlant, table: ControllerTable) -> Motion:
+    """Each axis within its stops, or a quarter turn beyond its references where it has none, no faster than FASTEST_RAD_S."""
+    limits_rad = []
+    for loop, axis in zip(table.loops, table.axes, strict=True):
+        stop_rad = max(map(abs, stops(bound, loop)))
+        widest_rad = max(abs(axis.reference_min_rad), abs(axis.reference_max_rad)) + math.pi / 2.0
+        limits_rad.append(stop_rad if math.isfinite(stop_rad) else widest_rad)
+    return Motion(tuple(limits_rad), (FASTEST_RAD_S,) * len(limits_rad))
 
 
 def demand(verification: Verification) -> None:
@@ -119,10 +143,12 @@ def demand(verification: Verification) -> None:
         raise VerificationFailed("; ".join(verification.failures))
 
 
-def equal_steps(one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus]) -> Equality:
-    """Both laws stepped over the same stimuli, bits compared."""
+def equal_steps(
+    one: BatchStepper, other: BatchStepper, stimuli: Sequence[Stimulus], loops: tuple[Loop, ...] = LOOPS
+) -> Equality:
+    """Both laws of `loops` stepped over the same stimuli, bits compared."""
     with stage(f"stepping {one.name} and {other.name} side by side"):
-        return compare(one, other, stimuli).equality
+        return compare(one, other, stimuli, loops).equality
 
 
 def recorded_replay(
@@ -134,7 +160,7 @@ def recorded_replay(
     """
     log = load_known_log(path, bound)
     replay = replay_of(log, table, path, arithmetic)
-    if replay.sent is None or not has_replayable_columns(log):
+    if replay.sent is None or not has_replayable_columns(log) or not is_kernel_s(table):
         return replay, None
     begins = None
     if log.columns == log_columns(bound.model):

@@ -8,6 +8,10 @@ the view a decision is the comparison that it stands for, with every difference 
 import re
 from collections.abc import Mapping
 
+from codegen.law_terms import Names
+from records.loops import Loop
+from verification.proofs.behaviour.eva_source import asserted_outputs
+
 # The law's decisions by masks, and what they mean.
 _MEANING: Mapping[str, str] = {
     "negative_part": "",
@@ -66,7 +70,7 @@ _ANY_WORD = """static law_number any_word(void)
 }
 """
 
-DRIVER = f"""#include "law.h"
+_DRIVER = f"""#include "law.h"
 #include "__fc_builtin.h"
 
 {_ANY_WORD}
@@ -78,30 +82,38 @@ int main(void)
     }} memory;
     law_input input;
     law_output output;
-    law_reset(&memory.state, any_word(), any_word());
+    law_reset(&memory.state, @ANGLES@);
     while (1) {{
         for (uint32_t i = 0u; i < sizeof(law_state) / sizeof(int32_t); i++) {{
             memory.words[i] = any_word();
         }}
-        input.psi_ref_rad = any_word();
-        input.phi_ref_rad = any_word();
-        input.psi_rad = any_word();
-        input.phi_rad = any_word();
+@GIVEN@
         law_step(&memory.state, &input, &output);
-        /*@ assert main_within: LAW_U_M_MIN_V <= output.u_M_V <= LAW_U_M_MAX_V; */
-        /*@ assert tail_within: LAW_U_T_MIN_V <= output.u_T_V <= LAW_U_T_MAX_V; */
-        const int32_t main_ticks = law_duty_main(any_word());
-        const int32_t tail_ticks = law_duty_tail(any_word());
-        /*@ assert main_duty: -LAW_PWM_TICKS <= main_ticks <= LAW_PWM_TICKS; */
-        /*@ assert tail_duty: -LAW_PWM_TICKS <= tail_ticks <= LAW_PWM_TICKS; */
-        const law_number psi_rad = law_angle_from_counts_psi(any_word());
-        const law_number phi_rad = law_angle_from_counts_phi(any_word());
+@OUTPUTS@
     }}
 }}
 """
 
+
+def driver(loops: tuple[Loop, ...]) -> str:
+    """State and inputs of a law of `loops` any words, step after step."""
+    names = [*(loop.reference for loop in loops), *(loop.output for loop in loops)]
+    counts = (
+        f"        const law_number {loop.output} = law_angle_from_counts_{loop.symbol}(any_word());" for loop in loops
+    )
+    parts = {
+        "@ANGLES@": ", ".join(["any_word()"] * len(loops)),
+        "@GIVEN@": "\n".join(f"        input.{name} = any_word();" for name in names),
+        "@OUTPUTS@": "\n".join((*asserted_outputs(loops, "any_word()"), *counts)),
+    }
+    text = _DRIVER
+    for place, lines in parts.items():
+        text = text.replace(place, lines)
+    return text
+
+
 # Every decision as it was generated; clamp and drive() are left to the proof of totality, which knows what their words can be.
-DECISIONS_DRIVER = f"""#include "law.c"
+_DECISIONS_DRIVER = f"""#include "law.c"
 #include "__fc_builtin.h"
 
 {_ANY_WORD}
@@ -113,13 +125,18 @@ int main(void)
         const uint32_t places = Frama_C_unsigned_int_interval(0u, 30u);
         const int32_t words[] = {{
             floored(one, places), low_half(one), negative_part(one), accepted(one, other), wrapped(one, places),
-            masked(one, (uint32_t)other), held(one, LAW_PSI_REF_MIN_RAD, LAW_PSI_REF_MAX_RAD), held_angle(one, other),
+            masked(one, (uint32_t)other), held(one, LAW_@ANGLE@_REF_MIN_RAD, LAW_@ANGLE@_REF_MAX_RAD), held_angle(one, other),
         }};
         const uint32_t within = is_within(one, places);
         const int32_t high = high_word(product(one, other));
     }}
 }}
 """
+
+
+def decisions_driver(loops: tuple[Loop, ...]) -> str:
+    """Each decision on any words; references are held within the first loop's range."""
+    return _DECISIONS_DRIVER.replace("@ANGLE@", Names(loops[0]).angle)
 
 
 def decision_view(law_c: str) -> str:

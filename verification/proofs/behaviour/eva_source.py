@@ -5,9 +5,11 @@ predicates are the float comparisons that they stand for; the proof of totality 
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from codegen.law_equations import LawInput
+from codegen.law_frame import LawInput
+from codegen.law_terms import Names
+from records.loops import Loop
 from verification.ranges import Range
 
 # A filter that does not move by its step moves to somewhere between where it is and where it is to go.
@@ -54,21 +56,12 @@ int main(void)
     law_state state;
     law_input input;
     law_output output;
-    law_reset(&state, {psi_rad}, {phi_rad});
+    law_reset(&state, {angles});
     while (1) {{
-        input.psi_ref_rad = {psi_ref_rad};
-        input.phi_ref_rad = {phi_ref_rad};
-        input.psi_rad = {psi_rad};
-        input.phi_rad = {phi_rad};
+{given}
         law_step(&state, &input, &output);
-        /*@ assert main_within: LAW_U_M_MIN_V <= output.u_M_V <= LAW_U_M_MAX_V; */
-        /*@ assert tail_within: LAW_U_T_MIN_V <= output.u_T_V <= LAW_U_T_MAX_V; */
-        const int32_t main_ticks = law_duty_main({voltage});
-        const int32_t tail_ticks = law_duty_tail({voltage});
-        /*@ assert main_duty: -LAW_PWM_TICKS <= main_ticks <= LAW_PWM_TICKS; */
-        /*@ assert tail_duty: -LAW_PWM_TICKS <= tail_ticks <= LAW_PWM_TICKS; */
-        law_angle_from_counts_psi(Frama_C_interval(INT32_MIN, INT32_MAX));
-        law_angle_from_counts_phi(Frama_C_interval(INT32_MIN, INT32_MAX));
+{outputs}
+{counts}
     }}
 }}
 """
@@ -106,15 +99,39 @@ def comparison_view(law_c: str) -> str:
     return law_c
 
 
-def driver_in_range(given: LawInput[Range]) -> str:
-    """Every input anywhere within its range, step after step."""
-    ranges = {name: _interval(getattr(given, name)) for name in LawInput.__dataclass_fields__}
-    return _DRIVER.format(**ranges, voltage="output.u_M_V + output.u_T_V")
+def driver_in_range(loops: tuple[Loop, ...], given: LawInput[Range]) -> str:
+    """Every input of a law of `loops` anywhere within its range, step after step."""
+    references, angles = (
+        [_interval(limits) for limits in ranges] for ranges in (given.references_rad, given.angles_rad)
+    )
+    return _driver(loops, references, angles, " + ".join(f"output.{loop.input}" for loop in loops))
 
 
-def driver_of_any_bits() -> str:
+def driver_of_any_bits(loops: tuple[Loop, ...]) -> str:
     """Every input any 32 bits, NaN and infinities included, step after step."""
-    return _DRIVER.format(**dict.fromkeys((*LawInput.__dataclass_fields__, "voltage"), "any_number()"))
+    anything = ["any_number()"] * len(loops)
+    return _driver(loops, anything, anything, "any_number()")
+
+
+def _driver(loops: tuple[Loop, ...], references: Sequence[str], angles: Sequence[str], voltage: str) -> str:
+    names = [*(loop.reference for loop in loops), *(loop.output for loop in loops)]
+    rows = zip(names, (*references, *angles), strict=True)
+    any_count = "Frama_C_interval(INT32_MIN, INT32_MAX)"
+    return _DRIVER.format(
+        angles=", ".join(angles),
+        given="\n".join(f"        input.{name} = {value};" for name, value in rows),
+        outputs="\n".join(asserted_outputs(loops, voltage)),
+        counts="\n".join(f"        law_angle_from_counts_{loop.symbol}({any_count});" for loop in loops),
+    )
+
+
+def asserted_outputs(loops: tuple[Loop, ...], voltage: str) -> Iterator[str]:
+    """Lines of C that assert the limits of each output, and of the duty of `voltage`."""
+    for loop in loops:
+        prefix, name = Names(loop).voltage, loop.motor
+        yield f"        /*@ assert {name}_within: LAW_{prefix}_MIN_V <= output.{loop.input} <= LAW_{prefix}_MAX_V; */"
+        yield f"        const int32_t {name}_ticks = law_duty_{name}({voltage});"
+        yield f"        /*@ assert {name}_duty: -LAW_PWM_TICKS <= {name}_ticks <= LAW_PWM_TICKS; */"
 
 
 def _interval(limits: Range) -> str:

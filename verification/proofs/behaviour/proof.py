@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from records.verification import ProofResult
-from verification.proofs.behaviour.eva_fixed import DECISIONS_DRIVER, DRIVER, decision_view
+from verification.proofs.behaviour.eva_fixed import decision_view, decisions_driver, driver
 from verification.proofs.behaviour.eva_source import (
     PREDICATES_DRIVER,
     comparison_view,
@@ -66,20 +66,22 @@ def analyses(subject: Subject) -> tuple[Analysis, ...]:
 
 
 def _fixed_analyses(subject: Subject) -> tuple[Analysis, ...]:
-    law_h, law_c = subject.generated["law.h"], subject.generated["law.c"]
+    law_h, law_c, loops = subject.generated["law.h"], subject.generated["law.c"], subject.table.loops
     return (
-        Analysis("state and inputs of any words", {"law.h": law_h, "law.c": decision_view(law_c), "driver.c": DRIVER}),
-        Analysis("decisions on any words", {"law.h": law_h, "law.c": law_c, "driver.c": DECISIONS_DRIVER}),
+        Analysis(
+            "state and inputs of any words", {"law.h": law_h, "law.c": decision_view(law_c), "driver.c": driver(loops)}
+        ),
+        Analysis("decisions on any words", {"law.h": law_h, "law.c": law_c, "driver.c": decisions_driver(loops)}),
     )
 
 
 def _float32_analyses(subject: Subject) -> tuple[Analysis, ...]:
-    law_h, law_c = subject.generated["law.h"], subject.generated["law.c"]
+    law_h, law_c, loops = subject.generated["law.h"], subject.generated["law.c"], subject.table.loops
     view = {"law.h": law_h, "law.c": comparison_view(law_c)}
     given = declared_ranges(subject.table, subject.motion).given
     return (
-        Analysis("inputs in range", {**view, "driver.c": driver_in_range(given)}),
-        Analysis("inputs of any bits", {**view, "driver.c": driver_of_any_bits()}, _SPECIAL_FLOATS),
+        Analysis("inputs in range", {**view, "driver.c": driver_in_range(loops, given)}),
+        Analysis("inputs of any bits", {**view, "driver.c": driver_of_any_bits(loops)}, _SPECIAL_FLOATS),
         Analysis(
             "predicates on any bits",
             {"law.h": law_h, "law.c": law_c, "driver.c": PREDICATES_DRIVER},

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.law_equations import STATE_WORDS
+from codegen.law_equations import state_words
 from records.table import ControllerTable
 from verification.equality import BatchStepper, differing
 from verification.fixed_stimuli import EDGES, SPECIAL_WORDS, fixed_stimuli
@@ -43,7 +43,7 @@ def stimuli_of(table: ControllerTable, arithmetic: str, steps: int) -> Sequence[
     """
     stimuli = _STIMULI[arithmetic](table, steps)
     alone = [lane for stimulus in stimuli if stimulus.name == EDGES for lane in _lane_by_lane(stimulus)]
-    return (*stimuli, *alone, _all_missing(int(_SPECIAL[arithmetic][0])))
+    return (*stimuli, *alone, _all_missing(table, int(_SPECIAL[arithmetic][0])))
 
 
 def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:
@@ -55,9 +55,11 @@ def _lane_by_lane(stimulus: Stimulus) -> Iterator[Stimulus]:
         )
 
 
-def _all_missing(word: int) -> Stimulus:
+def _all_missing(table: ControllerTable, word: int) -> Stimulus:
     """Three steps from a state and inputs of nothing but this word."""
-    filled = [np.full(shape, word, dtype=np.uint32) for shape in ((1, 2), (3, 1, 4), (1, STATE_WORDS))]
+    loops = len(table.loops)
+    shapes = ((1, loops), (3, 1, 2 * loops), (1, state_words(table)))
+    filled = [np.full(shape, word, dtype=np.uint32) for shape in shapes]
     return Stimulus("nothing known", *filled)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from codegen.law_frame import without_vanishing_powers
 from codegen.self_test import self_test
-from records.table import AxisLaw, ControllerTable, Polynomial
+from records.table import AxisLaw, ControllerTable, Polynomial, changed_axis
 from verification.equality import BatchStepper
 from verification.proofs.mutation.judge import Behaviour, stepped
 from verification.proofs.mutation.mutants_python import PythonMutant, mutated_twin
@@ -47,20 +47,18 @@ def is_twin_noticed(
 
 def twin_facts(twin: Any, table: ControllerTable) -> Facts:
     """What a twin says before it was reset, what it records for the self-test, its angles and its duties."""
-    fresh = twin.step(0.1, 0.1, 0.0, 0.0)
-    angles = tuple(
-        (float(twin.angle_from_counts_psi(psi)), float(twin.angle_from_counts_phi(phi))) for psi, phi in _ANGLES
-    )
-    duties = tuple((twin.duty_main(u_V), twin.duty_tail(u_V)) for u_V in _VOLTAGES)
+    loops = range(len(table.loops))
+    fresh = twin.step(*[0.1] * len(loops), *[0.0] * len(loops))
+    angles = tuple(float(twin.angle_from_counts(loop, count)) for pair in _ANGLES for count in pair for loop in loops)
+    duties = tuple(twin.duty(loop, u_V) for u_V in _VOLTAGES for loop in loops)
     return fresh, self_test(table, twin), angles, duties
 
 
 def table_mutants(table: ControllerTable) -> Iterator[tuple[str, ControllerTable]]:
     """A flipped ulp, a dropped sign and a swap with the next row, one at a time, for each coefficient; limits by an ulp."""
-    for name in ("elevation", "azimuth"):
-        axis: AxisLaw = getattr(table, name)
+    for loop, axis in zip(table.loops, table.axes, strict=True):
         for title, changed in _axis_mutants(axis):
-            yield f"{name}.{title}", replace(table, **{name: changed})  # type: ignore[arg-type]
+            yield f"{loop.axis}.{title}", changed_axis(table, loop.axis, **vars(changed))
 
 
 def is_table_noticed(twin: BatchStepper, truths: Sequence[Truth]) -> bool:

@@ -7,10 +7,12 @@ sound by itself, so that the smaller one holds.
 
 import math
 import re
+from collections.abc import Sequence
 
 from codegen.fixed.formats import law_formats
 from codegen.law_constants import law_constants
-from codegen.law_equations import LawInput, state_from_words, words_from_state
+from codegen.law_equations import state_from_words
+from codegen.law_frame import words_from_state
 from records.table import ControllerTable
 from records.verification import ProofResult, RoundingBound
 from verification import fixed_rounding
@@ -19,7 +21,7 @@ from verification.proofs.rounding.gappa_words import GappaWords
 from verification.proofs.subject import Subject
 from verification.proofs.tools import run_tool
 from verification.ranges import Motion, declared_ranges
-from verification.rounding import restricted_voltages, rounding_bound, stated_motion
+from verification.rounding import given_within, restricted_voltages, rounding_bound, rounding_record, stated_motion
 
 NAME = "rounding bound"
 METHOD = "Gappa script generated from the table, {motion}"
@@ -34,16 +36,15 @@ def prove(subject: Subject) -> ProofResult:
     except ValueError as error:
         return ProofResult(NAME, "failed", str(error))
     balls = by_balls(subject.table, subject.motion)
-    figures = {"u_M_V": gappa.u_M, "u_T_V": gappa.u_T, "balls_u_M_V": balls.u_M, "balls_u_T_V": balls.u_T}
-    told = f"u_M within {1e3 * gappa.u_M:.2f} mV, u_T within {1e3 * gappa.u_T:.2f} mV by Gappa"
-    against = (
-        f"{1e3 * balls.u_M:.2f} and {1e3 * balls.u_T:.2f} mV by ball arithmetic; tighter: {_tighter(gappa, balls)}"
-    )
-    return ProofResult(NAME, "proved", f"{told}, {against}", figures=figures)
+    figures = {f"{name}_V": bound for name, bound in gappa.volts.items()}
+    figures |= {f"balls_{name}_V": bound for name, bound in balls.volts.items()}
+    against = " and ".join(f"{1e3 * bound:.2f}" for bound in balls.volts.values())
+    told = f"{gappa.told} by Gappa, {against} mV by ball arithmetic; tighter: {_tighter(gappa, balls)}"
+    return ProofResult(NAME, "proved", told, figures=figures)
 
 
 def _tighter(gappa: RoundingBound, balls: RoundingBound) -> str:
-    better = {gappa.u_M <= balls.u_M, gappa.u_T <= balls.u_T}
+    better = {bound <= balls.volts[name] for name, bound in gappa.volts.items()}
     return "one each" if len(better) == 2 else "Gappa" if True in better else "ball arithmetic"
 
 
@@ -51,37 +52,38 @@ def gappa_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
     """The bound of the float32 law per output [V]; raises ValueError where Gappa finds none or a voltage may be implausible."""
     arithmetic = GappaArithmetic(ask_gappa)
     ranges = declared_ranges(table, motion)
-    output = restricted_voltages(
+    outputs = restricted_voltages(
         law_constants(table, arithmetic.constant),
         arithmetic,
-        state_from_words([arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
-        LawInput(*(arithmetic.within(*getattr(ranges.given, name)) for name in LawInput.__dataclass_fields__)),
+        state_from_words(table, [arithmetic.within(*limits) for limits in words_from_state(ranges.state)]),
+        given_within(ranges, arithmetic),
         ranges,
         arithmetic.restricted,
     )
-    return _limited_bound((output.u_M_V, output.u_T_V), 1.0, motion)
+    return _limited_bound(table, outputs, 1.0, motion)
 
 
 def gappa_fixed_bound(table: ControllerTable, motion: Motion) -> RoundingBound:
     """The bound of the fixed-point law per output [V]; raises ValueError where Gappa finds none or words may not hold a number."""
     words = GappaWords(ask_gappa)
     outputs = fixed_rounding.restricted_voltages(table, words, declared_ranges(table, motion))
-    return _limited_bound(outputs, 2.0 ** -law_formats(table).voltage_places, motion)
+    return _limited_bound(table, outputs, 2.0 ** -law_formats(table).voltage_places, motion)
 
 
-def _limited_bound(outputs: tuple[Pair, Pair], step_V: float, motion: Motion) -> RoundingBound:
-    u_M, u_T = outputs
-    if u_M.error is None or u_T.error is None:
+def _limited_bound(table: ControllerTable, outputs: Sequence[Pair], step_V: float, motion: Motion) -> RoundingBound:
+    errors = [output.error for output in outputs if output.error is not None]
+    if len(errors) < len(outputs):
         raise ValueError("an output left the law without a limit")
-    return RoundingBound(u_M.error * step_V, u_T.error * step_V, METHOD.format(motion=stated_motion(motion)))
+    method = METHOD.format(motion=stated_motion(table, motion))
+    return rounding_record(table, [error * step_V for error in errors], method)
 
 
 def tighter_bound(bound: RoundingBound, result: ProofResult) -> RoundingBound:
     """`bound`, or per output what Gappa proved where that is smaller; the method names both then."""
-    u_M, u_T = (result.figures.get(name, math.inf) for name in ("u_M_V", "u_T_V"))
-    if result.outcome != "proved" or (u_M >= bound.u_M and u_T >= bound.u_T):
+    smaller = {name: min(known, result.figures.get(f"{name}_V", math.inf)) for name, known in bound.volts.items()}
+    if result.outcome != "proved" or smaller == bound.volts:
         return bound
-    return RoundingBound(min(u_M, bound.u_M), min(u_T, bound.u_T), f"the smaller of: Gappa script; {bound.method}")
+    return RoundingBound(smaller, f"the smaller of: Gappa script; {bound.method}")
 
 
 def ask_gappa(script: str) -> float:

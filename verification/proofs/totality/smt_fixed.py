@@ -115,12 +115,11 @@ def polynomial_ranges(table: ControllerTable, law_c: str) -> Iterator[Question]:
     words: Any = SmtWords()
     psi = powers_of(law, words, SmtWord("a") * 2**law.schedule_doublings)
     reference = powers_of(law, words, SmtWord("a") * 2**law.reference_doublings)
-    numbers = fixed_constants(table, word_number)
+    schedule = fixed_constants(table, word_number).schedule
+    scheduled = (0, 0) if schedule is None else (schedule.min_rad, schedule.max_rad)
     filtered = (-(2**FILTERED_BITS), 2**FILTERED_BITS - 1)
-    for axis in (law.elevation, law.azimuth):
-        rows = [
-            (term.coefficient, term.polynomial, psi, (numbers.psi_min_rad, numbers.psi_max_rad)) for term in axis.terms
-        ]
+    for axis in law.axes:
+        rows = [(term.coefficient, term.polynomial, psi, scheduled) for term in axis.terms]
         for name, form, powers, angles in (*rows, ("u_ff_V", axis.feedforward_V, reference, filtered)):
             low, high = stated[f"{axis.name}_{name}"]
             value = polynomial(form, words, powers, name).term
@@ -214,7 +213,7 @@ def _moves(law: FixedLaw[int]) -> Iterator[Question]:
         "towards ends between where it begins and its target",
         _refute(f"(between {after} (least a b) (greatest a b))", filtered, target, f"(ite (bvsle a b) {forth} {back})"),
     )
-    for axis in (law.elevation, law.azimuth):
+    for axis in law.axes:
         places = axis.residue_places
         fits = f"(is_within (high_word sum) {_word(places - 2)})"
         shifted = f"(bvor (bvshl (high_word sum) {_word(32 - places)}) (bvlshr (low_word sum) {_word(places)}))"
@@ -228,7 +227,7 @@ def _moves(law: FixedLaw[int]) -> Iterator[Question]:
 def _outputs(table: ControllerTable, law: FixedLaw[int]) -> Iterator[Question]:
     """Voltages, duties and angles keep to their limits."""
     formats = law_formats(table)
-    for axis in (law.elevation, law.azimuth):
+    for axis in law.axes:
         low, high = _word(axis.u_min_V), _word(axis.u_max_V)
         claim = f"the {axis.name} voltage is within its limits whatever the word before them"
         fit = f"(and (fits a {low}) (fits {high} (greatest a {low})))"
@@ -239,8 +238,8 @@ def _outputs(table: ControllerTable, law: FixedLaw[int]) -> Iterator[Question]:
     magnitude = f"(let ((v {applied})) (ite (bvslt v #x00000000) (bvneg v) v))"
     ticks = f"(bvlshr (bvadd (bvmul {magnitude} {_word(factor)}) {_word(2 ** (shift - 1))}) {_word(shift)})"
     yield Question("duties are within full scale whatever the words", _refute(f"(bvule {ticks} {_word(PWM_TICKS)})"))
-    for name, row in (("elevation", table.elevation), ("azimuth", table.azimuth)):
-        yield _counts(name, count_format(formats, row), law)
+    for loop, row in zip(table.loops, table.axes, strict=True):
+        yield _counts(loop.axis, count_format(formats, row), law)
 
 
 def _counts(name: str, form: Any, law: FixedLaw[int]) -> Question:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.law_constants import AxisConstants, law_constants
-from codegen.law_equations import polynomial
+from codegen.law_frame import polynomial, schedule_ranges
 from codegen.numbers import float32_bits
 from codegen.twin import FULL_SCALE_V, PWM_TICKS
 from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, ControllerTable
@@ -60,8 +60,8 @@ def questions(table: ControllerTable, law_c: str) -> Iterator[Question]:
     """All questions about the float32 law of `table` whose text is `law_c`."""
     yield from _predicates()
     law = law_constants(table, float)
-    for name, axis in (("elevation", law.elevation), ("azimuth", law.azimuth)):
-        yield _saturation(name, axis)
+    for loop, axis in zip(table.loops, law.axes, strict=True):
+        yield _saturation(loop.axis, axis)
     yield _duty()
     yield from coefficient_ranges(table, law_c)
 
@@ -69,8 +69,7 @@ def questions(table: ControllerTable, law_c: str) -> Iterator[Question]:
 def coefficient_ranges(table: ControllerTable, law_c: str) -> Iterator[Question]:
     """Each polynomial stays within the range in its comment, to the digits shown, for every float32 of its argument's range."""
     stated = {name: (float(low), float(high)) for name, low, high in _COMMENTED_RANGE.findall(law_c)}
-    psi_rad = (table.psi_min_rad, table.psi_max_rad)
-    reference_rad = (table.elevation.reference_min_rad, table.elevation.reference_max_rad)
+    psi_rad, reference_rad = schedule_ranges(table)
     for name, coefficients in _polynomials(table):
         low, high = stated[name]
         over_rad = reference_rad if name.endswith("u_ff_V") else psi_rad
@@ -135,7 +134,8 @@ def _refute(claim: str, *given: str) -> str:
 def _polynomials(table: ControllerTable) -> Iterator[tuple[str, tuple[SmtNumber, ...]]]:
     """The arrays of law.c by name, as their float32 terms."""
     law = law_constants(table, lambda value: SmtNumber(_term(value)))
-    for axis, numbers in (("elevation", law.elevation), ("azimuth", law.azimuth)):
+    for loop, numbers in zip(table.loops, law.axes, strict=True):
+        axis = loop.axis
         groups = (("q", numbers.q_V_rad, "_V_rad"), ("p", numbers.p, ""), ("a", numbers.a, ""))
         for letter, polynomials, suffix in groups:
             for index, coefficients in enumerate(polynomials):

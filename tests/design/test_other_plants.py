@@ -1,0 +1,120 @@
+"""Designs for plants that are no helicopter: one to three states an axis, integrating, unstable, coupled, with and without a schedule."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from design.report import DesignReport
+from design.settings import read_settings
+from design.table import design
+from records.errors import BadInput
+from records.plant import load_plant
+from records.table import ControllerTable
+from sim.bind import BoundPlant, bind
+from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
+
+
+@cache
+def plant(name: str) -> BoundPlant:
+    return bind(load_plant(Path("plants") / f"{name}.toml"))
+
+
+def designed(bound: BoundPlant, wishes: dict[str, Any]) -> tuple[ControllerTable, DesignReport]:
+    wished = bind(replace(bound.plant, design=wishes))
+    return design(wished, read_settings(wished))
+
+
+def test_an_arm_with_a_propeller_is_scheduled_by_its_own_angle() -> None:
+    table, report = designed(plant("aeroshield"), AEROSHIELD)
+    (arm,) = report.axes
+    assert (table.schedule.axis, table.order, len(table.loops)) == ("arm", 2, 1)
+    assert arm.after_rounding.worst_rad_s == pytest.approx(-4.0, abs=0.1)
+    assert table.axes[0].p[0] == (0.0, 0.0, 0.0)  # integral action, exactly
+    assert table.axes[0].feedforward_V[1] > 0.0
+
+
+def test_two_rotors_that_both_push_both_axes_keep_their_coupled_margin() -> None:
+    """Truth: RGA of the static gains = 1/(1 + Ktt Kmp / (Kmt Ktp)) = 0.576, the same at each angle where both speeds are equal."""
+    value = {name: entry.values[0] for name, entry in plant("quanser_aero").plant.parameters.items()}
+    relative_gain = 1.0 / (1.0 + value["Ktt"] * value["Kmp"] / (value["Kmt"] * value["Ktp"]))
+    table, report = designed(plant("quanser_aero"), QUANSER)
+    assert [loop.axis for loop in table.loops] == ["pitch", "yaw"]
+    assert [found.relative_gain[0] for found in report.coupling] == pytest.approx([relative_gain] * 9, rel=1e-6)
+    assert report.coupled.stable
+
+
+def test_the_other_pairing_of_these_rotors_is_refused_by_its_relative_gain() -> None:
+    exchanged = {
+        **QUANSER,
+        "pitch": {**QUANSER["pitch"], "input": "u_T_V"},
+        "yaw": {**QUANSER["yaw"], "input": "u_M_V"},
+    }
+    with pytest.raises(BadInput, match=r"relative gain from u_T_V to theta_rad: got 0\.42.*pair the loops otherwise"):
+        designed(plant("quanser_aero"), exchanged)
+
+
+def test_a_helicopter_whose_rotors_turn_both_axes_is_refused_by_its_relative_gain() -> None:
+    """Truth: the coupled loop has a pole at +1.8 rad/s there, with each axis' own margins in order; two rotor lags make four states."""
+    poles = {
+        "elevation": {"poles_rad_s": [-3, -4.5, -8, -10, -12, -15, -16, -20]},
+        "azimuth": {"poles_rad_s": [-2.5, -3, -4, -4.5, -5, -7, -20, -24]},
+    }
+    with pytest.raises(
+        BadInput, match=r"elevation at psi = -35\.0 deg: relative gain from u_M_V to psi_rad: got -1\.14"
+    ):
+        designed(plant("ce150_velagic"), {**poles, "coefficient_degree": 4})
+
+
+def test_loops_whose_coupling_leaves_no_margin_are_refused_in_words() -> None:
+    tight = {**QUANSER, "margins": {"max_sensitivity": 2.0}}
+    with pytest.raises(BadInput, match=r"coupled margin.*with the other loops closed"):
+        designed(plant("quanser_aero"), tight)
+
+
+def test_a_motor_of_three_states_integrates_without_a_schedule(tmp_path: Path) -> None:
+    table, report = designed(written("motor", tmp_path), MOTOR)
+    assert (table.schedule, table.order, table.axes[0].feedforward_V) == (None, 3, (0.0,))
+    assert report.axes[0].after_rounding.worst_rad_s == pytest.approx(-8.0, abs=0.5)
+
+
+def test_an_arm_that_stands_on_its_hinge_is_held(tmp_path: Path) -> None:
+    """Truth: the open loop has a pole to the right of 0, the closed one none."""
+    bound = written("inverted_arm", tmp_path)
+    table, report = designed(bound, INVERTED_ARM)
+    assert report.axes[0].after_rounding.worst_rad_s < -2.0
+    assert report.axes[0].worst_margins.gain_down > 0.0  # an unstable plant falls with too little gain
+    assert table.order == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"arm": {"poles_rad_s": [-4, -5, -6, -7, -8, -9]}},
+            r"arm at theta = 5\.7 deg: poles: got 6 poles of an axis of 2",
+        ),
+        ({"arm": {"poles_rad_s": [-4, -5, -6, -7], "output": "psi_rad"}}, r"output 'psi_rad'.*theta_rad"),
+        ({"arm": {}}, r"'poles_rad_s'"),
+        ({"schedule": "psi_rad"}, r"schedule: got 'psi_rad'.*theta_rad"),
+        ({"theta_max_rad": 1.5}, r"input u_V.*V needed to rest there"),
+    ],
+)
+def test_what_cannot_be_designed_is_one_line_that_names_it(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message) as caught:
+        designed(plant("aeroshield"), {**AEROSHIELD, **change})
+    assert "\n" not in str(caught.value)
+
+
+def test_degrees_without_a_schedule_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="nothing is scheduled"):
+        designed(written("motor", tmp_path), {**MOTOR, "coefficient_degree": 2})
+
+
+def test_gains_that_vanish_at_rest_are_refused(tmp_path: Path) -> None:
+    """Quanser's rotors push by the square of their voltage: level, at 0 V, neither moves anything."""
+    level = {**QUANSER, "theta_min_rad": -0.2}
+    with pytest.raises(BadInput):
+        designed(plant("quanser_aero"), level)

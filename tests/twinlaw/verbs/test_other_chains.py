@@ -1,0 +1,57 @@
+"""The forward chain on plants that are no helicopter, as far as this computer: design, generate, verify, simulate."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from records.log import load_log
+from sim.columns import log_columns
+from tests.other_plants import WISHES, plant_file
+from tests.soak import sampled
+from twinlaw.command import main
+from twinlaw.workflows.reading import load_bound
+
+EACH = [(name, arithmetic) for name in WISHES for arithmetic in ("float32", "fixed")]
+
+
+@pytest.mark.parametrize(
+    ("name", "arithmetic"), sampled(EACH, keep=[("inverted_arm", "fixed"), ("quanser_aero", "float32")])
+)
+def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
+    name: str, arithmetic: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Truth: no bit differs; each angle rests within 0.1 deg of its reference, and overshoots by 5 % at most (records.quality)."""
+    plant, table = str(plant_file(name, tmp_path)), str(tmp_path / "controller.json")
+    chosen = ["--arithmetic", arithmetic, "--out", str(tmp_path), "--json"]
+    assert main(["design", "--plant", plant, *chosen]) == 0
+    assert main(["generate", "--table", table, *chosen]) == 0
+    assert main(["verify", "--plant", plant, "--table", table, "--steps", "2000", *chosen]) == 0
+    assert main(["simulate", "--plant", plant, "--table", table, *chosen]) == 0
+    found: dict[str, Any] = json.loads((tmp_path / "verification.json").read_text())
+    assert found["passed"]
+    assert found["target"] == []
+    assert [row["mismatches"] for row in found["equality"]] == [0, 0]
+    assert {row["axis"] for row in found["poles"]} == {
+        key for key, entry in WISHES[name].items() if isinstance(entry, dict)
+    }
+    assert sorted(path.name for path in (tmp_path / "generated").iterdir()) == ["law.c", "law.h", "law_self_test.c"]
+    flown = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert flown["left"] == []
+    assert flown["quality"]["colour"] == "green"
+    log = load_log(tmp_path / "simulation.csv", log_columns(load_bound(Path(plant)).model))
+    assert np.isfinite(log.y).all()
+    assert log.table_digest == found["table_digest"]
+
+
+def test_a_table_of_other_loops_has_no_image_and_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant, table = str(plant_file("aeroshield", tmp_path)), str(tmp_path / "controller.json")
+    assert main(["design", "--plant", plant, "--out", str(tmp_path)]) == 0
+    capsys.readouterr()
+    for asked in (["build"], ["generate", "--as", "arduino"]):
+        assert main([*asked, "--table", table, "--out", str(tmp_path / "image")]) == 2
+        assert "are of the helicopter's two loops" in capsys.readouterr().err
+    assert main(["simulate", "--plant", "plants/emps.toml", "--table", table, "--out", str(tmp_path)]) == 2
+    assert "a plant without the output theta_rad" in capsys.readouterr().err
