@@ -63,16 +63,19 @@ def features_of(weighed: Weighed, favour: float | None) -> Features:
 
 
 def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -> tuple[Weighed, tuple[Decision, ...]]:
-    """The first name as probable as such names came true, all else in its old proportions; the records are the law's features."""
+    """The first name as probable as such names came true, all else in its old proportions, but no other name above the first: what is over
+    counts as unknown. The records are the law's features."""
     if not weighed.fitted or weighed.probabilities[0] >= 1.0:
         return weighed, ()
     told, of = features_of(weighed, favour), named(weighed)
     first = (learned() if law is None else law).probability(told)
     factor = (1.0 - first) / (1.0 - weighed.probabilities[0])
+    others = [factor * value for value in weighed.probabilities[1:]]
+    capped = [min(value, first) for value in others]
     found = replace(
         weighed,
-        probabilities=(first, *(factor * value for value in weighed.probabilities[1:])),
-        unknown=factor * weighed.unknown,
+        probabilities=(first, *capped),
+        unknown=factor * weighed.unknown + sum(others) - sum(capped),
         retune=factor * weighed.retune,
     )
     values = dict(zip(FEATURES, told.vector, strict=True))

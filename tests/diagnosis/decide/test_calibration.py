@@ -27,6 +27,13 @@ def test_the_first_gets_the_laws_probability_and_the_rest_share_what_is_left() -
     assert (told["calibration_favour"], told["calibration_silent"]) == (0.25, 0.0)
 
 
+def test_no_other_name_gets_more_than_the_first() -> None:
+    # Truth: two names alike, of which the law trusts the first with a quarter: the second with no more, half is unknown.
+    found, _ = calibrated(weighed(0.53, 0.47, 0.0), None, Law(-np.log(3.0), (0.0, 0.0, 0.0, 0.0)))
+    assert found.probabilities == pytest.approx((0.25, 0.25))
+    assert found.unknown == pytest.approx(0.5)
+
+
 def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
     assert features_of(weighed(1.0 - 1e-9, 0.0, 1e-9), None).sure == decisions.FARTHEST_LOGIT
     assert features_of(weighed(1e-9, 0.0, 1.0 - 1e-9), None).sure == -decisions.FARTHEST_LOGIT
