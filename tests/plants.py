@@ -39,15 +39,13 @@ def lively_table() -> ControllerTable:
     """A faster law of the CE150 without a roll-off: every encoder step shakes its inputs, so that a flight tells more of the plant."""
     plant = bound("ce150")
     settings = read_settings(plant)
-    fast = {
-        axis: replace(
-            settings.axis(axis),
+    lively = replace(settings, coefficient_degree=3, recursion_degree=3)
+    for axis, (poles, prefilter_s) in LIVELY.items():
+        lively = lively.with_axis(
+            axis,
             poles_rad_s=tuple(complex(pole) for pole in poles),
             roll_off_pole_rad_s=0.0,
             coefficient_degree=None,
             prefilter_time_constant_s=prefilter_s,
         )
-        for axis, (poles, prefilter_s) in LIVELY.items()
-    }
-    lively = replace(settings, coefficient_degree=3, recursion_degree=3, **fast)
     return make_table(plant, lively, design_points(plant, lively))

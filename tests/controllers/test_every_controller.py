@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from controllers.table import CONTROLLERS
 from rig.emulator.board import EmulatedBoard
@@ -97,8 +98,12 @@ def test_a_flight_with_a_broken_state_comes_back_to_its_reference(name: str) -> 
 class _BrokenLaw(HostLaw):
     """A compiled law that starts with whatever stands in `wild`."""
 
+    wild: NDArray[np.uint32] | None = None
+
     def reset(self, *angles_rad: float) -> None:
-        self._state = self.wild.copy()
+        super().reset(*angles_rad)
+        if self.wild is not None:
+            self._state[:] = self.wild
 
 
 def test_the_firmware_knows_no_controller() -> None:
