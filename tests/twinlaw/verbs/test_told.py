@@ -33,7 +33,7 @@ def test_design_tells_poles_as_designed_fitted_and_rounded_and_of_both_loops_cou
         "designed",
         "after fit",
         "as float32",
-        "at Psi",
+        "at elevation",
         "Ms",
         "phase",
         "gain up / down",

@@ -13,7 +13,7 @@ _DESIGN_HEADING: Row = (
     "designed",
     "after fit",
     "as {arithmetic}",
-    "at Psi",
+    "at {angle}",
     "Ms",
     "phase",
     "gain up / down",
@@ -24,7 +24,7 @@ _DESIGN_HEADING: Row = (
 
 def design_heading(report: DesignReport) -> Row:
     """The heading of `design_rows`."""
-    return tuple(word.format(arithmetic=report.arithmetic) for word in _DESIGN_HEADING)
+    return tuple(word.format(arithmetic=report.arithmetic, angle=report.angle) for word in _DESIGN_HEADING)
 
 
 def design_rows(report: DesignReport) -> list[Row]:
