@@ -227,8 +227,7 @@ def _searched(seen: Seen) -> Search | None:
 
 
 def _alone(seen: Seen) -> Alone:
-    candidates = seen.case.library.candidates
-    return alone(seen.case, seen.retuned, candidates, seen.linearisation, seen.score_tests, seen.lossy)
+    return alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy)
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:

@@ -20,7 +20,7 @@ from records.reasons import Decision
 
 Array = NDArray[np.float64]
 ASKED = 3  # of the most probable explanations
-LEAST_SHARE = 1e-6  # where the unknown is all, its rivals count alike
+LEAST_WEIGHT = 1e-6  # where the unknown is all, its rivals count alike
 
 
 def consequence(
@@ -32,7 +32,7 @@ def consequence(
     if not asked:
         return ()
     own, *others = thread_map(lambda entry: _errors(case, entry), [plain, *(entry for _, entry in asked)])
-    weights = [max(share, LEAST_SHARE) for share, _ in asked]
+    weights = [max(share, LEAST_WEIGHT) for share, _ in asked]
     gain = float(np.average([score(other, own).gain for other in others], weights=weights))
     of = " + ".join(asked[0][1].effects) or "parameters"
     outcome = "matters" if gain >= decisions.MATTERS else "no gap: too small to matter"

@@ -60,12 +60,11 @@ class Search:
 def alone(
     case: Case,
     first: FittedHypothesis,
-    names: Sequence[str],
     linearisation: Linearisation,
     score_tests: Sequence[ScoreTest],
     lossy: Fit | None = None,
 ) -> Alone:
-    """Fit the nominal plant with single effects of `names`; `first` is that plant without any, `score_tests` those from there, `lossy` its
+    """Fit the nominal plant with single effects; `first` is that plant without any, `score_tests` those from there, `lossy` its
     fit with lost frames."""
     nominal = first.fit
     worth = _worth(score_tests)
