@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from design.direct_form import DeltaForm
 from design.discretise import SampledPlant
 from design.loop import Poles, controller_polynomials, to_rad_s
+from design.margins import LOWEST_RAD_S
 
 Array = NDArray[np.float64]
 
-POINTS = 400
-LOWEST_RAD_S = 1e-2
+POINTS = 400  # fewer than for the margins of one loop: here only the size of a peak is told, not where it crosses
 
 
 def controller_states(controller: DeltaForm) -> tuple[Array, Array, Array, float]:

@@ -11,7 +11,7 @@ from design.loop import OpenLoop
 Array = NDArray[np.float64]
 
 POINTS = 1500
-LOWEST_RAD_S = 1e-2
+LOWEST_RAD_S = 1e-2  # where every loop here still follows its reference: nothing is decided below
 
 
 @dataclass(frozen=True)
