@@ -3,14 +3,17 @@
 #include <math.h>
 #include <stdint.h>
 
-/* First-order lag. */
-void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double *mean)
+/* Two lags in a row of tau_s in all, `second` of it the latter's, below 1/2. What is away from the command fades with either. */
+void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double second, double *mean)
 {
-    double x = wanted[0];
+    const double first_s = tau_s * (1.0 - second), second_s = fmax(tau_s * second, 1e-300), ratio = first_s / (first_s - second_s);
+    double x = wanted[0], behind = wanted[0];
     for (int64_t k = 0; k < steps; k++) {
-        const double away = x - wanted[k], stays = exp(-h_s[k] / tau_s);
-        mean[k] = wanted[k] + away * tau_s / h_s[k] * (1.0 - stays);
+        const double away = x - wanted[k], first = ratio * away, further = behind - wanted[k] - first;
+        const double stays = exp(-h_s[k] / first_s), kept = exp(-h_s[k] / second_s);
+        mean[k] = wanted[k] + (first * first_s * (1.0 - stays) + further * second_s * (1.0 - kept)) / h_s[k];
         x = wanted[k] + away * stays;
+        behind = wanted[k] + first * stays + further * kept;
     }
 }
 

@@ -26,7 +26,7 @@ AVERAGED = (
     Lag,
 )  # stages whose mean over each step is known; all others come with their own instants
 DECLARATIONS = """
-void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double *mean);
+void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double second, double *mean);
 void slew_means(int64_t steps, const double *h_s, const double *wanted, double rate, double *mean);
 void lossy_means(int64_t steps, const double *lost, const double *wanted, double *mean);
 """
@@ -46,7 +46,7 @@ def commanded(library: EffectLibrary, filter_input: FilterInput, effects: Mappin
         if isinstance(stage, SlewLimit):
             filter_input = _behind(filter_input, stage.column, "slew_means", stage.rate)
         elif isinstance(stage, Lag) and stage.tau_s > SHORTEST_S:
-            filter_input = _behind(filter_input, stage.column, "lag_means", stage.tau_s)
+            filter_input = _behind(filter_input, stage.column, "lag_means", stage.tau_s, stage.second)
     return filter_input
 
 
@@ -85,14 +85,14 @@ def lost_with(ratios: Array, share: float) -> Array:
     return np.asarray(odds / (1.0 - share + odds))
 
 
-def _behind(filter_input: FilterInput, column: int, stage: str, value: float) -> FilterInput:
+def _behind(filter_input: FilterInput, column: int, stage: str, *values: float) -> FilterInput:
     """The filter input with one input sent through a stage of c/inputs.c."""
     _, lib = _library()
     u, h = filter_input.u.copy(), np.append(np.diff(filter_input.t_s), filter_input.t_s[-1] - filter_input.t_s[-2])
     u[:, column] = _means(
         h,
         filter_input.u[:, column],
-        lambda steps, h_s, wanted, mean: getattr(lib, stage)(steps, h_s, wanted, value, mean),
+        lambda steps, h_s, wanted, mean: getattr(lib, stage)(steps, h_s, wanted, *values, mean),
     )
     return replace(filter_input, u=u)
 

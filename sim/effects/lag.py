@@ -1,6 +1,10 @@
-"""First-order lag of a driver, of a rotor that the model takes as immediate, or of a sensor.
+"""Lag of a driver, of a rotor that the model takes as immediate, or of a sensor.
 
 (1)  tau y' = x - y
+
+An input's may be two in a row, as the current of a winding and the speed behind it are, which share the mean time:
+
+(2)  (1 - b) tau w' = u - w,   b tau v' = w - v
 """
 
 from collections.abc import Iterator
@@ -19,7 +23,7 @@ LATE = "slow motion shows only the mean time by which both are late"
 
 
 def effects(model: Model) -> Iterator[Effect]:
-    """Eq (1) on each input, on each rotor without a lag of its own, and on each sensor."""
+    """Eq (2) on each input and on each rotor without a lag of its own, eq (1) on each sensor."""
     for place, entry in model.places.inputs.items():
         column = model.inputs.index(entry.variable)
         rotor_place = model.places.driven_by(entry.variable)
@@ -75,15 +79,17 @@ def _lag(
     unlikely: Unlikely | None = None,
 ) -> Effect:
     tau = EffectParameter("tau", "s", 0.0, 2.0, reference, 0.0, (0.02, 0.1, 0.3), role=Role.LATENESS, unlikely=unlikely)
+    # Two equal lags have one answer more than those of a quotient by their difference.
+    second = EffectParameter("b", "1", 0.0, 0.45, 0.0, refining=True)
     return Effect(
         name=name,
         depends=depends,
-        parameters=(tau,),
-        equation="tau v' = u - v, v instead of u",
+        parameters=(tau, second),
+        equation="(1 - b) tau w' = u - w, b tau v' = w - v, v instead of u",
         story=story,
         source=source,
         prior=COMMON,
-        on_input=lambda values: Lag(column, values["tau"]),
+        on_input=lambda values: Lag(column, values["tau"], values.get("b", 0.0)),
         twins=twins,
     )
 

@@ -15,6 +15,7 @@ from sim.paths.path import SAME_INSTANT_S, Array, Held, in_steps, played, unifor
 PIECE_S = 2.5e-3
 MOST_PIECES = 16
 SHORTEST_S = 1e-7  # a shorter delay or lag changes nothing
+NO_TIME_S = 1e-300  # of a lag that is none: a quotient by it is still a number
 
 
 @dataclass(frozen=True)
@@ -134,30 +135,38 @@ class SlewLimit:
 
 @dataclass(frozen=True)
 class Lag:
-    """The input `column` passes 1 / (tau s + 1)."""
+    """The input `column` passes 1 / ((tau - tau_2) s + 1) and then 1 / (tau_2 s + 1), of which `second` = tau_2 / tau is below 1/2."""
 
     column: int
     tau_s: float
+    second: float = 0.0
     order: ClassVar[int] = 6
 
     def __call__(self, signal: Held, memory: Any) -> tuple[Held, Any]:
-        """See InputStage; remembers the lag's state."""
+        """See InputStage; remembers the states of both lags."""
         wanted, long_s = signal.values[:, self.column], np.diff(signal.edges_s)
         if self.tau_s < SHORTEST_S:
-            return signal, wanted[-1]
-        x = wanted[0] if memory is None else memory
-        at = np.empty(len(wanted))
-        for k, (goal, stays) in enumerate(zip(wanted.tolist(), np.exp(-long_s / self.tau_s).tolist(), strict=True)):
-            at[k] = x
-            x = goal + (x - goal) * stays
-        apart = at - wanted
-        tau_s = self.tau_s
+            return signal, (wanted[-1], wanted[-1])
+        taus_s = np.array([self.tau_s * (1.0 - self.second), max(self.tau_s * self.second, NO_TIME_S)])
+        ratio = taus_s[0] / (taus_s[0] - taus_s[1])
+        x, behind = (wanted[0], wanted[0]) if memory is None else memory
+        apart = np.empty(
+            (len(wanted), 2)
+        )  # of what arrives from what is wanted, at each step's begin: what fades with either lag
+        stays = np.exp(-long_s[:, np.newaxis] / taus_s)
+        for k, (goal, (first, second)) in enumerate(zip(wanted.tolist(), stays.tolist(), strict=True)):
+            with_first = ratio * (x - goal)
+            apart[k] = with_first, behind - goal - with_first
+            x = goal + (x - goal) * first
+            behind = goal + with_first * first + apart[k, 1] * second
 
         def mean(interval: Array, begin_s: Array, end_s: Array) -> Array:
-            share = np.exp(-begin_s / tau_s) * -np.expm1(-(end_s - begin_s) / tau_s) * tau_s / (end_s - begin_s)
-            return np.asarray(wanted[interval] + apart[interval] * share)
+            from_s, width_s = begin_s[:, np.newaxis], (end_s - begin_s)[:, np.newaxis]
+            shares = np.exp(-from_s / taus_s) * -np.expm1(-width_s / taus_s) * taus_s / width_s
+            return np.asarray(wanted[interval] + np.sum(apart[interval] * shares, axis=1))
 
-        return _staircase(signal, self.column, np.where(np.abs(apart) > 1e-9, long_s, 0.0), mean), x
+        moves = np.abs(apart).sum(axis=1) > 1e-9
+        return _staircase(signal, self.column, np.where(moves, long_s, 0.0), mean), (x, behind)
 
 
 def _merged(edges: Array, more: Array) -> Array:

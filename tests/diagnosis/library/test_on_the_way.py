@@ -27,6 +27,18 @@ def test_a_lag_of_an_input_is_the_mean_of_its_exponential_over_each_step() -> No
     np.testing.assert_array_equal(found[since < -1e-9], 0.0)
 
 
+def test_two_lags_of_an_input_are_the_mean_of_both_exponentials() -> None:
+    # Truth: behind lags a and c in a row a step of 1 V has arrived by 1 - (a exp(-t / a) - c exp(-t / c)) / (a - c).
+    log = arm_log(seconds=2.0)
+    given = filter_input_of(replace(log, u=np.where(log.t_s < 0.5, 0.0, 1.0)[:, None]), arm().plant, ["theta_rad"])
+    a, c, h = 0.07, 0.03, 0.01
+    found = commanded(effect_library(arm()), given, {"input.lag": {"tau": 0.1, "b": 0.3}}).u[:, 0]
+    since = given.t_s[:-1] - 0.5
+    faded = [tau**2 / h * (np.exp(-since / tau) - np.exp(-(since + h) / tau)) for tau in (a, c)]
+    mean = 1.0 - (faded[0] - faded[1]) / (a - c)
+    np.testing.assert_allclose(found[:-1][since > -1e-9], mean[since > -1e-9], atol=1e-9)
+
+
 def test_what_readings_say_of_a_lost_frame_changes_its_odds() -> None:
     # Truth: Bayes. Odds of 1 : 4 before and a likelihood ratio of e^2 give e^2 / (4 + e^2).
     assert lost_with(np.array([2.0]), 0.2)[0] == pytest.approx(np.exp(2.0) / (4.0 + np.exp(2.0)))

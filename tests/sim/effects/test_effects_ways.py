@@ -90,6 +90,17 @@ def test_a_lag_and_a_slew_limit_keep_the_mean_of_what_they_approach() -> None:
         assert float(np.sum(np.diff(smooth.edges_s) * smooth.values[:, 0])) == pytest.approx(area, rel=1e-12)
 
 
+def test_two_lags_in_a_row_keep_the_mean_of_what_they_approach() -> None:
+    """Truth: behind lags a and c a unit step arrives by 1 - (a exp(-t/a) - c exp(-t/c)) / (a - c); its integral over 10 ms and the next."""
+    a, c = 0.014, 0.006
+    begun, left = Lag(0, 0.02, 0.3)(held([0.0, 1.0], [0.0, 0.01, 0.02]), None)
+    later, _ = Lag(0, 0.02, 0.3)(held([1.0], [0.02, 0.03]), left)
+    for smooth, begin, end in ((begun, 0.0, 0.01), (later, 0.01, 0.02)):
+        faded = [(tau, tau**2 * (np.exp(-begin / tau) - np.exp(-end / tau))) for tau in (a, c)]
+        area = 0.01 - (faded[0][1] - faded[1][1]) / (a - c)
+        assert float(np.sum(np.diff(smooth.edges_s) * smooth.values[:, 0])) == pytest.approx(area, rel=1e-12)
+
+
 def test_frames_are_lost_as_often_as_told_and_the_last_one_is_held() -> None:
     """Of 20 000 frames 30 % +- 1 % (three standard deviations); more loss loses the same frames and more."""
     n = 20_000
