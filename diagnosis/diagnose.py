@@ -13,7 +13,7 @@ from diagnosis.answer import gap, no_gap
 from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred, surely_better
 from diagnosis.decide.rows import EARLY, LATE, demand_rows, early_note
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, likeliest, weigh
@@ -303,8 +303,8 @@ def confirmed_by(seen: Seen, found: Search, beyond: Retune | None) -> Seen:
 
 
 def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
-    """Whether anything that was found changes what a model predicts. Parameters are not asked: the plain plant has them moved as far as it
-    may."""
+    """Whether anything that was found changes what a model predicts, of the logs or surely of those that were not fitted. Parameters are
+    not asked: the plain plant has them moved as far as it may."""
     weighed = judged.weighed
     if weighed.retune > max(weighed.probabilities, default=0.0):
         return seen, True
@@ -312,7 +312,10 @@ def of_consequence(seen: Seen, judged: Judged) -> tuple[Seen, bool]:
     if judged.beyond is not None:
         tried, shares = [*tried, judged.beyond.fitted], [*shares, weighed.retune]
     rules = consequence(seen.case, seen.retuned, tried, shares)
-    return seen.because(*rules), all(rule.value is None or rule.value >= decisions.MATTERS for rule in rules)
+    if all(rule.value is None or rule.value >= decisions.MATTERS for rule in rules):
+        return seen.because(*rules), True
+    surely, told = (False, ()) if judged.holdout is None else surely_better(judged.holdout, weighed.fitted)
+    return seen.because(*rules, *told), surely
 
 
 def borne_out(seen: Seen, weighed: Weighed) -> tuple[Seen, bool]:

@@ -158,6 +158,16 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
     return weighed.with_names(factors), rules
 
 
+def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
+    """Whether the first of what was `tried` surely predicts these logs better than `base`, and the rule; no where nothing was."""
+    if not tried:
+        return False, ()
+    told, of = holdout.score(tried[0].fit.hypothesis), " + ".join(tried[0].effects)
+    surely = told.gain > decisions.SURELY * told.sd
+    outcome = "matters there" if surely else "no gap: too small to matter"
+    return surely, (held_against("matters_elsewhere", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),)
+
+
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
     """What the logs say of a hypothesis, what is to be told of that, and its records."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"

@@ -16,7 +16,7 @@ _REASONS = {
     "yielding_explains": "Axes that creep or give near rest, as dry friction does, explain what looked like a gap.",
     "unexplained": "What remains is small, and neither an effect of sure size nor other parameters explain it.",
     "not_borne_out": "What remains is small, and nothing that would explain it holds where it was checked.",
-    "too_small": "Something is missing, but too little to matter: with it no prediction over a second comes 5 % closer.",
+    "too_small": "Something is missing, but too little to matter: with it predictions over a second come hardly closer.",
     "effect_added": "The likeliest effect is likelier than an unknown one, and nothing speaks against it.",
     "parameters_alone": "Other values of the plant's own parameters are the likeliest explanation.",
     "named_not_added": "The likeliest effect predicts the hold-out logs worse, so the model stays without it.",
