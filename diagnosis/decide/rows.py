@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.wiring import fitted_or_none, is_strained
+from diagnosis.decide.wiring import as_stated, fitted_or_none, is_strained
 from diagnosis.filter.filter_input import beginning
 from diagnosis.fit.nominal import gain_over, plain_fit, settled
 from diagnosis.hypothesis.case import Case
@@ -78,7 +78,10 @@ def misplaced(case: Case, ways: Sequence[int]) -> tuple[Misplaced, float] | None
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.ROWS_S)) for flight in case.flights]
     )
-    usual = fitted_or_none(short, plain_fit)
+    tried = list(_by_one_row(len(case.library.bound.model.inputs), ways))
+    least, *stated = thread_map(as_stated, [short, *(moved(short, slip) for slip in tried)])
+    slips = [slip for slip, value in zip(tried, stated, strict=True) if value > least]
+    usual = fitted_or_none(short, plain_fit) if slips else None
     if usual is None:
         return None
     start = usual.hypothesis
@@ -87,7 +90,6 @@ def misplaced(case: Case, ways: Sequence[int]) -> tuple[Misplaced, float] | None
         fit = fitted_or_none(moved(short, slip), lambda case: settled(case, start))
         return (-np.inf, False) if fit is None else (gain_over(short, usual, fit), not is_strained(case, fit))
 
-    slips = list(_by_one_row(len(case.library.bound.model.inputs), ways))
     found = thread_map(followed, slips)
     best, (gain, follows) = max(zip(slips, found, strict=True), key=lambda entry: entry[1])
     while gain > decisions.ROWS_GAIN and abs(best.rows) < max(NUMBERS):

@@ -56,8 +56,8 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
-    least = _as_stated(short)
-    slips = [(wiring, read) for wiring in wirings(case) if _as_stated(read := _rewired(short, wiring)) > least]
+    least = as_stated(short)
+    slips = [(wiring, read) for wiring in wirings(case) if as_stated(read := _rewired(short, wiring)) > least]
     usual = fitted_or_none(short, fitted) if slips else None
     fits = thread_map(lambda slip: fitted_or_none(slip[1], fitted), slips)
     found = [(wiring, fit) for (wiring, _), fit in zip(slips, fits, strict=True) if fit is not None]
@@ -71,7 +71,7 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
     return None
 
 
-def _as_stated(case: Case) -> float:
+def as_stated(case: Case) -> float:
     """The log likelihood of the plant as it is stated, with the white noise that it then needs: what cannot follow the logs better so is no
     reading that anybody meant."""
     return likelihood_of(case, with_process_noise(case, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE))))

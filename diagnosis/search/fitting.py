@@ -45,16 +45,21 @@ def rough(case: Case, job: Job) -> FittedHypothesis | None:
     start = hypothesis.with_effects({**hypothesis.effects, entry.effect: entry.values})
     if _is_rough(case, entry.effect):
         start = _polished(case, start, entry.effect, POLISHING)
-    found = fit(case, start, rounds=4)
+    begun = _from_stated(case, start) if _is_astray(start, decisions.ASTRAY_FIRST) else None
+    found = begun or fit(case, start, rounds=4)
     if found is not None and found.log_posterior < job.start.log_posterior:
         found = _likelier(found, fit(case, _lessened(case, start, entry.effect), rounds=4))
     found = _scattered(case, found, [entry.effect])
-    astray = start if found is None else found.hypothesis
-    if astray.theta @ astray.theta > decisions.ASTRAY_FIRST * len(astray.theta):
+    if begun is None and (found is None or _is_astray(found.hypothesis, decisions.ASTRAY_FIRST)):
         found = _likelier(found, _from_stated(case, start))
     if found is not None and holding(case.library, [entry.effect]):
         found = _at_its_level(case, found, entry.effect)
     return None if found is None or not _whole_counts(case, found) else as_fitted(case, found)
+
+
+def _is_astray(hypothesis: Hypothesis, limit: float) -> bool:
+    """Whether the parameters went so far, in mean square standard deviations."""
+    return bool(hypothesis.theta @ hypothesis.theta > limit * len(hypothesis.theta))
 
 
 def at_its_place(case: Case, job: Job) -> FittedHypothesis | None:
@@ -82,12 +87,12 @@ def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     leads back from further off.
     """
     hypothesis = fitted.fit.hypothesis
-    if hypothesis.theta @ hypothesis.theta < decisions.ASTRAY_REFINED * len(hypothesis.theta):
+    if not _is_astray(hypothesis, decisions.ASTRAY_REFINED):
         return fitted
     noisy = replace(hypothesis, process_noise=np.full_like(hypothesis.process_noise, decisions.FIRST_PROCESS_NOISE))
-    starts = [_from_stated(case, begun) for begun in (hypothesis, noisy)]
-    ends = [refined(case, as_fitted(case, start)) for start in starts if start is not None]
-    return max((fitted, *(end for end in ends if end is not None)), key=lambda entry: entry.evidence)
+    start = _likelier(*(_from_stated(case, begun) for begun in (hypothesis, noisy)))
+    end = None if start is None else refined(case, as_fitted(case, start))
+    return fitted if end is None or end.evidence <= fitted.evidence else end
 
 
 def _is_rough(case: Case, name: str) -> bool:
