@@ -12,6 +12,8 @@ from sim.places import Edit
 
 Expression = Any
 NOTHING = 1e-30  # beside the square of the sharpest corner
+# Of what gives near rest, in rad or in units of the way that is usual in a second: what gives way further has a name.
+MOST_GIVEN = 0.01
 SHARP = 1e-9  # V: the least width of a corner of what arrives of an input
 SETTLING_S = 0.008  # the shortest time in which a strain settles
 EDGE_S = 0.02  # how long a step in time takes: a bend is integrated well and has derivatives, a jump has none

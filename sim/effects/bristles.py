@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy
 
-from sim.edits import NOTHING, axis_of, short, sign_of, strain_rate, with_axis, with_state
+from sim.edits import MOST_GIVEN, NOTHING, axis_of, short, sign_of, strain_rate, with_axis, with_state
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
 
@@ -26,7 +26,7 @@ def effects(model: Model) -> Iterator[Effect]:
         yield Effect(
             name=f"{axis}.bristles",
             depends=f"torque({angle}, sgn {angle}_dot)",
-            parameters=(EffectParameter("z_0", unit, 0.0, 0.01 * length, 0.002 * length, 0.0),),
+            parameters=(EffectParameter("z_0", unit, 0.0, MOST_GIVEN * length, 0.002 * length, 0.0),),
             equation=f"- b_c z/z_0, z' = {angle}' - |{angle}'| z/z_0",
             story="A pushed axis does not stick: it gives a little like a brush, and springs back, until it slides.",
             source="Dahl 1968",

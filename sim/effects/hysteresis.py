@@ -10,9 +10,10 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, strain_rate, with_state, with_torque
+from sim.edits import MOST_GIVEN, axis_of, short, strain_rate, with_state, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model, symbol
+from sim.prior import NOTHING_NEW, Unlikely
 
 
 def effects(model: Model) -> Iterator[Effect]:
@@ -44,7 +45,9 @@ def effects(model: Model) -> Iterator[Effect]:
             depends=f"torque({angle}, sgn {angle}_dot)",
             parameters=(
                 EffectParameter("b", entry.torque_unit, 0.0, entry.torque_size, 0.01 * entry.torque_size, 0.0),
-                EffectParameter("z_0", unit, 0.01 * length, 0.1 * length, 0.02 * length),
+                EffectParameter(
+                    "z_0", unit, MOST_GIVEN * length, 0.1 * length, 0.02 * length, unlikely=_bristles(length)
+                ),
             ),
             equation=f"- b z/z_0, z' = {angle}' - |{angle}'| z/z_0",
             story="The bearing gives a little like a brush before it slides.",
@@ -55,6 +58,11 @@ def effects(model: Model) -> Iterator[Effect]:
                 f"{axis}.cable_hysteresis": "identical by form, with a shorter way",
             },
         )
+
+
+def _bristles(length: float) -> Unlikely:
+    """What gives way no further than bristles do."""
+    return Unlikely(NOTHING_NEW, "friction near rest, which a plant leaves open", below=1.05 * MOST_GIVEN * length)
 
 
 def _edit(model: Model, stiffness: sympy.Expr, z_0: sympy.Symbol, axis: str, what: str) -> Model:
