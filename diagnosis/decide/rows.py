@@ -3,7 +3,7 @@
 A plant that answers before its command was logged is against all causes, so the log is wrong. One that answers late may be so itself.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -90,15 +90,25 @@ def misplaced(case: Case, ways: Sequence[int]) -> tuple[Misplaced, float] | None
         fit = fitted_or_none(moved(short, slip), lambda case: settled(case, start))
         return (-np.inf, False) if fit is None else (gain_over(short, usual, fit), not is_strained(case, fit))
 
-    found = thread_map(followed, slips)
-    best, (gain, follows) = max(zip(slips, found, strict=True), key=lambda entry: entry[1])
-    while gain > decisions.ROWS_GAIN and abs(best.rows) < max(NUMBERS):
-        further = replace(best, rows=best.rows + int(np.sign(best.rows)))
+    found = zip(slips, thread_map(followed, slips), strict=True)
+    for slip, told in sorted(found, key=lambda entry: -entry[1][0]):
+        slip, (gain, follows) = _furthest(slip, told, followed)
+        if follows and gain > decisions.ROWS_GAIN:
+            return slip, gain
+    return None
+
+
+def _furthest(
+    slip: Misplaced, told: tuple[float, bool], followed: Callable[[Misplaced], tuple[float, bool]]
+) -> tuple[Misplaced, tuple[float, bool]]:
+    """A slip by as many rows more as each gains, with what it gains and whether the plant then follows."""
+    while told[0] > decisions.ROWS_GAIN and abs(slip.rows) < max(NUMBERS):
+        further = replace(slip, rows=slip.rows + int(np.sign(slip.rows)))
         more = followed(further)
-        if more[0] <= gain:
+        if more[0] <= told[0]:
             break
-        best, (gain, follows) = further, more
-    return (best, gain) if follows and gain > decisions.ROWS_GAIN else None
+        slip, told = further, more
+    return slip, told
 
 
 def _by_one_row(inputs: int, ways: Sequence[int]) -> Iterator[Misplaced]:
