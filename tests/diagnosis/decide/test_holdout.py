@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis import decisions
-from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred
+from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, preferred, surely_better
 from diagnosis.decide.weighing import Weighed
 from diagnosis.detect.instants import happens
 from diagnosis.diagnose import Material, diagnose
@@ -104,6 +104,7 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert favour(told) > 0.5
     assert notes == ()
     assert added(with_rub, rubbing())[0].effects == tuple(RUB)
+    assert surely_better(with_rub, [rubbing()])[0]
 
     _, without = judged(arm_log(seed=34))
     (told, _, _), (chosen, notes, rules) = asked(without, rubbing()), added(without, rubbing())
@@ -111,6 +112,8 @@ def test_what_the_hold_out_has_is_surely_better_and_what_it_has_not_surely_worse
     assert favour(told) < -0.5
     assert (chosen is without.base, [note.kind for note in notes]) == (True, ["predicts_worse"])
     assert rules[0].outcome == "nothing added"
+    assert not surely_better(without, [rubbing()])[0]
+    assert surely_better(without, []) == (False, ())
 
 
 def test_what_leaves_most_of_the_hold_outs_error_is_told_to_be_a_part() -> None:

@@ -47,6 +47,12 @@ def test_a_spring_that_pushes_away_is_less_probable_than_one_that_pulls() -> Non
     assert prior_odds(pulls) > prior_odds(pushes)
 
 
+def test_a_bearing_that_gives_no_further_than_bristles_is_hardly_a_name() -> None:
+    # Truth: up to MOST_GIVEN (0.01 rad) a plant's file leaves open whether an axis gives before it slides.
+    little, far = (fitted(azimuth__presliding={"b": 1e-4, "z_0": z_0}) for z_0 in (0.01, 0.03))
+    assert prior_odds(far) - prior_odds(little) > 8.0
+
+
 def test_a_constant_force_belongs_to_joints_that_gravity_pushes() -> None:
     carriage, turntable = (fitted(**{f"{axis}__offset_force": {"offset": 0.1}}) for axis in ("carriage", "azimuth"))
     assert prior_odds(carriage) > prior_odds(turntable)
