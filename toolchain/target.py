@@ -40,7 +40,7 @@ TARGET_FLAGS = (
     "-Werror",
 )
 # C's comments, and its strings and letters, in which none begins; a definition of one line.
-_COMMENT = re.compile(r'''"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|/\*.*?\*/|//[^\n]*''', re.DOTALL)
+_COMMENT = re.compile(r""""(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|/\*.*?\*/|//[^\n]*""", re.DOTALL)
 _DEFINITION = re.compile(r"^#define (\w+)\b.*[^\\\n]$", re.MULTILINE)
 _INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 # What no image calls takes two thirds of the time to build the rest: libm, complex numbers, powers, and integers of any width.
