@@ -164,6 +164,17 @@ def dense_table(seed: int = 3) -> ControllerTable:
     return table
 
 
+@cache
+def tapered_table() -> ControllerTable:
+    """The dense table with a polynomial of each axis that falls off: its powers are of three, two and one products in fixed point."""
+    table = dense_table()
+    for name in ("elevation", "azimuth"):
+        q_0, q_1, q_2, (scale, *_) = table.axis(name).q_V_rad
+        falling = tuple(scale * share for share in (1.0, 0.3, -0.08, 0.05))
+        table = changed_axis(table, name, q_V_rad=(q_0, q_1, q_2, falling))
+    return table
+
+
 def _dense(scale: float, rng: np.random.Generator) -> Polynomial:
     return (
         scale,

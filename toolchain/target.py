@@ -3,6 +3,7 @@
 import os
 import re
 import tempfile
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -38,7 +39,16 @@ TARGET_FLAGS = (
     "-Wundef",
     "-Werror",
 )
+# C's comments, and its strings and letters, in which none begins; a definition of one line.
+_COMMENT = re.compile(r""""(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|/\*.*?\*/|//[^\n]*""", re.DOTALL)
+_DEFINITION = re.compile(r"^#define (\w+)\b.*[^\\\n]$", re.MULTILINE)
 _INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
+# What no image calls takes two thirds of the time to build the rest: libm, complex numbers, powers, and integers of any width.
+_UNCALLED = re.compile(
+    r"cos|divc3|divmodei4|emutls|exp2?|fabs|floor_ceil|fma|fmax|fmin|fmod|hexagon|log|log10|log2|mulc3|powiXf2|round|sin|sincos|sqrt|tan"
+    r"|trunc|udivmodei4"
+)
+_PART = re.compile(r'^\s*_ = @import\("compiler_rt/(\w+)\.zig"\);')
 LINK_FLAGS = ("-O2", "-nostdlib", "-Wl,--gc-sections", "-Wl,--entry=Reset_Handler", "-Wl,--build-id=none")
 
 
@@ -100,14 +110,25 @@ def _lock(lock: IO[str]) -> None:
 
 
 def _built(library: Path, core: str) -> Path:
-    source = zig_folder() / "lib" / "compiler_rt.zig"
+    sources = zig_folder() / "lib"
     with tempfile.TemporaryDirectory(dir=library.parent) as work:
-        built = Path(work) / "libcompiler_rt.a"
+        source, built = Path(work) / "compiler_rt.zig", Path(work) / "libcompiler_rt.a"
+        source.write_text(_called((sources / source.name).read_text(encoding="utf-8")), encoding="utf-8")
+        (Path(work) / "compiler_rt").symlink_to(sources / "compiler_rt")
         options = ["-OReleaseSmall", "-fstrip", "-fno-unwind-tables", "-ffunction-sections", "-fdata-sections"]
         machine = ["-target", _TARGET, "-mcpu", core]
         run_zig(["build-lib", *options, *machine, str(source), f"-femit-bin={built}"], "compiler-rt")
         built.replace(library)
     return library
+
+
+def _called(root: str) -> str:
+    """The text of compiler-rt's first file without the parts that no image calls."""
+    return "".join(
+        line
+        for line in root.splitlines(keepends=True)
+        if not ((part := _PART.match(line)) and _UNCALLED.fullmatch(part[1]))
+    )
 
 
 def compile_objects(
@@ -135,7 +156,7 @@ def compile_objects(
 def _compile(
     unit: Source, headers: Sequence[Source], work: Path, include_dirs: Sequence[Path], flags: Sequence[str]
 ) -> Path:
-    key = content_digest([unit, *_included(unit, headers, include_dirs)], (), flags)
+    key = content_digest(_as_compiled([unit, *_included(unit, headers, include_dirs)]), (), flags)
     kept = CACHE_DIR / "target" / "objects" / f"{Path(unit.name).stem}-{key}.o"
     if is_whole(kept):
         return kept
@@ -150,6 +171,27 @@ def _compile(
     return kept
 
 
+def _as_compiled(sources: Sequence[Source]) -> list[CText]:
+    """What of `sources` can change an object, line by line where it stands: no comment, and no definition that nobody uses.
+
+    So the digest of a table, which its header tells in such places, leaves all objects but the law's as they are.
+    """
+    plain = [CText(source.name, _COMMENT.sub(_uncommented, _text(source))) for source in sources]
+    uses = Counter(word for source in plain for word in re.findall(r"\w+", source.text))
+    return [
+        CText(source.name, _DEFINITION.sub(lambda line: line[0] if uses[line[1]] > 1 else "", source.text))
+        for source in plain
+    ]
+
+
+def _uncommented(found: re.Match[str]) -> str:
+    return found[0] if found[0][0] in "\"'" else "\n" * found[0].count("\n")
+
+
+def _text(source: Source) -> str:
+    return source.read_text(encoding="utf-8") if isinstance(source, Path) else source.text
+
+
 def _included(unit: Source, headers: Sequence[Source], include_dirs: Sequence[Path]) -> list[Source]:
     """The project's own headers that `unit` includes, or one of them: what is compiled does not depend on the others.
 
@@ -162,8 +204,7 @@ def _included(unit: Source, headers: Sequence[Source], include_dirs: Sequence[Pa
     waiting = [unit]
     while waiting:
         source = waiting.pop()
-        text = source.read_text(encoding="utf-8") if isinstance(source, Path) else source.text
-        for name in _INCLUDE.findall(text):
+        for name in _INCLUDE.findall(_text(source)):
             if name in named and name not in found:
                 found[name] = named[name]
                 waiting += named[name]

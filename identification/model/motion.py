@@ -73,13 +73,13 @@ def _request(model: Model, p: Array, columns: tuple[str, ...], substeps: int) ->
 def _run(compiled: Kernel, request: Any, rows: Mapping[str, Array], windows: Sequence[slice], starts: Array) -> None:
     """One call for each window; its part of the arrays `rows` (n, ...) follows from where these begin."""
     bases = {name: compiled.ffi.cast("double *", array.ctypes.data) for name, array in rows.items()}
-    x0 = compiled.ffi.cast("double *", starts.ctypes.data)
+    x0, sensitivity_run = compiled.ffi.cast("double *", starts.ctypes.data), compiled.sensitivity.sensitivity_run
     for number, window in enumerate(windows):
         for name, array in rows.items():
             setattr(request, name, bases[name] + window.start * array[0].size)
         request.x0 = x0 + number * starts.shape[1]
         request.samples = window.stop - window.start
-        compiled.lib.sensitivity_run(request)
+        sensitivity_run(request)
 
 
 def _slopes(model: Model, p: Array) -> tuple[Array, Array]:

@@ -14,10 +14,12 @@ from sim.model import Model
 from toolchain.host import FAST_FLAGS, CText, Source, build_shared, load_shared
 
 C_DIR = Path(__file__).parent / "c"
-SINGLE = ("single.c", "events.c", "sensitivity.c")
-BATCH = ("batch.c", "events.c")  # a library of its own: most models never fly side by side
-# One run has nothing to lay side by side: a compiler that looks for it takes a third longer, and what it makes is no faster.
-ONE_RUN_FLAGS = ("-fno-vectorize", "-fno-slp-vectorize")
+# Three libraries: most models never fly side by side, and most that fly are asked for no derivative, half of the compiler's time.
+SINGLE = ("single.c", "events.c")
+SENSITIVITY = ("sensitivity.c", "events.c")
+BATCH = ("batch.c", "events.c")
+# One run has nothing to lay side by side: a compiler that looks for that and more takes twice as long, and what it makes is no faster.
+ONE_RUN_FLAGS = ("-O1", "-fno-vectorize", "-fno-slp-vectorize")
 HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
 Array = NDArray[np.float64]
@@ -37,7 +39,12 @@ class Kernel:
     @property
     def batch(self) -> Any:
         """The library with `run_batch`, compiled when it is first asked for; raises BadInput when the compiler refuses."""
-        return _batch(self)
+        return _further(self, "batch", BATCH)
+
+    @property
+    def sensitivity(self) -> Any:
+        """The library with `sensitivity_run`, compiled when it is first asked for; raises BadInput when the compiler refuses."""
+        return _further(self, "sensitivity", SENSITIVITY)
 
     @property
     def constants(self) -> int:
@@ -56,9 +63,9 @@ def kernel(model: Model) -> Kernel:
     return Kernel(model, ffi, lib)
 
 
-@lru_cache(maxsize=64)
-def _batch(single: Kernel) -> Any:
-    return single.ffi.dlopen(str(_built(single.model, f"batch-{single.model.name}", BATCH)))
+@lru_cache(maxsize=128)
+def _further(single: Kernel, what: str, files: tuple[str, ...]) -> Any:
+    return single.ffi.dlopen(str(_built(single.model, f"{what}-{single.model.name}", files)))
 
 
 def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
@@ -67,7 +74,7 @@ def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
         CText("sincos_coefficients.h", sincos_header()),
         *(C_DIR / file for file in files),
     ]
-    flags = (*FAST_FLAGS, *(ONE_RUN_FLAGS if files is SINGLE else ()), f"-DBATCH_LANES={BATCH_LANES}")
+    flags = (*FAST_FLAGS, *(() if files is BATCH else ONE_RUN_FLAGS), f"-DBATCH_LANES={BATCH_LANES}")
     return build_shared(name, sources, include_dirs=[C_DIR], flags=flags)
 
 

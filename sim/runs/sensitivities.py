@@ -138,7 +138,7 @@ def _of_equations(
     for name, array in arrays.items():
         setattr(request, name, compiled.pointer(array))
     request.samples, request.substeps, request.columns = times.size, substeps, len(columns)
-    compiled.lib.sensitivity_run(request)
+    compiled.sensitivity.sensitivity_run(request)
     return Sensitivities(
         columns, np.asarray(arrays["y"], float), np.asarray(arrays["dy"], float), np.asarray(arrays["x"], float)
     )

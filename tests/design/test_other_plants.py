@@ -14,12 +14,21 @@ from records.errors import BadInput
 from records.plant import load_plant
 from records.table import ControllerTable
 from sim.bind import BoundPlant, bind
+from tests.angles import few_angles
 from tests.other_plants import AEROSHIELD, INVERTED_ARM, MOTOR, QUANSER, written
+from tests.soak import SOAK
 
 
 @cache
 def plant(name: str) -> BoundPlant:
     return bind(load_plant(Path("plants") / f"{name}.toml"))
+
+
+@pytest.fixture(autouse=True)
+def angles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reports at few angles, in a soak at all."""
+    if not SOAK:
+        few_angles(monkeypatch)
 
 
 def designed(bound: BoundPlant, wishes: dict[str, Any]) -> tuple[ControllerTable, DesignReport]:

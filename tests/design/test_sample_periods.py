@@ -15,11 +15,19 @@ from sim.equilibrium import equilibrium
 from sim.loop import fly, fly_law
 from sim.manoeuvres import Leg, flight, manoeuvre
 from sim.tracking import tracking
-from tests.soak import sampled
+from tests.angles import few_angles
+from tests.soak import SOAK, sampled
 from verification.host_law import host_law
 
 BOUND = bind(load_plant(Path(__file__).parents[2] / "plants" / "ce150.toml"))
 PERIODS_S = (0.0005, 0.0007, 0.001, 0.0012, 0.002, 0.005, 0.007, 0.02, 0.05)
+
+
+@pytest.fixture(autouse=True)
+def angles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reports at few angles, in a soak at all."""
+    if not SOAK:
+        few_angles(monkeypatch)
 
 
 @pytest.mark.parametrize("period_s", sampled(PERIODS_S, keep=[0.0005, 0.05]))

@@ -16,11 +16,13 @@ from sim.bind import BoundPlant, bind
 from sim.loop import closed_loop_log
 from sim.simulate import Noise, simulate
 from tests.plants import lively_table
+from tests.soak import SOAK
 
 Fly = Callable[..., RunLog]
-SECONDS = 30.0
+LONG_S = 30.0  # of flights of which a number is asked that few rows do not tell; in a soak of all
+SECONDS = LONG_S if SOAK else 20.0
 RIG = 7
-SPRUNG_SECONDS = 20.0
+SPRUNG_SECONDS = 20.0 if SOAK else 16.0
 # What many flights here have: a rig of one of them has all, the others at no size, so that one kernel flies them all.
 AT_NO_SIZE: dict[str, Mapping[str, float]] = {
     "azimuth.cable_spring": {},
@@ -42,7 +44,7 @@ def plant() -> BoundPlant:
 
 @pytest.fixture(scope="session")
 def fly(plant: BoundPlant) -> Fly:
-    """fly(seed, effects): a run of 30 s about level under lively references, with turbulence and parameters of `seed`.
+    """fly(seed, effects): a run of SECONDS about level under lively references, with turbulence and parameters of `seed`.
 
     With a `rig_seed` the parameters are that rig's, the same in every run; without `air` nothing pushes at random;
     `jumps_rad` make the references jump so far every 50 ms, and `gusts` are how many times the usual the air pushes;

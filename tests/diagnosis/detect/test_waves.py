@@ -15,7 +15,7 @@ from diagnosis.search.fitting import Job, rough
 from records.log import RunLog
 from sim.added_effects import library
 from sim.bind import BoundPlant
-from tests.diagnosis.conftest import Fly
+from tests.diagnosis.conftest import LONG_S, Fly
 
 # Truth: 9 and 14 waves a turn, 5 rad/s by the log's clock.
 CYCLIC = {"phi_sensor.cyclic": {"amplitude": 0.003, "waves": 14.0, "phase": 0.7}}
@@ -40,7 +40,7 @@ def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
 
 def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly: Fly) -> None:
     # A spring beside whose force the model swings wrongly wherever the arm swings, and nothing else: a sine in time would take its part.
-    log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, rig_seed=61)
+    log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, LONG_S, rig_seed=61)
     linearisation = linearised(case := make_case(effect_library(plant), [log]), nominal_fit(case))
     effect = library(plant)["elevation.periodic_torque"]
     target = disturbed_by(case, effect)

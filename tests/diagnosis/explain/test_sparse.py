@@ -12,7 +12,7 @@ from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
-from tests.diagnosis.conftest import Fly
+from tests.diagnosis.conftest import LONG_S, Fly
 
 DRAG = 2e-3  # N m s^2
 CLASS = Suspect("elevation", "torque(psi_dot) on elevation", 1.0)
@@ -22,7 +22,8 @@ CLASS = Suspect("elevation", "torque(psi_dot) on elevation", 1.0)
 def dragged(plant: BoundPlant, fly: Fly) -> tuple[Linearisation, FormScores]:
     """Two flights of a rig whose elevation is braked by c |psi'| psi', seen from the nominal plant; no effect is asked for."""
     case = make_case(
-        effect_library(plant), [fly(seed, {"elevation.quadratic_drag": {"c": DRAG}}, rig_seed=3) for seed in (1, 2)]
+        effect_library(plant),
+        [fly(seed, {"elevation.quadratic_drag": {"c": DRAG}}, LONG_S, rig_seed=3) for seed in (1, 2)],
     )
     linearisation = linearised(case, nominal_fit(case))
     return linearisation, form_scores(linearisation)

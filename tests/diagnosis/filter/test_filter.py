@@ -21,7 +21,7 @@ from records.log import RunLog
 from sim.bind import BoundPlant, evaluated
 from sim.columns import log_columns
 from sim.simulate import Noise, simulate
-from tests.diagnosis.conftest import Fly
+from tests.diagnosis.conftest import LONG_S, Fly
 from tests.plants import stated_table
 from toolchain.host import CText, build_shared, c_text, load_shared
 
@@ -35,7 +35,7 @@ def library(plant: BoundPlant) -> EffectLibrary:
 
 @pytest.fixture(scope="module")
 def case(library: EffectLibrary, fly: Fly) -> Case:
-    return make_case(library, [fly(1)])
+    return make_case(library, [fly(1, seconds=LONG_S)])
 
 
 @pytest.fixture(scope="module")

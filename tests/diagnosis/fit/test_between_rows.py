@@ -9,7 +9,7 @@ from diagnosis.fit.between_rows import between_rows
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.hypothesis.case import Case
 from records.log import RunLog
-from tests.diagnosis.arm import arm_case, arm_log
+from tests.diagnosis.arm import LONG_S, arm_case, arm_log
 
 EVERY = 4  # rows: 40 ms, a twentieth of the fastest sine's period
 
@@ -33,7 +33,7 @@ def test_commands_that_were_held_stay_as_they_were_logged() -> None:
 
 
 def test_the_ends_of_a_smooth_way_are_joined() -> None:
-    log = sparse(arm_log(seed=81))
+    log = sparse(arm_log(seed=81, seconds=LONG_S))
     _, found, told = asked(log)
     assert told == ["straight"]
     u = found.flights[0].filter_input.u[:, 0]

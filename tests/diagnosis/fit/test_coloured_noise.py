@@ -12,7 +12,7 @@ from diagnosis.fit.gauss_newton import likelihood_of
 from diagnosis.fit.nominal import nominal_fit
 from diagnosis.library.reading_noise import ReadingNoise
 from records.log import RunLog
-from tests.diagnosis.arm import PERIOD_S, arm, arm_case, arm_log
+from tests.diagnosis.arm import LONG_S, PERIOD_S, arm, arm_case, arm_log
 
 STEP_RAD = 1.150486e-3
 SD_RAD, TIME_S = 2.0 * STEP_RAD, 0.06  # truth: two counts, forgotten in six rows
@@ -28,7 +28,7 @@ def misread(log: RunLog, seed: int) -> RunLog:
 
 @pytest.fixture(scope="module")
 def log() -> RunLog:
-    return misread(arm_log(seed=74), 75)
+    return misread(arm_log(seed=74, seconds=LONG_S), 75)
 
 
 def test_they_are_found_with_size_and_time(log: RunLog) -> None:

@@ -17,7 +17,7 @@ from diagnosis.result import Result
 from diagnosis.search.retune import retune
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import RIG, SPRING, SPRUNG_SECONDS, Fly
+from tests.diagnosis.conftest import LONG_S, RIG, SPRING, SPRUNG_SECONDS, Fly
 
 DRAG = "elevation.quadratic_drag"
 
@@ -70,7 +70,7 @@ def test_a_second_effect_is_found_beside_the_stated_one(sprung: Result, fly: Fly
 def test_another_size_of_the_stated_effect_is_a_re_tune(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that: 20 standard deviations, and nothing else is missing.
     stated = with_effects(plant, {DRAG: {"c": 2e-3}}, sd={DRAG: {"c": 1e-4}})
-    case = make_case(effect_library(plant), [fly(13, {DRAG: {"c": 4e-3}}, rig_seed=RIG)], stated=stated)
+    case = make_case(effect_library(plant), [fly(13, {DRAG: {"c": 4e-3}}, LONG_S, rig_seed=RIG)], stated=stated)
     found = retune(case, nominal_fit(case))
     assert found is not None
     assert (found.parameters, found.places) == ((f"{DRAG}.c",), ("elevation",))

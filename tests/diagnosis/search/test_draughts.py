@@ -15,7 +15,7 @@ from diagnosis.search.draughts import draught
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
-from tests.diagnosis.conftest import Fly
+from tests.diagnosis.conftest import LONG_S, Fly
 
 # Truth: 1 mN m, a fortieth of what such an axis can be pushed with, forgotten in 0.7 s.
 GUST = {"elevation.gust": {"sigma": 1e-3, "T": 0.7}}
@@ -28,7 +28,7 @@ def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis
 
 def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
     # 60 s hold 86 times 0.7 s: the size is known to some 10 %, the time to some 30 %; three such deviations.
-    case, nominal = alone(plant, [fly(seed, GUST, rig_seed=90) for seed in (91, 92)])
+    case, nominal = alone(plant, [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)])
     assert nominal.effects == ()
     found, _ = draught(case, nominal)
     assert found is not None
@@ -56,7 +56,7 @@ def test_an_axis_that_is_held_feels_no_gust(plant: BoundPlant, fly: Fly) -> None
 
 @pytest.mark.soak
 def test_a_restless_room_is_told_by_no_other_name(plant: BoundPlant, fly: Fly) -> None:
-    logs = [fly(seed, GUST, rig_seed=90) for seed in (91, 92)]
+    logs = [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)]
     result = diagnose(plant, Material(logs, [], [], [None] * len(logs)))
     assert result.diagnosis.verdict == "gap"
     named = {h.effect: h.probability for h in result.diagnosis.effects}
@@ -80,7 +80,7 @@ def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant:
     stated = with_effects(
         plant, {"elevation.gust": {"sigma": 2.5e-4, "T": 0.7}}, sd={"elevation.gust": {"sigma": 1e-4}}
     )
-    case = make_case(effect_library(plant), [fly(seed, GUST, rig_seed=90) for seed in (91, 92)], stated=stated)
+    case = make_case(effect_library(plant), [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)], stated=stated)
     found, _ = draught(case, as_fitted(case, nominal_fit(case)))
     assert found is not None
     sigma = bind(improved_plant(case, found.gusty)).effects["elevation.gust"]["sigma"]

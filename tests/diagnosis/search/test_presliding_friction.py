@@ -21,11 +21,13 @@ from sim.manoeuvres import flight
 from sim.model import Model
 from tests.diagnosis.conftest import Fly
 from tests.plants import lively_table
+from tests.soak import SOAK
 
 V_C_RAD_S = 0.005
 LEVEL_N_M = 3e-4
 Z_0_RAD = 0.003
-SECONDS, WHOLE_S = 40.0, 70.0
+LONG_S, WHOLE_S = 40.0, 70.0
+SECONDS = LONG_S if SOAK else 30.0
 GIVE = {"elevation.bristles": {"z_0": Z_0_RAD}, "azimuth.bristles": {"z_0": Z_0_RAD}}
 DRAG = "elevation.quadratic_drag"
 CREEP = {"elevation.creep": {"v_c": V_C_RAD_S}, "azimuth.creep": {"v_c": V_C_RAD_S}}
@@ -117,7 +119,7 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request
 
 
 def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypothesis]) -> None:
-    # Truth: no flight of 50 s is a million nats likelier for its friction.
+    # Truth: no flight of half a minute is a million nats likelier for its friction.
     case, nominal = giving
     assert yielding(case, [nominal], further=1e6)[0] is case
 
@@ -125,7 +127,7 @@ def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypo
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
     # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that, and its friction gives.
     stated = with_effects(plant, {DRAG: {"c": 2e-3}}, sd={DRAG: {"c": 1e-4}})
-    log = default_flight(plant, {**GIVE, DRAG: {"c": 4e-3}})
+    log = default_flight(plant, {**GIVE, DRAG: {"c": 4e-3}}, LONG_S)
     case, nominal = plain_fit(without_effects(stated), log, stated=stated)
     assert nominal.fit.hypothesis.effects[DRAG]["c"] != pytest.approx(2e-3, rel=0.01)
     found, _ = yielding(case, [nominal])

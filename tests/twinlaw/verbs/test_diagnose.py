@@ -101,7 +101,7 @@ def test_an_input_with_the_wrong_sign_is_refused_by_name(
 
 def test_the_stated_plants_flight_from_rest_has_no_gap(tmp_path: Path, whole: RunLog) -> None:
     # It begins with rotors at rest, in still air: a filter that takes them to run sees a push there.
-    assert diagnosed(tmp_path, whole if SOAK else part(whole, slice(0, 2000))) == 0
+    assert diagnosed(tmp_path, whole if SOAK else part(whole, slice(0, 1500))) == 0
     assert load_diagnosis(tmp_path / "out" / "diagnosis.json").verdict == "no gap"
 
 
@@ -110,7 +110,7 @@ def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files_in_the_f
 ) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "prediction-gone.csv").write_text("t_s\n")
-    assert diagnosed(tmp_path, part(log, slice(0, 1200)), holdout=part(log, slice(1200, 2000))) == 0
+    assert diagnosed(tmp_path, part(log, slice(0, 900)), holdout=part(log, slice(900, 1400))) == 0
     content = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
     assert content["verdict"] in ("no gap", "cannot tell")
     assert [path.name for path in (tmp_path / "out").glob("prediction-*")] == ["prediction-hold.csv"]
@@ -118,7 +118,7 @@ def test_the_stated_plants_own_flight_has_no_gap_and_leaves_whole_files_in_the_f
     assert rows[0] == (
         "t_s,psi_rad,psi_nominal_rad,psi_before_rad,psi_after_rad,phi_rad,phi_nominal_rad,phi_before_rad,phi_after_rad"
     )
-    assert len(rows) == 801
+    assert len(rows) == 501
     assert bind(load_plant(tmp_path / "out" / "plant.toml")).model.name == "ce150"
 
 

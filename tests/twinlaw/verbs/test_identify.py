@@ -114,10 +114,10 @@ def test_a_search_over_experiments_ends_with_the_truth_beside_it(method, folder,
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
-    """Twelve seconds of flight, and the two coefficients to estimate from it."""
+    """Ten seconds of flight, and the two coefficients to estimate from it."""
     path = tmp_path_factory.mktemp("flown") / "flight.csv"
     log = task(bind(load_plant(Path("plants/ce150.toml")))).log
-    save_log(path, replace(log, t_s=log.t_s[:1200], u=log.u[:1200], y=log.y[:1200]))
+    save_log(path, replace(log, t_s=log.t_s[:1000], u=log.u[:1000], y=log.y[:1000]))
     return ["--free", "J_A,b_vA", str(path)]
 
 
@@ -181,12 +181,12 @@ def test_rows_that_the_look_leaves_out_do_not_reach_the_fit(flown, tmp_path, cap
     found = {}
     for name, amount in (("leaps", 1.5), ("unread", np.nan)):
         y = log.y.copy()
-        y[[300, 500, 900], 1] += amount
+        y[[200, 400, 600], 1] += amount
         save_log(tmp_path / f"{name}.csv", replace(log, y=y))
         options = ["--free", "J_A,b_vA", "--window", "2", "--json", "--out", str(tmp_path / "out")]
         assert main(["identify", *options, str(tmp_path / f"{name}.csv")]) == 0
         found[name] = json.loads(capsys.readouterr().out)
-    assert "leaps: phi_rad leaps away and back in 3 rows, first at 3 s; left out" in found["leaps"]["notes"]
+    assert "leaps: phi_rad leaps away and back in 3 rows, first at 2 s; left out" in found["leaps"]["notes"]
     for one, other in zip(found["leaps"]["estimates"], found["unread"]["estimates"], strict=True):
         # What the look leaves out is a row, and with it the three sound readings of the other axis.
         assert one["value"] == pytest.approx(other["value"], abs=0.1 * other["sd"])
@@ -198,7 +198,7 @@ def test_a_log_given_twice_under_two_names_is_refused(flown, tmp_path, capsys):
         shutil.copy(Path(flown[-1]).with_suffix(suffix), tmp_path / f"copy{suffix}")
     assert main(["identify", "--out", str(tmp_path / "out"), *flown, str(tmp_path / "copy.csv")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "copy: log: got 1200 rows stand in flight too; left out here, expected a row that can be used" in line
+    assert "copy: log: got 1000 rows stand in flight too; left out here, expected a row that can be used" in line
     assert not (tmp_path / "out").exists()
 
 

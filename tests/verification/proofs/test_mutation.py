@@ -10,7 +10,7 @@ import pytest
 from codegen.law import generate_law
 from codegen.twin import Float32Twin
 from records.table import ControllerTable
-from tests.law_tables import ce150_table, dense_table
+from tests.law_tables import ce150_table, dense_table, tapered_table
 from tests.soak import SOAK, sampled
 from verification.fixed_stimuli import EDGES
 from verification.host_law import HostLaw
@@ -33,9 +33,14 @@ def every_third(texts: dict[str, str], name: str) -> MutatedC:
     return replace(made, mutants=made.mutants[::3])
 
 
+def table_of(arithmetic: str) -> ControllerTable:
+    """One in which everything counts: fixed point has further ways to multiply, each for powers of a size."""
+    return tapered_table() if arithmetic == "fixed" else dense_table()
+
+
 @cache
 def law(arithmetic: str = "float32") -> Mapping[str, str]:
-    return generate_law(dense_table(), arithmetic)
+    return generate_law(table_of(arithmetic), arithmetic)
 
 
 def facts(table: ControllerTable, arithmetic: str) -> Facts:
@@ -43,7 +48,7 @@ def facts(table: ControllerTable, arithmetic: str) -> Facts:
 
 
 def subject(arithmetic: str = "float32") -> Subject:
-    return Subject(dense_table(), law(arithmetic), b"", arithmetic=arithmetic)
+    return Subject(table_of(arithmetic), law(arithmetic), b"", arithmetic=arithmetic)
 
 
 # Group and arithmetic, with the least number of its mutants, all of which a soak takes.
