@@ -51,6 +51,14 @@ COMMANDS: dict[str, list[list[str]]] = {
         ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
     ],
 }
+# What hours of a diagnosis gave, and the command that wrote it: no test runs these again.
+HOURS: dict[str, str] = {
+    "blind_first_rig": "twinlaw blind score cases answers --json, and for each baseline; without the judgements",
+    "blind_fresh_first": "twinlaw blind score first answers-first --json",
+    "blind_fresh_real": "twinlaw blind score real answers-real --json",
+    "blind_fresh_second": "twinlaw blind score second answers-second --json",
+    "real_rigs": "python tests/real_rigs.py rigs --most 6 --keep docs/results/real_rigs.json",
+}
 LONG = (
     "looked_at",
     "repetitions",
