@@ -9,6 +9,7 @@ import pytest
 
 from tests.docs.numbers import agrees, last_digit
 from tests.docs.results import COMMANDS, FOLDER, HOURS, made, result
+from tests.docs.tables import line
 from tests.docs.test_files import KNOWN
 from tests.real_rigs import parts
 from tests.test_project import ROOT
@@ -103,6 +104,20 @@ def test_the_splits_of_real_rigs_are_those_that_were_diagnosed() -> None:
         assert f"\n{part}\n" in real, part[:200]
 
 
+@pytest.mark.parametrize(
+    ("page", "heading", "name"),
+    [
+        ("faults", "| count | frames |", "million_frames"),
+        ("faults", "| count | |", "million_steps"),
+        ("proofs", "| arithmetic | given |", "cycles"),
+    ],
+)
+def test_a_table_is_what_its_program_counted(page: str, heading: str, name: str) -> None:
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    _, *told = text[text.index(heading) :].split("\n\n")[0].splitlines()[1:]
+    assert told == [line(row) for row in result(name)]
+
+
 def _share(cases: list[Any], is_right: Callable[[Any], bool]) -> str:
     return f"{sum(map(is_right, cases))} of {len(cases)}"
 
@@ -166,5 +181,5 @@ def test_detection_and_reliability_of_300_cases_are_those_of_their_score(
     heading: str, key: str, lines: tuple[str, ...]
 ) -> None:
     found = result("blind_first_rig")["diagnose"][key]
-    for line, (_, *cells) in zip(lines, rows(heading, BLIND), strict=True):
-        assert [float(cell) for cell in cells] == [entry[line] for entry in found]
+    for counted, (_, *cells) in zip(lines, rows(heading, BLIND), strict=True):
+        assert [float(cell) for cell in cells] == [entry[counted] for entry in found]
