@@ -21,10 +21,10 @@ SEEDS = (ROOT / "docs" / "seeds.md").read_text(encoding="utf-8")
 def rows(beginning: str, page: str = SEEDS) -> Iterator[list[str]]:
     """The cells of each row of the table whose heading begins so; a number in each as it is written, an empty cell where there is none."""
     lines = page[page.index(beginning) :].splitlines()[2:]
-    for line in lines:
-        if not line.startswith("|"):
+    for told in lines:
+        if not told.startswith("|"):
             return
-        yield [cell.strip().removesuffix(" %").removeprefix("+") for cell in line.strip("|").split("|")]
+        yield [cell.strip().removesuffix(" %").removeprefix("+") for cell in told.strip("|").split("|")]
 
 
 def hold(numbers: list[str], keys: list[str], factors: tuple[float, ...] = ()) -> None:
