@@ -38,6 +38,9 @@ def zero_findings(log: RunLog, name: str, column: str, step: float) -> Iterator[
         return
     # Where zero is written for no reading, one that is merely beside zero is none either.
     unread: Rows = zero & (near > thresholds.BESIDE_ZERO_STEPS * least)
+    a_step_beside: Rows = zero & (near > 0.0) & ~unread
+    if a_step_beside.sum() <= unread.sum():  # more are an axis about zero, fewer cost nothing where they were read
+        unread = unread | a_step_beside
     at, count = log.t_s[unread], int(unread.sum())
     share = f", {count / len(values):.1%} of all" if count > 1 else ""
     sentence = (

@@ -78,15 +78,17 @@ def _last_known(t_s: Array) -> Array:
     return known
 
 
-def _cut(channel: Channel, span: Span) -> Channel:
-    """The samples within the span, their faults with them."""
-    if channel.t_s is None:
-        return channel
-    inside = span.holds(channel.t_s)
-    rows = np.flatnonzero(inside)
-    places = {int(row): place for place, row in enumerate(rows)} if channel.faults else {}
+def taken(channel: Channel, chosen: NDArray[np.bool_]) -> Channel:
+    """The samples (n,) of a clocked channel that are chosen, their faults with them."""
+    assert channel.t_s is not None
+    places = {int(row): place for place, row in enumerate(np.flatnonzero(chosen))} if channel.faults else {}
     faults = {places[row]: told for row, told in channel.faults.items() if row in places}
-    return Channel(channel.t_s[inside], channel.values[inside], faults)
+    return Channel(channel.t_s[chosen], channel.values[chosen], faults)
+
+
+def _cut(channel: Channel, span: Span) -> Channel:
+    """The samples within the span."""
+    return channel if channel.t_s is None else taken(channel, span.holds(channel.t_s))
 
 
 def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
@@ -98,7 +100,9 @@ def _in_order(channel: Channel, name: str, where: str) -> tuple[Array, Array]:
     if late.size or not np.all(np.isfinite(t_s)):
         row = int(late[0]) if late.size else 0
         got = f"{t_s[row + 1] if t_s.size > 1 else t_s[0]:.9g} s in row {row + 2} after {t_s[row]:.9g} s"
-        remedy = "drop doubled rows; of several recordings in one file give each as its own"
+        remedy = (
+            "say --column t_s=0.01*row for rows 10 ms apart; of several recordings in one file give each as its own"
+        )
         raise BadInput(f"times of {name}", where, got, "times that increase", remedy)
     return t_s, channel.values
 
@@ -180,7 +184,7 @@ def _without_faults(faults: Mapping[int, str], t_s: Array, name: str, where: str
 def _finite(values: Array, t_s: Array, name: str, where: str) -> Array:
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
-        got = f"{values[bad[0]]:g} at {t_s[bad[0]]:.9g} s, in {bad.size} of {values.size} rows"
+        got = f"no number at {t_s[bad[0]]:.9g} s, in {bad.size} of {values.size} rows"
         remedy = "cut the recording with --from or --until to where inputs are known"
         raise BadInput(f"column {name!r}", where, got, "a finite number", remedy)
     return values

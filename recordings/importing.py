@@ -9,7 +9,7 @@ import numpy as np
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.formats import table
-from recordings.joined import from_the_inputs, on_one_clock
+from recordings.joined import from_the_inputs, in_order, on_one_clock
 from recordings.mapping.automatic import ambiguous, automatic
 from recordings.mapping.columns import Column, column
 from recordings.mapping.mapping import ColumnMapping
@@ -65,6 +65,7 @@ def log_of_contents(
     found, left_out = _columns(of, mapping, columns)
     channels, counted = on_one_clock({name: entry.channel for name, entry in found.items()})
     channels, shift = _from_the_first(channels)
+    channels, late = in_order(channels, columns, span or Span())
     part, before = from_the_inputs(channels, columns, span or Span())
     stated = mapping.loop or facts.get("loop")
     if stated not in (None, *LOOPS):
@@ -76,7 +77,7 @@ def log_of_contents(
     )
     times = "; ".join(dict.fromkeys(entry.time_told for entry in found.values() if entry.time_told))
     told = [*contents.found, times, *(f"{c.told}{_range(log, name)}" for name, c in found.items()), *shift, *left_out]
-    told += [*counted, *before]
+    told += [*counted, *late, *before]
     return Imported(log, used, (*told, *_missing(log), *_doubtful(log)))
 
 
@@ -140,9 +141,9 @@ def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mappi
         return BadInput("signals", of.where, told, "vectors of numbers", "save them as plain vectors")
     if TIME not in said and not of.clocks:
         missing = [TIME, *missing]
-    there = listed(
-        [*(_named(name, of) for name in of.signals), *(f"{name} ({told})" for name, told in of.contents.unread.items())]
-    )
+    unread = (f"{name} ({told})" for name, told in of.contents.unread.items())
+    singles = (f"{name} (one number)" for name in of.contents.singles)
+    there = listed([*(_named(name, of) for name in of.signals), *unread, *singles])
     found = "; ".join(of.contents.found)[:500]
     got = f"{there}{f' ({found})' if found else ''}"
     remedy = f"say which is which, for example {' '.join(proposed(of.contents, columns, said))}"

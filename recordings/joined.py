@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from recordings.channels import Array, Channel, Span
+from recordings.channels import Array, Channel, Span, taken
 from records.log import LogColumns
 from records.restarts import pause_s, restart_rows
 
@@ -49,6 +49,25 @@ def _counted_on(
         begins.append(float(first_s + shifts[-1]))
         end_s = last_s + shifts[-1] + pause_s(max(float(np.median(np.diff(run))) for run in runs))
     return shifts, begins
+
+
+def in_order(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -> tuple[dict[str, Channel], list[str]]:
+    """The outputs without samples whose time does not rise within the span, and what is to be said of them.
+
+    As they are where these are half and more: then the clock is no clock. What holds its last value may be in any order.
+    """
+    kept, told = dict(channels), []
+    for name in columns.outputs:
+        channel = channels[name]
+        if channel.t_s is None or not np.isfinite(channel.t_s).all():
+            continue
+        late = np.concatenate([[False], channel.t_s[1:] <= np.maximum.accumulate(channel.t_s)[:-1]])
+        late &= span.holds(channel.t_s)
+        if late.any() and late.sum() < 0.5 * late.size:
+            kept[name] = taken(channel, ~late)
+            first_s = channel.t_s[late][0]
+            told.append(f"{name}: {late.sum()} samples whose time does not rise are left out, first at {first_s:.9g} s")
+    return kept, told
 
 
 def from_the_inputs(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -> tuple[Span, list[str]]:

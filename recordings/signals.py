@@ -30,7 +30,8 @@ class Signal:
 class Contents:
     """Signals by name (`run1.psi_rad`, `ScopeData.signals(2).values`), texts by name (loop, table_digest), and what was found unasked.
 
-    `unread` tells by name what the file holds that is no signal; `locked` axes are stated by a file that was made of a run log alone.
+    `unread` tells by name what the file holds that is no signal; `singles` are numbers of one value; `locked` axes are stated by a file
+    that was made of a run log alone.
     """
 
     signals: Mapping[str, Signal]
@@ -38,6 +39,7 @@ class Contents:
     found: tuple[str, ...] = ()
     unread: Mapping[str, str] = field(default_factory=dict)
     locked: tuple[str, ...] = ()
+    singles: Mapping[str, Signal] = field(default_factory=dict)
 
 
 def listed(names: Mapping[str, object] | list[str] | tuple[str, ...], most: int = 300) -> str:

@@ -79,6 +79,7 @@ UNITS = (
     Unit("s", 1e-9, ("ns", "nsec", "nanos", "nanosecond", "nanoseconds"), ("ns", "nsec", "nanos")),
     Unit("s", 60.0, ("min", "minute", "minutes"), ("minutes",)),
     Unit("s", 3600.0, ("h", "hour", "hours"), ("hours",)),
+    Unit("s", 86400.0, ("day", "days"), ("days",)),
     Unit("1", 1.0, ("1", "-", "none", "dimensionless", "n/a"), ()),
     Unit("1", 1e-2, ("%", "percent", "pct"), ("percent", "pct")),
 )
@@ -100,6 +101,12 @@ def suffix_of(name: str) -> str:
         if len(tokens) > count and suffix in _BY_SUFFIX:
             return suffix
     return ""
+
+
+def unit_of_clock(name: str) -> str:
+    """The unit that is all of a clock's name: "millis" of run1.millis, empty where it is none; of one letter it may be anything."""
+    last = re.split(r"[./\\]", name)[-1]
+    return last if len(last) > 1 and last in _BY_SUFFIX and _BY_SUFFIX[last].si == "s" else ""
 
 
 def unit_of_suffix(suffix: str) -> Unit:

@@ -1,10 +1,10 @@
 """What the diagnosis says of every rig of the published recordings, however its records are split.
 
-    python tests/real_rigs.py OUT [--only RIG] [--most N] [--workers N]
+    python tests/real_rigs.py OUT [--only RIG] [--most N] [--workers N] [--keep FILE.json]
 
 imports the records (from TWINLAW_DATASETS) to OUT/logs/RIG and runs `twinlaw splits` on them to OUT/RIG, one rig after the other; what OUT
-already holds stays. All tables go to OUT/real-rigs.md, after one with a line for each rig. A rig whose recordings are not there is told and
-passed over.
+already holds stays. All tables go to OUT/real-rigs.md, after one with a line for each rig, and to FILE.json for programs. A rig whose
+recordings are not there is told and passed over.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from twinlaw.command import main as twinlaw
+from twinlaw.pages.diagnose import splits
 
 ROOT = Path(__file__).parent.parent
 TO_20_S = "--from 0 --until 20"
@@ -52,13 +53,27 @@ def diagnosed(rig: str, out: Path, told: list[str]) -> None:
     twinlaw(["splits", "--plant", plant, "--out", str(out / rig), *told, *map(str, logs)])
 
 
-def page(folders: Mapping[str, Path]) -> str:
-    """A line for each rig, and then the table of each."""
-    told = {rig: json.loads((folder / "splits.json").read_text()) for rig, folder in folders.items()}
+def parts(told: Mapping[str, Any]) -> list[str]:
+    """Of what `twinlaw splits` told of each rig: a table with a line for each, and then the table of each with its remarks."""
     lines = [SUMMARY, ("---",) * len(SUMMARY), *(_line(rig, entry) for rig, entry in told.items())]
-    parts = ["\n".join(f"| {' | '.join(line)} |" for line in lines)]
-    parts += [f"### {rig}\n\n{(folder / 'splits.md').read_text().rstrip()}" for rig, folder in folders.items()]
-    return "\n\n".join(parts) + "\n"
+    return [
+        "\n".join(f"| {' | '.join(line)} |" for line in lines),
+        *("\n".join([splits.markdown(entry["splits"]), *entry["remarks"]]) for entry in told.values()),
+    ]
+
+
+def page(told: Mapping[str, Any]) -> str:
+    """All of it, each rig under its name."""
+    first, *rigs = parts(told)
+    named = (f"### {rig}\n\n{text}" for rig, text in zip(told, rigs, strict=True))
+    return "\n\n".join([first, *named]) + "\n"
+
+
+def kept(told: Any) -> Any:
+    """What was told without the errors by output, of which no page states any."""
+    if isinstance(told, dict):
+        return {key: kept(entry) for key, entry in told.items() if not key.startswith("rms_")}
+    return [kept(entry) for entry in told] if isinstance(told, list) else told
 
 
 def _line(rig: str, told: Mapping[str, Any]) -> tuple[str, ...]:
@@ -76,13 +91,17 @@ def main() -> int:
     parser.add_argument("--only", choices=RIGS, action="append", help="a rig; may be repeated")
     parser.add_argument("--most", default="12", help="splits of a rig; default: %(default)s")
     parser.add_argument("--workers", default="1", help="processes; default: %(default)s")
+    parser.add_argument("--keep", type=Path, metavar="FILE.json", help="also what the tables are made of")
     chosen = parser.parse_args()
     out = chosen.out.resolve()
     os.environ.setdefault("TWINLAW_DATASETS", str(ROOT.parent / "shared" / "datasets"))
     for rig in chosen.only or RIGS:
         diagnosed(rig, out, ["--most", chosen.most, "--workers", chosen.workers])
     folders = {rig: out / rig for rig in RIGS if (out / rig / "splits.json").exists()}
-    (out / "real-rigs.md").write_text(page(folders), encoding="utf-8")
+    told = {rig: json.loads((folder / "splits.json").read_text()) for rig, folder in folders.items()}
+    (out / "real-rigs.md").write_text(page(told), encoding="utf-8")
+    if chosen.keep is not None:
+        chosen.keep.write_text(json.dumps(kept(told), indent=1) + "\n", encoding="utf-8")
     return 0
 
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from recordings.signals import Signal
-from recordings.units import known, suffix_of
+from recordings.units import known, suffix_of, unit_of_clock
 
 # As MATLAB, Simulink, loggers and spreadsheets call it, in small letters and without its unit.
 TIME_NAMES = frozenset(
-    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time zeit temps tiempo tempo".split()  # noqa: SIM905
+    "t time times tout timestamp timestamps time_stamp stamp elapsed elapsed_time datenum zeit temps tiempo tempo".split()  # noqa: SIM905
 )
 
 
@@ -24,8 +24,10 @@ def with_clocks(signals: Mapping[str, Signal]) -> dict[str, Signal]:
 
 
 def is_time_name(name: str) -> bool:
-    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`."""
+    """Whether the last part of a name is one of times: `log.Time`, `time_ms`, `t_s`, `millis`."""
     last = re.split(r"[./]", name)[-1].lower()
+    if unit_of_clock(last):
+        return True
     unit = suffix_of(last)
     bare = last.removesuffix(f"_{unit}") if unit and (known(unit) or known("s")) else last
     return bare in TIME_NAMES

@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from recordings.formats.clocks import with_clocks
 from recordings.formats.decoding import decoded
 from recordings.formats.headings import name_and_unit
-from recordings.formats.text_cells import from_the_first_s, is_missing, number, time_of_day_s
-from recordings.formats.text_layout import COMMENTS, SEPARATORS, Layout, Line, find_layout, split
+from recordings.formats.text_cells import (
+    from_the_first_s,
+    is_missing,
+    is_number,
+    number,
+    number_and_unit,
+    time_of_day_s,
+)
+from recordings.formats.text_layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 
@@ -82,7 +89,8 @@ def _without_headers(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Li
 def _body(lines: Sequence[Line], told: list[str], layout: Layout) -> tuple[Sequence[Line], tuple[str, ...]]:
     """The rows of numbers: a last row that was cut short, and text below the numbers, are left out and said; rows of nothing too."""
     end = len(lines)
-    while end > 1 and not any(_is_value(cell, layout) for cell in split(lines[end - 1].text, layout.separator)):
+    labelled = sum(_begins_with_text(line, layout) for line in lines[:SAMPLE_LINES]) > 0.5 * len(lines[:SAMPLE_LINES])
+    while end > 1 and (not _values(lines[end - 1], layout) or _begins_with_text(lines[end - 1], layout) > labelled):
         end -= 1
     if end < len(lines):
         told.append(f"text below the numbers is left out, from line {lines[end].number} on: {lines[end].text[:40]!r}")
@@ -93,8 +101,15 @@ def _body(lines: Sequence[Line], told: list[str], layout: Layout) -> tuple[Seque
     return lines[:end], tuple(told)
 
 
-def _is_value(cell: str, layout: Layout) -> bool:
-    return number(cell, layout.decimal) is not None and not is_missing(cell)
+def _values(line: Line, layout: Layout) -> int:
+    """How many cells of a line are numbers or times of day."""
+    return sum(is_number(cell, layout.decimal) for cell in split(line.text, layout.separator))
+
+
+def _begins_with_text(line: Line, layout: Layout) -> bool:
+    """Whether the first cell of a line is neither a number nor says that there is none: `Max` of a summary."""
+    cell = split(line.text, layout.separator)[0]
+    return number(cell, layout.decimal) is None and not is_number(cell, layout.decimal)
 
 
 def _signals(lines: Sequence[Line], layout: Layout) -> tuple[dict[str, Signal], dict[str, str]]:
@@ -162,8 +177,25 @@ def _column(cells: Sequence[str | None], lines: Sequence[Line], short: Sequence[
     faults = {row: _told(cells[row], lines[row], short[row], layout) for row in odd}
     filled = sum(cell is not None and not is_missing(cell) for cell in cells)
     if filled and sum(cells[row] is not None for row in odd) > MOST_TEXT * filled:
-        return f"text, as {next(iter(faults.values()))}"
+        in_unit = _in_one_unit(cells, layout.decimal)
+        return _with_unit(in_unit, lines, short, layout) if in_unit else f"text, as {next(iter(faults.values()))}"
     return Signal(values, faults=faults)
+
+
+def _in_one_unit(cells: Sequence[str | None], decimal: str) -> tuple[list[str | None], str] | None:
+    """Cells without the one unit that stands behind their numbers, and that unit; None where there are none or several."""
+    found = [None if cell is None else number_and_unit(cell, decimal) for cell in cells]
+    units = {pair[1] for pair in found if pair}
+    if len(units) != 1:
+        return None
+    return [cell if pair is None else pair[0] for cell, pair in zip(cells, found, strict=True)], units.pop()
+
+
+def _with_unit(
+    in_unit: tuple[Sequence[str | None], str], lines: Sequence[Line], short: Sequence[str], layout: Layout
+) -> Signal | str:
+    column = _column(in_unit[0], lines, short, layout)
+    return replace(column, unit=in_unit[1]) if isinstance(column, Signal) else column
 
 
 def _told(cell: str | None, line: Line, short: str, layout: Layout) -> str:

@@ -1,5 +1,6 @@
 """HDF5, as MATLAB's version 7.3 and many programs write it, by way of the optional package h5py."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,23 +14,39 @@ from recordings.layout import TextLayout
 from recordings.signals import Contents
 from records.errors import BadInput
 
+UNIT_ATTRIBUTES = ("units", "unit", "Units", "Unit")  # netCDF's and NeXus' first
+
 
 def read(path: Path, asked: TextLayout) -> Contents:
     """All datasets of numbers under their paths; raises BadInput for a file that is missing, damaged or no HDF5."""
-    found = flat(content(path))
-    return Contents(with_clocks(found.signals), found.texts, unread=found.unread)
+    units: dict[str, str] = {}
+    found = flat(content(path, units))
+    signals = {name: replace(signal, unit=units.get(name, "")) for name, signal in found.signals.items()}
+    return Contents(with_clocks(signals), found.texts, unread=found.unread, singles=found.singles)
 
 
-def content(path: Path) -> dict[str, Any]:
-    """The groups as dictionaries, MATLAB's arrays in its own order of rows and columns; raises BadInput, also where h5py is missing."""
+def content(path: Path, units: dict[str, str] | None = None) -> dict[str, Any]:
+    """The groups as dictionaries, MATLAB's arrays in its own order of rows and columns; `units` takes what the file states, by path.
+
+    Raises BadInput, also where h5py is missing.
+    """
     h5py = package("h5py", "hdf5", path)
     try:
         with h5py.File(path, "r") as file:
+            if units is not None:
+                file.visititems(lambda name, node: units.update(_unit(name, node)))
             return {name: _value(file[name], file) for name in file if not name.startswith("#")}
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, RecursionError) as error:
         if not path.is_file():
             raise BadInput("HDF5 file", str(path), "no such file", "a readable file", "check the path") from error
         raise BadInput("HDF5 file", str(path), f"no whole HDF5 ({error})", "an HDF5 file", "save it again") from error
+
+
+def _unit(name: str, node: Any) -> dict[str, str]:
+    """The unit that a dataset's attribute states, by its path; nothing where none does."""
+    stated = next((node.attrs[word] for word in UNIT_ATTRIBUTES if word in node.attrs), None)
+    text = stated.decode(errors="replace") if isinstance(stated, bytes) else stated
+    return {name.replace("/", "."): text.strip()} if isinstance(text, str) else {}
 
 
 def _is_field_of_several(node: Any) -> bool:
@@ -66,4 +83,6 @@ def _value(node: Any, file: Any) -> Any:
         return "".join(map(chr, np.ravel(node[()].T)))
     if node.dtype.kind in "OSU" and node.shape == ():
         return node.asstr()[()] if node.dtype.kind == "O" else node[()].decode(errors="replace")
+    if node.dtype.names:
+        return {name: np.asarray(node[name]) for name in node.dtype.names}
     return np.asarray(node[()]).T if kind else np.asarray(node[()])

@@ -33,7 +33,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
         )
         for name, signal in found.signals.items()
     }
-    return Contents(with_clocks(signals), texts, unread=found.unread)
+    return Contents(with_clocks(signals), texts, unread=found.unread, singles=found.singles)
 
 
 def _of_series(name: str, signals: Mapping[str, object]) -> str:
@@ -58,13 +58,21 @@ def _content(path: Path) -> dict[str, Any]:
                 return hdf5.content(path)
             stream.seek(0)
             content = loadmat(stream, simplify_cells=True)
-    except OSError as error:
-        raise BadInput(
-            "MATLAB file", str(path), error.strerror or str(error), "a readable file", "check the path"
-        ) from error
     except NotImplementedError:
         return hdf5.content(path)
-    except (MatReadError, ValueError, TypeError, EOFError, KeyError, IndexError, MemoryError, ArithmeticError) as error:
+    except (
+        OSError,
+        MatReadError,
+        ValueError,
+        TypeError,
+        EOFError,
+        KeyError,
+        IndexError,
+        MemoryError,
+        ArithmeticError,
+    ) as error:
+        if isinstance(error, OSError) and error.strerror:  # what the system says; SciPy's own has none
+            raise BadInput("MATLAB file", str(path), error.strerror, "a readable file", "check the path") from error
         raise BadInput(
             "MATLAB file", str(path), f"no whole .mat file ({error})", "a .mat file", "save it again with -v7"
         ) from error

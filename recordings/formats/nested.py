@@ -11,11 +11,12 @@ from recordings.signals import Signal
 
 @dataclass(frozen=True)
 class Flat:
-    """Signals and texts by path, and what is neither."""
+    """Signals, texts and numbers of one value by path, and what is none of these."""
 
     signals: dict[str, Signal] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
     unread: dict[str, str] = field(default_factory=dict)
+    singles: dict[str, Signal] = field(default_factory=dict)
 
 
 def flat(content: Mapping[str, Any]) -> Flat:
@@ -34,6 +35,8 @@ def flat(content: Mapping[str, Any]) -> Flat:
             )
         elif array.size > 1:
             found.signals[name] = Signal(np.squeeze(array).astype(float))
+        elif array.size == 1:
+            found.singles[name] = Signal(np.squeeze(array).astype(float))
     return found
 
 

@@ -41,6 +41,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
 
 def _numbers(column: Any) -> tuple[np.ndarray | None, str]:
     """The values as floats, NaN where there is none, and the unit that their type has."""
+    if str(column.type).startswith("decimal"):
+        column = column.cast("double")
     values = column.to_numpy()
     if values.dtype.kind == "M":
         there = values[~np.isnat(values)]

@@ -62,7 +62,13 @@ def read(path: Path, asked: TextLayout) -> Contents:
         return compressed.read(path, lambda unpacked: read(unpacked, asked))
     if suffix not in _BY_SUFFIX:
         got = f"the ending {path.suffix!r}" if path.suffix else "a name without an ending"
-        raise BadInput("file", str(path), got, f"one of {', '.join(SUFFIXES)}", "export it as one of these")
+        raise BadInput(
+            "file",
+            str(path),
+            got,
+            f"one of {', '.join(SUFFIXES)}",
+            "export it as one of these, or call a table of text .csv",
+        )
     entry = _BY_SUFFIX[suffix]
     if asked != TextLayout() and entry.module != "delimited":
         got = f"--separator, --decimal or --skip for a {entry.called}"

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from recordings.units import known
+
 Array = NDArray[np.float64]
 
 DECIMALS = (".", ",")
@@ -18,8 +20,12 @@ _NUMBER = {
 }
 _INFINITE = re.compile(r"[+-]?(inf|infinity|1\.#inf|∞)", re.IGNORECASE)
 _CLOCK = re.compile(
-    r"(?:\S+[ T])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?(?:Z|[+-]\d{2}:?\d{2})?"
+    r"(?:[\w.,/ -]*[\w.][ T])?\s*(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,:]\d+)?))?\s*([AaPp][Mm])?"
+    r"(?:Z|[+-]\d{2}:?\d{2}| ?UTC| ?GMT| \d{4})?"
 )
+_BASIC = re.compile(r"\d{8}T(\d{2})(\d{2})(\d{2}(?:[.,]\d+)?)()(?:Z|[+-]\d{2}:?\d{2})?")  # ISO 8601 without signs
+_MINUTES = re.compile(r"()(\d{1,3}):(\d{2}[.,]\d+)()")  # 58:01.5, as spreadsheets show an hour's times
+_WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?) ?([^\d\s.,eE+-]\S*)")
 DAY_S = 86400.0
 
 
@@ -40,17 +46,27 @@ def number(cell: str, decimal: str) -> float | None:
 
 
 def is_number(cell: str, decimal: str) -> bool:
-    """Whether a cell is a number, or a time of day."""
-    return _NUMBER[decimal].fullmatch(cell) is not None or time_of_day_s(cell) is not None
+    """Whether a cell is a number, by itself or with its unit, or a time of day."""
+    plain = _NUMBER[decimal].fullmatch(cell) is not None
+    return plain or time_of_day_s(cell) is not None or number_and_unit(cell, decimal) is not None
+
+
+def number_and_unit(cell: str, decimal: str) -> tuple[str, str] | None:
+    """The number of a cell such as `4.9 V` or `-45°` as it stands there, and its known unit; None for any other text."""
+    match = _WITH_UNIT.fullmatch(cell)
+    if match is None or known(match[2]) is None or not _NUMBER[decimal].fullmatch(match[1]):
+        return None
+    return match[1], match[2]
 
 
 def time_of_day_s(cell: str) -> float | None:
     """Seconds since midnight of `17:22:44.123`, with or without a date before it; None for any other text."""
-    match = _CLOCK.fullmatch(cell) if ":" in cell else None
+    forms = (_CLOCK, _MINUTES) if ":" in cell else (_BASIC,) if "T" in cell else ()
+    match = next((match for form in forms if (match := form.fullmatch(cell))), None)
     if match is None:
         return None
     hours, minutes, seconds, half = match.groups()
-    hour = int(hours) % 12 + (12 if half.lower() == "pm" else 0) if half else int(hours)
+    hour = int(hours) % 12 + (12 if half.lower() == "pm" else 0) if half else int(hours or 0)
     return 3600.0 * hour + 60.0 * int(minutes) + float(re.sub("[,:]", ".", seconds or "0"))
 
 

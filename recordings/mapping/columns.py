@@ -10,6 +10,7 @@ from recordings.channels import Channel
 from recordings.mapping.source import Source
 from recordings.mapping.times import times
 from recordings.mapping.values import Looked, evaluated, factor_of, parsed
+from recordings.mapping.wraps import INTEGERS, angle_past_its_end
 from records.errors import BadInput
 from records.text.units import unit_of
 
@@ -33,12 +34,30 @@ def column(name: str, text: str, of: Source) -> Column:
     quantity = evaluated(name, text, node, found.look_up, of)
     factor, told = factor_of(name, text, quantity, of)
     values = quantity.values * factor
+    if (unit_of(name) or "1") == "rad" and quantity.values.ndim:
+        values, over = _without_leaps(values, factor, quantity.unit)
+        told += over
     if not quantity.values.ndim:
         return Column(Channel(None, values), text, f"{name} = {text}, a constant")
     _check_numbers(name, text, values, found, of)
     clock, length = _clock(name, text, found, of)
     t_s, time_told = times(clock, length, name, of)
     return Column(Channel(t_s, values, _faults(found, clock)), text, f"{name} = {text}{told}", time_told)
+
+
+def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Array, str]:
+    """An angle [rad] without leaps of a whole turn or, in counts of `factor`, of their integer; and what is to be said of it.
+
+    What was typed stands as typed, and is only said.
+    """
+    sizes = [2.0 * np.pi, *(factor * size for size in INTEGERS if unit and factor != 1.0)]
+    counted, leaps, size = angle_past_its_end(values, sizes)
+    if not leaps:
+        return values, ""
+    what = "a whole turn" if size == sizes[0] else f"{size / factor:.0f} counts"
+    if unit is None:
+        return values, f", which leaps by {what} {leaps} times: unwrap(...) around it would undo that"
+    return counted, f", without {leaps} leaps of {what}"
 
 
 def _check_numbers(name: str, text: str, values: Array, found: Looked, of: Source) -> None:

@@ -28,7 +28,8 @@ class Source:
     def known_names(self) -> frozenset[str]:
         """All names that an expression may use, headings and last parts of names too."""
         headings = {signal.heading for signal in self.signals.values()} - {""}
-        return frozenset({*self.signals, *headings, *(name.rpartition(".")[2] for name in self.signals)})
+        names = (*self.signals, *self.contents.singles)
+        return frozenset({*names, *headings, *(name.rpartition(".")[2] for name in names)})
 
     @cached_property
     def clocks(self) -> frozenset[str]:

@@ -10,9 +10,10 @@ from recordings.mapping.automatic import ambiguous
 from recordings.mapping.evaluation import Number, Quantity, Reference
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
-from recordings.mapping.values import evaluated, factor_of, parsed, picked, unit_for
+from recordings.mapping.values import evaluated, factor_of, parsed, picked, single, unit_for
+from recordings.mapping.wraps import clock_past_its_end
 from recordings.signals import Signal, listed
-from recordings.units import known, suffix_of
+from recordings.units import factor_to, known, suffix_of
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
@@ -21,6 +22,11 @@ TIME = "t_s"
 ROW = "row"  # in an expression of times, of a file that has none: 0, 1, 2, ...
 CALENDAR = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 CALENDAR_S = (1e9, 4e9)  # 2001 to 2096 since 1970: no run lasts as long
+DAYS = {
+    "of MATLAB": (7.3e5, 7.7e5),
+    "of a spreadsheet": (3.6e4, 7.4e4),
+}  # days since the year 0 and since 1900, of 1999 to 2108
+MOST_DAYS = 1e-4  # between rows, 9 s: numbers of that size that go on faster are no days
 
 
 def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array, str]:
@@ -35,8 +41,10 @@ def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array,
     if isinstance(node, Number):
         remedy = f"--column {TIME}=0.01*row for 10 ms between rows"
         raise BadInput(f"column {TIME!r}", f"mapping {text!r}", "a constant", "the times of the samples", remedy)
-    quantity = evaluated(TIME, text, node, partial(_look_up, clock=clock, length=length, of=of), of)
+    ranges: list[float] = []
+    quantity = evaluated(TIME, text, node, partial(_look_up, clock=clock, length=length, of=of, ranges=ranges), of)
     factor, told = _calendar(quantity) or factor_of(TIME, text, quantity, of)
+    told += "".join(f", whose ticks begin again behind {size:.0f}: counted on" for size in ranges[:1])
     t_s: Array = quantity.values * factor
     if t_s.size != length:
         got = f"{length} values at {t_s.size} times"
@@ -45,10 +53,16 @@ def times(clock: str | None, length: int, name: str, of: Source) -> tuple[Array,
     return t_s, f"{TIME} = {text}{told}"
 
 
-def _look_up(reference: Reference, *, clock: str | None, length: int, of: Source) -> Quantity:
-    """What a name in an expression of times means: a clock of the file stands for the column's own; ROW for its rows."""
+def _look_up(reference: Reference, *, clock: str | None, length: int, of: Source, ranges: list[float]) -> Quantity:
+    """What a name in an expression of times means: a clock of the file stands for the column's own; ROW for its rows.
+
+    Ticks that ran over are counted on; `ranges` takes their integer's.
+    """
     if reference.text == ROW and find(ROW, of.signals) is None:
         return Quantity(np.arange(length, dtype=float))
+    number = single(reference, of)
+    if number is not None:
+        return number
     try:
         meant = find(reference.text, of.signals, of.group)
     except Ambiguous as error:
@@ -59,14 +73,20 @@ def _look_up(reference: Reference, *, clock: str | None, length: int, of: Source
         used, values = clock, of.signals[clock].values
     else:
         used, values = picked(reference, TIME, of)
+    values, size = clock_past_its_end(values)
+    ranges += [size] if size else []
     return Quantity(values, unit_for(used, of.signals[used], "s"))
 
 
 def _calendar(quantity: Quantity) -> tuple[float, str] | None:
-    """The factor of times without a unit that are dates in ms, us or ns since 1970, and what is to be said of it; None for others."""
+    """The factor of times without a unit that are dates in ms, us or ns since 1970, or in days, and what is to be said of it; else None."""
     if quantity.unit != "" or not np.isfinite(quantity.values).any():
         return None
     first = float(np.nanmin(quantity.values))
+    if quantity.values.size > 1 and np.nanmedian(np.diff(quantity.values)) < MOST_DAYS:
+        days = next((what for what, (least, most) in DAYS.items() if least <= first < most), None)
+        if days:
+            return factor_to("s", "days", None), f", dates in days {days}"
     return next(
         ((f, f", dates in {unit}") for unit, f in CALENDAR.items() if CALENDAR_S[0] <= first * f < CALENDAR_S[1]), None
     )
@@ -80,10 +100,12 @@ def _no_times(of: Source, name: str, length: int) -> BadInput:
         return BadInput(
             f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
         )
+    texts = [f"{unread} ({told})" for unread, told in of.contents.unread.items()]
     rising = (signal for signal in of.signals if _may_be_times(signal, of.signals[signal], length))
     first = next(rising, "NAME")
     remedy = f"name them with --column {shlex.quote(f'{TIME}={first}')}, or --column {TIME}=0.01*row for rows that are 10 ms apart"
-    return BadInput(f"column {TIME!r}", of.where, listed(list(of.signals)), "the times of the samples", remedy)
+    got = listed([*of.signals, *texts])
+    return BadInput(f"column {TIME!r}", of.where, got, "the times of the samples", remedy)
 
 
 def _may_be_times(name: str, signal: Signal, length: int) -> bool:

@@ -12,7 +12,7 @@ from recordings.mapping.expression import parse
 from recordings.mapping.names import Ambiguous, find
 from recordings.mapping.source import Source
 from recordings.signals import Signal, listed
-from recordings.units import factor_to, suffix_of, unit_of_suffix
+from recordings.units import factor_to, suffix_of, unit_of_clock, unit_of_suffix
 from records.errors import BadInput
 from records.text.units import unit_of
 
@@ -28,14 +28,28 @@ class Looked:
 
     def look_up(self, reference: Reference) -> Quantity:
         """The vector that a reference means, in the unit that its signal has; raises BadInput."""
+        number = single(reference, self.of)
+        if number is not None:
+            return number
         name, values = picked(reference, self.name, self.of)
         self.used.append((name, values))
         return Quantity(values, unit_for(name, self.of.signals[name], self.si))
 
 
+def single(reference: Reference, of: Source) -> Quantity | None:
+    """The number of one value that a name means, where no signal bears it; None otherwise."""
+    try:
+        name = find(reference.text, of.contents.singles, of.group)
+        if name is None or find(reference.text, of.signals, of.group) is not None:
+            return None
+    except Ambiguous:
+        return None
+    return Quantity(of.contents.singles[name].values)
+
+
 def unit_for(name: str, signal: Signal, si: str) -> str:
     """The unit of a signal: the stated one, else the one that its name ends in; a single letter that does not fit is no unit."""
-    suffix = suffix_of(name)
+    suffix = suffix_of(name) or (unit_of_clock(name) if si == "s" else "")
     if signal.unit.strip() or not suffix:
         return signal.unit.strip()
     return "" if len(suffix) == 1 and unit_of_suffix(suffix).si != si else suffix

@@ -9,7 +9,9 @@ from tests.test_project import ROOT
 PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")))
 _FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 _INDENTED = re.compile(r"(?:^    [^\n]*\n|^\n(?=    ))+", flags=re.MULTILINE)
-_COMMAND = re.compile(r"(?:\.venv/bin/)?twinlaw |make |cp |diff |mkdir |pip |dask |for |\. |sed |awk |cat |printf ")
+_COMMAND = re.compile(
+    r"(?:\.venv/bin/)?(?:twinlaw|python) |make |cp |diff |mkdir |pip |dask |for |\. |sed |awk |cat |printf "
+)
 _CALL = re.compile(r"(?<![\w/-])twinlaw [a-z][a-z-]*(?: [^;&|\n`]*)?")
 
 
@@ -45,7 +47,7 @@ def indented(page: str, beginning: str) -> str:
 
 def _split(block: str) -> list[str]:
     """Commands of a block: lines, those that go on joined, a loop as one; without comments and without the path of .venv."""
-    text = re.sub(r"\\\n\s*", "", block).replace(".venv/bin/twinlaw", "twinlaw")
+    text = re.sub(r"\.venv/bin/(?=twinlaw|python)", "", re.sub(r"\\\n\s*", "", block))
     text = re.sub(r"(^for .*?;? do\n)(.*?)(^done$)", lambda loop: loop[0].replace("\n", "\0"), text, flags=re.M | re.S)
     text = re.sub(r"^(cat >.*<<EOF\n)(.*?)(^EOF$)", lambda here: here[0].replace("\n", "\0"), text, flags=re.M | re.S)
     lines = (re.sub(r"\s+#(?: |$).*", "", line).strip() for line in text.split("\n"))
@@ -72,7 +74,8 @@ def checkout(folder: Path) -> Path:
     (folder / "tests").symlink_to(ROOT / "tests")
     program = folder / "bin" / "twinlaw"
     program.parent.mkdir()
-    (program.parent / "python").symlink_to(sys.executable)
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m twinlaw.command "$@"\n')
-    program.chmod(0o755)
+    # A link to an interpreter would leave its environment behind.
+    for name, words in {"twinlaw": "-m twinlaw.command ", "python": ""}.items():
+        (program.parent / name).write_text(f'#!/bin/sh\nexec {sys.executable} {words}"$@"\n')
+        (program.parent / name).chmod(0o755)
     return folder

@@ -36,6 +36,7 @@ def swept(on: str, friction: str) -> list[list[str]]:
 
 COMMANDS: dict[str, list[list[str]]] = {
     "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
+    "designed": [["design"]],
     "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],
     "identified": [
         ["experiments", "--seed", "1"],
@@ -46,13 +47,26 @@ COMMANDS: dict[str, list[list[str]]] = {
     "swept_inputs_free": swept("inputs", "free"),
     "swept_larger_references_dry": swept("larger_references", "dry"),
     "swept_references_dry": swept("references", "dry"),
+    "verified": [["design"], ["verify", "--table", "{out}/controller.json"]],
     "velagic": [
         ["experiments", *VELAGIC, "--as-stated"],
         ["identify", *VELAGIC, "--search", "genetic", "--truth", "{out}/truth.toml", "{out}"],
     ],
 }
+# What long runs gave, hours of a diagnosis among them, and the command that wrote it: no test runs these again.
+HOURS: dict[str, str] = {
+    "blind_first_rig": "twinlaw blind score cases answers --json, and for each baseline; without the judgements",
+    "blind_fresh_first": "twinlaw blind score first answers-first --json",
+    "blind_fresh_real": "twinlaw blind score real answers-real --json",
+    "blind_fresh_second": "twinlaw blind score second answers-second --json",
+    "cycles": "python -m tests.verification.cycles docs/results/cycles.json",
+    "million_frames": "python -m tests.rig.link.campaign 1000000 docs/results/million_frames.json",
+    "million_steps": "python -m tests.rig.link.image_campaign 1000000 docs/results/million_steps.json",
+    "real_rigs": "python tests/real_rigs.py rigs --most 6 --keep docs/results/real_rigs.json",
+}
 LONG = (
     "looked_at",
+    "table",
     "repetitions",
     "notes",
     "correlation",

@@ -41,6 +41,7 @@ SMALLER = {
     "--constant ALARM UNKNOWN --factors 0.7 1.4": "--constant ALARM --factors 1.4",
     "compare --plant plants/ce150.toml": r"\g<0> --controllers pid --runs 2 --effects azimuth.cable_spring --steps 1000",
     "splits --plant": "splits --most 1 --plant",
+    r"campaign 1000000": "campaign 1000",
     r"real_rigs\.py rigs": r"\g<0> --only maglev_coil --most 1",
 }
 # What a page leaves to the reader, and what is none of this computer's: the board, the other computers.
@@ -179,6 +180,22 @@ def test_the_commands_of_a_page_work_in_their_order(
             capture_output=True,
         )
         assert done.returncode == 0, done.stderr.decode()
+
+
+@pytest.mark.soak
+def test_what_the_page_on_a_real_board_mentions_works_on_an_emulated_one(
+    built: Path, board: str, tmp_path: Path
+) -> None:
+    folder = checkout(tmp_path / "checkout")
+    shutil.copytree(built, folder / "build")
+    told = dict.fromkeys(
+        call for call in mentions("docs/hardware.md") if re.match("twinlaw (validate|watch) --port", call)
+    )
+    assert len(told) == 5
+    for call in told:
+        command = re.sub("--port [A-Z]+|--port /dev/ttyACM0", f"--port {board}", call).removesuffix(" --steps 100000")
+        command += " --steps 500" if "validate" in command else ""
+        (watched if re.match(WATCHES, command) else shell)(command, folder)
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -2,26 +2,29 @@
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
 from tests.docs.numbers import agrees, last_digit
-from tests.docs.results import COMMANDS, FOLDER, made, result
+from tests.docs.results import COMMANDS, FOLDER, HOURS, made, result
+from tests.docs.tables import line
 from tests.docs.test_files import KNOWN
+from tests.real_rigs import parts
 from tests.test_project import ROOT
 
+BLIND = (ROOT / "docs" / "blind.md").read_text(encoding="utf-8")
 SEEDS = (ROOT / "docs" / "seeds.md").read_text(encoding="utf-8")
 
 
 def rows(beginning: str, page: str = SEEDS) -> Iterator[list[str]]:
     """The cells of each row of the table whose heading begins so; a number in each as it is written, an empty cell where there is none."""
     lines = page[page.index(beginning) :].splitlines()[2:]
-    for line in lines:
-        if not line.startswith("|"):
+    for told in lines:
+        if not told.startswith("|"):
             return
-        yield [cell.strip().removesuffix(" %").removeprefix("+") for cell in line.strip("|").split("|")]
+        yield [cell.strip().removesuffix(" %").removeprefix("+") for cell in told.strip("|").split("|")]
 
 
 def hold(numbers: list[str], keys: list[str], factors: tuple[float, ...] = ()) -> None:
@@ -31,7 +34,7 @@ def hold(numbers: list[str], keys: list[str], factors: tuple[float, ...] = ()) -
 
 
 def test_every_result_has_its_command_and_its_file() -> None:
-    assert {path.stem for path in FOLDER.glob("*.json")} == set(COMMANDS)
+    assert {path.stem for path in FOLDER.glob("*.json")} == {*COMMANDS, *HOURS}
 
 
 @pytest.mark.soak
@@ -93,3 +96,90 @@ def test_a_table_s_row_that_is_off_by_its_last_digit_is_seen() -> None:
 
 def test_results_are_in_the_project() -> None:
     assert not KNOWN or {f"docs/results/{name}.json" for name in COMMANDS} <= set(KNOWN)
+
+
+def test_the_splits_of_real_rigs_are_those_that_were_diagnosed() -> None:
+    real = (ROOT / "docs" / "real-data.md").read_text(encoding="utf-8")
+    for part in parts(result("real_rigs")):
+        assert f"\n{part}\n" in real, part[:200]
+
+
+@pytest.mark.parametrize(
+    ("page", "heading", "name"),
+    [
+        ("faults", "| count | frames |", "million_frames"),
+        ("faults", "| count | |", "million_steps"),
+        ("proofs", "| arithmetic | given |", "cycles"),
+    ],
+)
+def test_a_table_is_what_its_program_counted(page: str, heading: str, name: str) -> None:
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    _, *told = text[text.index(heading) :].split("\n\n")[0].splitlines()[1:]
+    assert told == [line(row) for row in result(name)]
+
+
+def _share(cases: list[Any], is_right: Callable[[Any], bool]) -> str:
+    return f"{sum(map(is_right, cases))} of {len(cases)}"
+
+
+def _fresh(found: Any) -> list[str]:
+    """The column of the table of three families that a score gives."""
+    judged = found["judgements"]
+    left = {least: [j for j in judged if j["severity_after_retune"] >= least] for least in (1, 2)}
+    severe = [j for j in left[2] if j["kind"] != "nominal"]
+    seen = [j for j in severe if j["detected"]]
+    single = [j for j in left[1] if len(j["effects"]) == 1 and j["kind"] != "outside"]
+    several = [j for j in left[1] if len(j["effects"]) > 1]
+    outside = [j for j in severe if j["kind"] == "outside"]
+    return [
+        _share([j for j in judged if j["kind"] == "nominal"], lambda j: j["detected"]),
+        _share(severe, lambda j: j["detected"]),
+        _share(seen, lambda j: j["place_right"]),
+        _share(single, lambda j: j["rank"] == 1),
+        _share(several, lambda j: j["rank"] == 1),
+        _share(outside, lambda j: j["place_right"] and (not j["found"] or j["rank"] == 1)),
+    ]
+
+
+def test_the_figures_of_three_families_are_those_of_their_scores() -> None:
+    found = [result(f"blind_fresh_{name}") for name in ("first", "second", "real")]
+    heading = f"|figure|first, {found[0]['cases']}|second, {found[1]['cases']}|real, {found[2]['cases']}|"
+    told = [cells for _, *cells in rows(heading, BLIND)][:6]
+    assert told == [list(line) for line in zip(*map(_fresh, found), strict=True)]
+
+
+def _shown(value: float | None) -> str:
+    return "no case" if value is None else f"{value:.3f}"
+
+
+def test_the_figures_of_300_cases_are_those_of_their_scores() -> None:
+    found = {name: told for name, told in result("blind_first_rig").items() if name not in ("engine", "seed")}
+    heading = "|figure|diagnose|95 % interval|cases|target|met|bic|residual-size|sparse-regression|"
+    told = [[cell.strip() for cell in cells] for cells in rows(heading, BLIND)]
+    figures = {name: {entry["name"]: entry for entry in score["figures"]} for name, score in found.items()}
+    assert [cells[0] for cells in told] == list(figures["diagnose"])
+    for name, value, interval, cases, target, met, *plain in told:
+        own = figures["diagnose"][name]
+        assert value == _shown(own["value"])
+        assert interval == (" to ".join(map(_shown, own["interval"])) if own["interval"] else "")
+        assert cases == str(own["cases"] or "")
+        assert (target != "", met) == (own["target"] is not None, {True: "yes", False: "no", None: ""}[own["met"]])
+        others = [figures[other][name]["value"] for other in ("bic", "residual-size", "sparse-regression")]
+        assert [cell for cell in plain if cell] == [
+            _shown(other) for cell, other in zip(plain, others, strict=True) if cell
+        ]
+
+
+@pytest.mark.parametrize(
+    ("heading", "key", "lines"),
+    [
+        ("| severity |", "detection_after_retune", ("cases", "detected")),
+        ("| stated |", "reliability", ("count", "stated", "right")),
+    ],
+)
+def test_detection_and_reliability_of_300_cases_are_those_of_their_score(
+    heading: str, key: str, lines: tuple[str, ...]
+) -> None:
+    found = result("blind_first_rig")["diagnose"][key]
+    for counted, (_, *cells) in zip(lines, rows(heading, BLIND), strict=True):
+        assert [float(cell) for cell in cells] == [entry[counted] for entry in found]

@@ -89,7 +89,7 @@ def _without(name: str) -> dict[str, Any]:
         ({"phi_rad": np.zeros(49)}, r"column 'phi_rad': got 49 values at 50 of t_s times"),
         ({"t_s": T_S[::-1]}, r"times of psi_rad: got 0\.48 s in row 2 after 0\.49 s"),
         ({"t_s": np.where(T_S == 0.1, np.nan, T_S)}, "times of psi_rad: got nan s in row 11"),
-        ({"u_M_V": np.where(T_S > 0.2, np.nan, 5.0)}, r"column 'u_M_V': got nan at 0\.21 s, in 29 of 50 rows"),
+        ({"u_M_V": np.where(T_S > 0.2, np.nan, 5.0)}, r"column 'u_M_V': got no number at 0\.21 s, in 29 of 50 rows"),
         ({"loop": "sideways"}, "text 'loop': got 'sideways'"),
     ],
 )
@@ -149,6 +149,8 @@ def _mapped(**columns: str) -> ColumnMapping:
     return ColumnMapping(columns=columns)
 
 
+CELLS = np.empty((1, 5), object)
+CELLS[0] = list(RUN.values())
 FOUR = {"u_M_V": "u_M_V", "u_T_V": "u_T_V", "psi_rad": "psi_rad", "phi_rad": "phi_rad"}
 MATRIX = np.vstack([RUN[name] for name in RUN])
 SCOPE = np.zeros(4, dtype=[("values", "O"), ("label", "O")])
@@ -194,6 +196,9 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "a negative sign": ({**RUN, "psi_rad": -RUN["psi_rad"]}, {"psi_rad": "-psi_rad"}),
     "no times at all": ({name: RUN[name] for name in FOUR}, {"t_s": "row*0.01"}),
+    "a sample period alone": ({**{name: RUN[name] for name in FOUR}, "Ts": 0.01}, {"t_s": "Ts*row"}),
+    "cells": ({"log": CELLS}, {name: f"log({place})" for place, name in enumerate(RUN, start=1)}),
+    "ticks of 16 bits": ({**{name: RUN[name] for name in FOUR}, "millis": (T_S * 1e3).round() % 65536}, {}),
 }  # fmt: skip
 
 
@@ -381,3 +386,78 @@ def test_a_packed_table_is_read_and_half_of_one_is_refused(tmp_path: Path) -> No
     (tmp_path / "half.csv.gz").write_bytes(packed[: len(packed) // 2])
     with pytest.raises(BadInput, match="no whole gzip file"):
         import_file(tmp_path / "half.csv.gz", ColumnMapping())
+
+
+TURNED = {**RUN, "psi_rad": np.sin(9.0 * T_S), "phi_rad": np.cos(T_S)}
+
+
+@pytest.mark.parametrize(
+    ("times", "first_s"),
+    [
+        (np.round(T_S * 1e3 + 65436.0) % 65536, 65.436),  # millis() of 16 bits
+        (739377.0 + T_S / 86400.0, 0.0),  # MATLAB's datenum
+        (45418.0 + T_S / 86400.0, 0.0),  # a spreadsheet's days
+    ],
+)
+def test_ticks_that_ran_over_and_dates_in_days_become_seconds(
+    times: np.ndarray, first_s: float, tmp_path: Path
+) -> None:
+    named = {name: values for name, values in RUN.items() if name != "t_s"}
+    savemat(tmp_path / "run.mat", {**named, "millis" if first_s else "time": times})
+    log = imported_here(tmp_path / "run.mat", ColumnMapping()).log
+    np.testing.assert_allclose(log.t_s, first_s + T_S, atol=2e-5)  # a double holds a date's days to 1e-5 s
+
+
+def test_an_angle_within_one_turn_and_counts_of_16_bits_are_counted_on_and_that_is_said(tmp_path: Path) -> None:
+    counts = np.round(TURNED["phi_rad"] * 4096.0 / (2.0 * np.pi) - 600.0)
+    named = {name: TURNED[name] for name in ("t_s", "u_M_V", "u_T_V")}
+    saved = {**named, "psi_deg": np.degrees(TURNED["psi_rad"]) % 360.0, "phi_counts": counts % 65536}
+    savemat(tmp_path / "run.mat", saved)
+    done = imported_here(tmp_path / "run.mat", ColumnMapping(per_turn=4096.0))
+    np.testing.assert_allclose(done.log.column("psi_rad"), TURNED["psi_rad"], atol=1e-12)
+    np.testing.assert_allclose(done.log.column("phi_rad"), counts * 2.0 * np.pi / 4096.0, atol=1e-12)
+    assert any("leaps of a whole turn" in told for told in done.found)
+    typed = imported_here(tmp_path / "run.mat", ColumnMapping({"psi_rad": "psi_deg*pi/180"}, per_turn=4096.0))
+    assert typed.log.column("psi_rad").max() > 6.0
+    assert any("unwrap(...) around it" in told for told in typed.found)
+
+
+def test_samples_whose_time_does_not_rise_are_left_out_and_a_clock_that_mostly_stands_is_refused(
+    tmp_path: Path,
+) -> None:
+    stamps = T_S.copy()
+    stamps[[7, 30]] = stamps[6], stamps[20]
+    savemat(tmp_path / "run.mat", {**RUN, "t_s": stamps})
+    done = imported_here(tmp_path / "run.mat", ColumnMapping())
+    np.testing.assert_array_equal(done.log.t_s, np.delete(T_S, [7, 30]))
+    assert "psi_rad: 2 samples whose time does not rise are left out, first at 0.06 s" in done.found
+    savemat(tmp_path / "run.mat", {**RUN, "t_s": np.floor(T_S * 20.0) / 20.0})
+    with pytest.raises(BadInput, match=r"expected times that increase; say --column t_s=0\.01\*row"):
+        imported_here(tmp_path / "run.mat", ColumnMapping())
+
+
+def test_hdf5_s_units_and_tables_of_rows_are_read(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    rows = np.zeros(50, dtype=[("time", "f8"), ("phi_rad", "f8")])
+    rows["time"], rows["phi_rad"] = T_S, RUN["phi_rad"]
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        file["log"] = rows
+        for name, factor, unit in (
+            ("time", 1e3, "ms"),
+            ("u_M", 1e3, "mV"),
+            ("u_T", 1.0, "V"),
+            ("psi", 180.0 / np.pi, "deg"),
+        ):
+            column = {"time": "t_s", "u_M": "u_M_V", "u_T": "u_T_V", "psi": "psi_rad"}[name]
+            file[f"rig/{name}"] = factor * RUN[column]
+            file[f"rig/{name}"].attrs["units"] = unit
+    log = imported_here(tmp_path / "run.h5", ColumnMapping({"u_M_V": "u_M", "u_T_V": "u_T", "psi_rad": "psi"})).log
+    for name, values in RUN.items():
+        np.testing.assert_allclose(log.column(name), values, atol=1e-12)
+
+
+def test_times_that_are_text_are_shown_as_they_stand(tmp_path: Path) -> None:
+    rows = [f"'{1000 + k},{k % 10},5,1.8,0,0.1" for k in range(9)]
+    (tmp_path / "run.csv").write_text("\n".join(["t_ms,k,u_M_V,u_T_V,psi_rad,phi_rad", *rows]))
+    with pytest.raises(BadInput, match=r"t_ms \(text, as line 2: \"'1000\""):
+        imported_here(tmp_path / "run.csv", ColumnMapping())

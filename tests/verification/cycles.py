@@ -1,8 +1,9 @@
 """Cycles of one control step on the emulated board, by what the law is given.
 
-`.venv/bin/python -m tests.verification.cycles` prints the table of docs/proofs.md, for plants/ce150.toml.
+`.venv/bin/python -m tests.verification.cycles [FILE.json]` prints the table of docs/proofs.md, for plants/ce150.toml, and keeps it there.
 """
 
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from records.table import ControllerTable
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import build_firmware
+from tests.docs.tables import keep
 from tests.law_tables import STATE_WORDS
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.chain.designing import design_controller
@@ -80,13 +82,10 @@ def cycles(table: ControllerTable, arithmetic: str, steps: int = STEPS) -> Itera
         yield stimulus.name, law.cycles_min, law.cycles_max
 
 
-def told(table: ControllerTable) -> str:
-    """The table of docs/proofs.md."""
-    lines = ["| arithmetic | given | least | most |", "|---|---|---|---|"]
-    for arithmetic in ARITHMETICS:
-        lines += [f"| {arithmetic} | {name} | {least} | {most} |" for name, least, most in cycles(table, arithmetic)]
-    return "\n".join(lines)
+def rows(table: ControllerTable) -> list[tuple[str, str, int, int]]:
+    """The rows of docs/proofs.md's table: arithmetic, what the law was given, least and most cycles."""
+    return [(arithmetic, *row) for arithmetic in ARITHMETICS for row in cycles(table, arithmetic)]
 
 
 if __name__ == "__main__":
-    print(told(design_controller(Path("plants/ce150.toml")).table))
+    keep(rows(design_controller(Path("plants/ce150.toml")).table), sys.argv[1:])

@@ -55,6 +55,8 @@ LAYOUTS = {
     ),
     "R": (_rows(" ", [NAMES, *((str(k), *row) for k, row in enumerate(TEXTS, start=1))]).encode(), "header in line 1"),
     "a logger without power": (_rows(",", [NAMES, *TEXTS]).encode() + bytes(70), "comma"),
+    "units in the cells": (_rows(";", [NAMES, *([row[0], f"{row[1]} V", f"{row[2]}m"] for row in TEXTS)]).encode(), "semicolon"),
+    "a summary below": (_rows(",", [NAMES, *TEXTS]).encode() + b"Max,1.75,0\nMin,1.2,-0.1\n", "from line 14 on: 'Max,1.75,0'"),
     "exponents of Fortran": (_rows(" ", [NAMES, *[[f"{float(c):.9E}".replace("E", "D") for c in r] for r in TEXTS]]).encode(), ""),
 }  # fmt: skip
 
@@ -100,6 +102,20 @@ def test_times_of_day_are_seconds_since_the_first_past_midnight_too(tmp_path: Pa
     found = read(tmp_path / "log.csv", TextLayout()).signals
     np.testing.assert_allclose(found["When"].values, T_S[:4], atol=1e-9)
     assert found["q_m"].clock == "When"
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        ["58:59.980", "58:59.990", "59:00.000", "59:00.010"],  # of a spreadsheet
+        ["20240522T235959.980", "20240522T235959.990", "20240523T000000.000", "20240523T000000.010"],
+        [f"Wed May 22 23:59:{rest} 2024" for rest in ("58.980", "58.990", "59.000", "59.010")],
+        [f"22 May 2024 11:59:{rest} PM" for rest in ("58.980", "58.990", "59.000", "59.010")],
+    ],
+)
+def test_times_of_day_in_other_forms_are_seconds_since_the_first(stamps: list[str], tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("When,q_m\n" + "".join(f"{stamp},1\n" for stamp in stamps))
+    np.testing.assert_allclose(read(tmp_path / "log.csv", TextLayout()).signals["When"].values, T_S[:4], atol=1e-9)
 
 
 def test_a_bad_cell_and_a_row_of_another_width_are_faults_of_their_rows_with_their_lines(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from rig.link.hostile_line_faults import (
     SwapFrames,
     TruncateFrames,
 )
+from tests.docs.tables import keep
 from tests.firmware.box import DIGEST, word
 from tests.rig.link.line_box import LineBox
 
@@ -164,11 +165,11 @@ class Campaign:
         return code == SAMPLE and frame.number("u_M_V") == word(10.0 * psi_ref_rad)
 
 
-def told(campaign: Campaign, counted: dict[str, int]) -> str:
-    """The account as the table of docs/faults.md; `counted` are the board's counters at the end."""
+def rows(campaign: Campaign, counted: dict[str, int]) -> list[tuple[str, int]]:
+    """The account as the rows of docs/faults.md's table; `counted` are the board's counters at the end."""
     account, heard = campaign.account, campaign.host.received
     refused = [name for name in REFUSALS if counted[name]]
-    rows = [
+    return [
         ("frames sent", account.sent),
         ("taken by the board", account.accepted),
         ("counted as lost (`frames_lost`)", counted["frames_lost"]),
@@ -184,7 +185,6 @@ def told(campaign: Campaign, counted: dict[str, int]) -> str:
         ("answers taken that are false", account.false_at_host),
         ("clear frames after a weather that were not answered at once", account.deaf),
     ]
-    return "\n".join(f"| {name} | {f'{count:,}'.replace(',', ' ')} |" for name, count in rows)
 
 
 def flown(frames: int) -> Campaign:
@@ -197,4 +197,4 @@ def flown(frames: int) -> Campaign:
 
 if __name__ == "__main__":
     asked = flown(int(sys.argv[1]))
-    print(told(asked, asked.counters()))
+    keep(rows(asked, asked.counters()), sys.argv[2:])

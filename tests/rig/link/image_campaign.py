@@ -22,6 +22,7 @@ from rig.link.hostile_line_faults import Direction, Noise
 from rig.link.numbers import numbers_of
 from rig.link.port import open_port
 from rig.programming.image import build_firmware
+from tests.docs.tables import keep
 from tests.law_tables import ce150_table
 from tests.rig.link.campaign import REFUSALS, usual_faults
 from verification.fixed_stimuli import fixed_sequences
@@ -83,10 +84,10 @@ def _lanes(stimuli: Sequence[Stimulus]) -> Iterator[Stimulus]:
             yield Stimulus(one.name, one.angles[lane : lane + 1], np.ascontiguousarray(one.inputs[:, lane : lane + 1]))
 
 
-def told(account: Account) -> str:
-    """The account as the table of docs/faults.md."""
+def rows(account: Account) -> list[tuple[str, int]]:
+    """The account as the rows of docs/faults.md's table."""
     spoiled = account.struck.total() - account.struck["Noise"]
-    rows = [
+    return [
         ("steps asked for and answered", account.steps),
         ("steps whose words are not the host's", account.differing),
         ("times that five attempts in a row were lost, and a new session began", account.given_up),
@@ -96,7 +97,6 @@ def told(account: Account) -> str:
         *((f"`{name}`", account.counted[name]) for name in REFUSALS if account.counted[name]),
         *((f"`{name}`", account.counted[name]) for name in ("uart_framing_errors", "host_losses", "resets")),
     ]
-    return "\n".join(f"| {name} | {f'{count:,}'.replace(',', ' ')} |" for name, count in rows)
 
 
 def built_url(table: ControllerTable, folder: Path) -> str:
@@ -108,4 +108,4 @@ def built_url(table: ControllerTable, folder: Path) -> str:
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as built:
         asked_table = ce150_table()
-        print(told(flown(built_url(asked_table, Path(built)), asked_table, int(sys.argv[1]))))
+        keep(rows(flown(built_url(asked_table, Path(built)), asked_table, int(sys.argv[1]))), sys.argv[2:])

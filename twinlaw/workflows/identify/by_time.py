@@ -21,6 +21,7 @@ from records.experiment import Experiment
 from records.log import RunLog
 from sim.bind import BoundPlant, bind
 from twinlaw.cli import console
+from twinlaw.workflows.identify.columns import doubted_columns
 from twinlaw.workflows.identify.inputs import Inputs, Limits
 from twinlaw.workflows.identify.progress import Done, Progress, progress, save_result, told_files
 
@@ -51,6 +52,9 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
     flags = (*_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
     result = replace(so_far.finished(done), remarks=inputs.notes, flags=flags)
+    if result.at_bound and inputs.logs:
+        with console.stage("asking which columns may be others"):
+            result = replace(result, doubt=doubted_columns(bound, inputs.logs))
     save_result(folder, result)
     if not inputs.holdout:
         return result
