@@ -14,7 +14,7 @@ BINARY = {
     b"\x89HDF": "an HDF5 file",
     b"PAR1": "a Parquet file",
     b"\x1f\x8b": "a file that gzip has packed",
-    b"ULog": "a log of PX4",
+    b"\x55Log": "a log of PX4",
     b"\x89MCAP": "an MCAP file",
     b"SQLite format 3": "a data base, such as a ROS bag",
 }
