@@ -45,3 +45,8 @@ class Loop:
 
 # The helicopter's, in the order of the plant's outputs and inputs.
 LOOPS = (Loop("elevation", "psi_rad", "u_M_V", "main"), Loop("azimuth", "phi_rad", "u_T_V", "tail"))
+
+
+def has_pins(loops: tuple[Loop, ...]) -> bool:
+    """Whether a board has an encoder and an output for each of `loops`; others fly with the host in the loop alone."""
+    return loops == LOOPS
