@@ -98,9 +98,9 @@ class FlyingFlight:
         """A real board's telemetry is the clock."""
         return self.armed and self._rig.real
 
-    def preset(self, psi_counts: int, phi_counts: int) -> None:
+    def preset(self, *counts: int) -> None:
         """Declare where the plant stands."""
-        self._client.preset(psi_counts, phi_counts)
+        self._client.preset(*counts)
 
     def arm(self) -> Angles:
         """Arm; the board holds the place where it stands, which its first telemetry names."""
@@ -109,7 +109,7 @@ class FlyingFlight:
             told = self._next()
             if state_name(told.state) == "FLYING":
                 self.armed = True
-                return told.psi_rad, told.phi_rad
+                return told.angles_rad
         raise self._silent("telemetry of an earlier flight alone")
 
     def disarm(self) -> None:
@@ -141,8 +141,7 @@ class FlyingFlight:
         if self._first_tick is None:
             self._first_tick = told.tick
         t_s = (told.tick - self._first_tick) * self._period_s
-        flown = (told.u_M_V, told.u_T_V)
-        return LiveRow(t_s, flown, (told.psi_rad, told.phi_rad), (told.psi_ref_rad, told.phi_ref_rad))
+        return LiveRow(t_s, told.voltages_V, told.angles_rad, told.references_rad)
 
     def _next(self) -> Telemetry:
         told = self._client.telemetry()

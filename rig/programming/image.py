@@ -9,7 +9,8 @@ from codegen.protocol_source import protocol_source
 from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.files import write_atomic
-from records.protocol import PROTOCOL
+from records.loops import LOOPS, Loop, has_pins
+from records.protocol import protocol_of
 from toolchain.calls import callers_of
 from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
 from toolchain.host import CText, Source
@@ -34,17 +35,21 @@ class FirmwareImage:
 
 
 def build_firmware(
-    generated: Mapping[str, str], out_dir: Path | None = None, *, board: Board = STM32G071
+    generated: Mapping[str, str],
+    out_dir: Path | None = None,
+    *,
+    board: Board = STM32G071,
+    loops: tuple[Loop, ...] = LOOPS,
 ) -> FirmwareImage:
-    """Build the firmware of `board` around the `generated` law (file name -> text: law.h, law.c and what they include).
+    """Build the firmware of `board` around the `generated` law of `loops` (file name -> text: law.h, law.c and what they include).
 
     With `out_dir` it leaves firmware.elf and firmware.bin there. The same texts give the same bytes. Raises BadInput with file
     and line when the compiler refuses, or when flash, RAM or the stack's reserve are exceeded.
     """
-    texts = {**generated, **protocol_source(PROTOCOL)}
+    texts = {**generated, **protocol_source(protocol_of(loops))}
     sources: list[Source] = [
         *control_sources(),
-        *board_sources(board),
+        *board_sources(board, has_pins(loops)),
         *(CText(name, text) for name, text in sorted(texts.items())),
     ]
     folders = [FIRMWARE_DIR / "control", *board_folders(board)]
@@ -82,9 +87,12 @@ def control_sources() -> list[Path]:
     return sorted((FIRMWARE_DIR / "control").glob("*.c"))
 
 
-def board_sources(board: Board) -> list[Path]:
-    """`main` and the layer of the chip below it, in a fixed order."""
-    return sorted((path for folder in board_folders(board) for path in folder.glob("*.c")), key=lambda path: path.name)
+def board_sources(board: Board, pins: bool = True) -> list[Path]:
+    """`main` and the layer of the chip below it, in a fixed order; without `pins` nothing hangs on the chip but the line."""
+    files = {path.name: path for folder in board_folders(board) for path in folder.glob("*.c")}
+    if not pins:
+        files |= {path.name: path for path in (FIRMWARE_DIR / "board" / "no_pins").glob("*.c")}
+    return [files[name] for name in sorted(files)]
 
 
 def board_folders(board: Board) -> list[Path]:

@@ -14,7 +14,7 @@ from records.files import remove_all, write_atomic
 from records.table import ControllerTable
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import size_rows
-from twinlaw.workflows.chain.building import build_image, demand_image, generate_sources, image_a2l
+from twinlaw.workflows.chain.building import build_image, generate_sources, image_a2l
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,9 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Generate, compile, link and tell the sizes."""
     table = loading.load(chosen.table)[1]
-    demand_image(table)
     texts = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
-    image = build_image(texts, chosen.out)
+    image = build_image(table, texts, chosen.out)
     kinds = ["elf", "bin"]
     if isinstance(table, ControllerTable):
         write_atomic(chosen.out / "firmware.a2l", image_a2l(table, chosen.arithmetic, image.elf))

@@ -1,5 +1,4 @@
 """Verify a controller table: twin, compiled C and firmware image step by step, bit by bit; bounds; cost on the target.
-The firmware takes a helicopter's table; of any other, twin and compiled C are compared, and there is no cost.
 
 Writes DIR/verification.json, with the generated C and the image that were verified. --log replays what a run log recorded through
 all three as well; a log that another table flew is refused. --proofs adds what the tools of docs/proofs.md prove; one that is
@@ -16,7 +15,7 @@ from records.protocol import PROTOCOL
 from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import verification_rows
-from twinlaw.workflows.chain.building import build_image, demand_image, generate_sources, has_image
+from twinlaw.workflows.chain.building import build_image, demand_helicopter_loops, generate_sources
 from twinlaw.workflows.chain.designing import table_poles
 from twinlaw.workflows.chain.proving import with_proofs
 from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
@@ -42,17 +41,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
+    if chosen.proofs:
+        demand_helicopter_loops(table, "the proofs' drivers")
     bound = load_bound(chosen.plant)
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
-    image = build_image(law, chosen.out) if has_image(table) else None
+    image = build_image(table, law, chosen.out)
     verification = verify_table(
         bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
     )
     if chosen.proofs:
-        demand_image(table, "proofs' image")
-        assert image is not None
         motion = motion_of(bound, table)
         generated = {**law, **protocol_source(PROTOCOL)}
         subject = Subject(table, generated, image.elf, motion, chosen.arithmetic, chosen.all)

@@ -210,7 +210,7 @@ def test_a_flight_streams_references_up_and_telemetry_down():
         assert seen is not None
         assert seen.echo_sequence == number
         assert seen.psi_ref_rad == pytest.approx(0.01 * k, rel=1e-6)
-        assert seen.u_M_V == pytest.approx(0.1 * k, rel=1e-5)
+        assert seen.voltages_V[0] == pytest.approx(0.1 * k, rel=1e-5)
     client.disarm()
     port.tick()
     assert client.telemetry() is None

@@ -44,21 +44,18 @@ def verify_table(
     table: ControllerTable,
     poles: Sequence[PoleMigration],
     law: Mapping[str, str],
-    image: FirmwareImage | None,
+    image: FirmwareImage,
     recorded: Sequence[Replay] = (),
     steps: int = STEPS,
     arithmetic: str = "float32",
 ) -> Verification:
-    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`.
-
-    Without an image, which the firmware makes of a helicopter's table alone, those on this computer.
-    """
+    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
     checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
     for other in ARITHMETICS:
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = None if image is None else build_firmware(texts)
+                built = build_firmware(texts, loops=table.loops)
             checks[other] = _check(bound, table, other, texts, built, (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
@@ -67,7 +64,7 @@ def verify_table(
         self_tests=tuple(row for check in ordered for row in check.self_tests),
         rounding=checks[arithmetic].rounding,
         poles=tuple(poles),
-        target=tuple(check.cost for check in ordered if check.cost is not None),
+        target=tuple(check.cost for check in ordered),
         roundings={name: checks[name].rounding for name in ARITHMETICS},
     )
 
@@ -79,7 +76,7 @@ class _Check:
     equality: tuple[Equality, ...]
     self_tests: tuple[SelfTest, ...]
     rounding: RoundingBound
-    cost: TargetCost | None
+    cost: TargetCost
 
 
 def _check(
@@ -87,27 +84,27 @@ def _check(
     table: ControllerTable,
     arithmetic: str,
     law: Mapping[str, str],
-    image: FirmwareImage | None,
+    image: FirmwareImage,
     recorded: Sequence[Replay],
     steps: int,
 ) -> _Check:
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
     chosen, loops = ARITHMETICS[arithmetic], table.loops
     twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
-    target = None if image is None else TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table))
+    target = TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table), loops)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
-    pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), *([(host, target)] if target else [])]
+    pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), (host, target)]
     equality = [equal_steps(one, other, stimuli, loops) for one, other in pairs]
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
     with stage(f"proving a bound on rounding in {arithmetic}"):
         rounding = chosen.bound(table, motion_of(bound, table))
-    tests = [("host", host.self_test()), *([("target", target.self_test())] if target else [])]
+    tests = [("host", host.self_test()), ("target", target.self_test())]
     return _Check(
         equality=tuple(equality),
         self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        cost=None if image is None or target is None else _cost(table, arithmetic, image, target),
+        cost=_cost(table, arithmetic, image, target),
     )
 
 
