@@ -35,7 +35,7 @@ KINDS: Mapping[str, Kind] = {
 
 
 def library(kind: str, texts: Mapping[str, str], prefix: str = "", loops: tuple[Loop, ...] = LOOPS) -> dict[str, str]:
-    """Files of a law of `loops` by their path in the library of one of KINDS; with a prefix the files bear it too, as all share the include path.
+    """Files of a law of `loops` by path in a library of one of KINDS; with a prefix they bear it too, as all share the include path.
 
     `texts` are the generated ones by file name, without the prefix. Raises BadInput for a prefix that cannot begin a name.
     """
