@@ -13,6 +13,7 @@ from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.link.client import BoardClient
 from rig.link.replies import Health
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import Wiring
 
 Angles = tuple[float, ...]
 
@@ -40,7 +41,7 @@ class LiveFlight(Protocol):
         ...
 
     def sample(self, reference: Angles) -> LiveRow | None:
-        """`ticks` sample periods; None where the board tells nothing while it is disarmed."""
+        """`ticks` sample periods towards references, one a loop; None where the board tells nothing while it is disarmed."""
         ...
 
     def health(self) -> Health:
@@ -73,16 +74,18 @@ class LoopFlight:
     ticks = 1
     own_pace = False
 
-    def __init__(self, client: BoardClient, plant: SteppedPlant, board: BoardTime, period_s: float) -> None:
+    def __init__(
+        self, client: BoardClient, plant: SteppedPlant, wires: Wiring, board: BoardTime, period_s: float
+    ) -> None:
         self.armed = False
         self.round_trip_s: float | None = None
         self.law_cycles: int | None = None
-        self._client, self._plant, self._board, self._period_s = client, plant, board, period_s
+        self._client, self._plant, self._wires, self._board, self._period_s = client, plant, wires, board, period_s
         self._samples = 0
 
     def arm(self) -> Angles:
         """Arm and start the law at rest where the simulated rig stands."""
-        angles_rad = self._plant.measured()
+        angles_rad = self._wires.angles(self._plant.measured())
         self._client.arm("LOOP")
         self._client.reset_law(*angles_rad)
         self.armed = True
@@ -96,12 +99,13 @@ class LoopFlight:
     def sample(self, reference: Angles) -> LiveRow:
         """Measure, ask the board, and move the rig by one period."""
         began_s, t_s = self._board.now_s(), self._samples * self._period_s
-        angles_rad = self._plant.measured()
-        u = self._answer(reference, angles_rad) if self.armed else (0.0,) * len(self._client.loops)
+        y = self._plant.measured()
+        voltages_V = self._answer(reference, self._wires.angles(y)) if self.armed else (0.0,) * len(self._client.loops)
+        u = self._wires.command_V(voltages_V)
         self._samples += 1
         self._plant.advance(u, self._samples * self._period_s)
         self._board.passed(max(0.0, self._period_s - (self._board.now_s() - began_s)))
-        return LiveRow(t_s, u, angles_rad, reference)
+        return LiveRow(t_s, u, y, self._wires.columns(reference))
 
     def health(self) -> Health:
         """The board's state and counters, and the host's side of the line."""
