@@ -7,6 +7,8 @@ holds each of those, and those of the pages, against the record.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from records.loops import Pins
+
 
 @dataclass(frozen=True)
 class Memory:
@@ -102,6 +104,27 @@ class Board:
     boot_loader_id: int
     boot_loader_ram_bytes: int
     openocd_config: str
+
+    @property
+    def encoders(self) -> tuple[Encoder, ...]:
+        """Its encoders."""
+        return self.elevation_encoder, self.azimuth_encoder
+
+    @property
+    def motors(self) -> tuple[Motor, ...]:
+        """Its motors' drivers."""
+        return self.main_motor, self.tail_motor
+
+    def encoder_of(self, pins: Pins) -> Encoder | None:
+        """The encoder on these pins, where there is one."""
+        return next((one for one in self.encoders if (str(one.a), str(one.b)) == pins.encoder), None)
+
+    def motor_of(self, pins: Pins) -> Motor | None:
+        """The driver on these pins, with or without its direction, where there is one."""
+        return next(
+            (one for one in self.motors if str(one.pwm) == pins.pwm and pins.direction in (None, str(one.direction))),
+            None,
+        )
 
     @property
     def interrupts(self) -> dict[str, int]:

@@ -204,7 +204,9 @@ def demand_pins(loops: tuple[Loop, ...], where: str) -> None:
     """Raise BadInput for loops that fly with the host in the loop alone, as the board has no pins for them."""
     if not has_pins(loops):
         names = ", ".join(loop.axis for loop in loops)
-        expected = "an encoder and an output on the board for every loop, which only elevation and azimuth have"
+        expected = (
+            "an encoder and an output on the board for every loop, as section [board] of a plant file names their pins"
+        )
         remedy = "fly with the host in the loop: the host sends angles, the board answers voltages"
         raise BadInput("flight on the board's own encoders", where, f"the loops {names}", expected, remedy)
 

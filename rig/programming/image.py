@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from codegen.pins_source import pins_source
 from codegen.protocol_source import protocol_source
 from records.board import STM32G071, Board
 from records.errors import BadInput
@@ -46,7 +47,7 @@ def build_firmware(
     With `out_dir` it leaves firmware.elf and firmware.bin there. The same texts give the same bytes. Raises BadInput with file
     and line when the compiler refuses, or when flash, RAM or the stack's reserve are exceeded.
     """
-    texts = {**generated, **protocol_source(protocol_of(loops))}
+    texts = {**generated, **protocol_source(protocol_of(loops)), **pins_source(loops, board)}
     sources: list[Source] = [
         *control_sources(),
         *board_sources(board, has_pins(loops)),

@@ -97,8 +97,8 @@ def _flight(
         return LoopFlight(client, plant, wires, time_of(port), table.sample_period_s)
     steps = tuple(axis.resolution_rad for axis in table.axes)
     counts = [round(y / step) for y, step in zip(wires.angles(plant.measured()), steps, strict=True)]
-    rig = EmulatedRig(port, plant, steps) if isinstance(port, EmulatedSerial) else RealRig()
-    flying = FlyingFlight(client, rig, time_of(port), table.sample_period_s)
+    rig = EmulatedRig(port, plant, wires, steps, table.loops) if isinstance(port, EmulatedSerial) else RealRig()
+    flying = FlyingFlight(client, rig, wires, time_of(port), table.sample_period_s)
     flying.preset(*counts)
     return flying
 

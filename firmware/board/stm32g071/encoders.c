@@ -1,4 +1,5 @@
 #include "board.h"
+#include "pins.h"
 #include "stm32g071.h"
 #include "wiring.h"
 
@@ -13,27 +14,38 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
     timer->CR1 = TIM_CR1_CEN;
 }
 
+#define PINS_OF_1(angle, voltage, motor, VOLTAGE)                 \
+    pin_alternate(PORT_A, ELEVATION_A_PIN, ELEVATION_FUNCTION, true); \
+    pin_alternate(PORT_A, ELEVATION_B_PIN, ELEVATION_FUNCTION, true);
+#define PINS_OF_2(angle, voltage, motor, VOLTAGE)             \
+    pin_alternate(PORT_A, AZIMUTH_A_PIN, AZIMUTH_FUNCTION, true); \
+    pin_alternate(PORT_A, AZIMUTH_B_PIN, AZIMUTH_FUNCTION, true);
+#define START_1(angle, voltage, motor, VOLTAGE) encoder_timer_start(TIM2, UINT32_MAX);
+#define START_2(angle, voltage, motor, VOLTAGE) encoder_timer_start(TIM3, UINT16_MAX);
+
 void encoders_start(encoder_counts *self)
 {
     RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
-    pin_alternate(PORT_A, ELEVATION_A_PIN, ELEVATION_FUNCTION, true);
-    pin_alternate(PORT_A, ELEVATION_B_PIN, ELEVATION_FUNCTION, true);
-    pin_alternate(PORT_A, AZIMUTH_A_PIN, AZIMUTH_FUNCTION, true);
-    pin_alternate(PORT_A, AZIMUTH_B_PIN, AZIMUTH_FUNCTION, true);
-    encoder_timer_start(TIM2, UINT32_MAX);
-    encoder_timer_start(TIM3, UINT16_MAX);
+    PINS_ENCODER_1(PINS_OF_1)
+    PINS_ENCODER_2(PINS_OF_2)
+    PINS_ENCODER_1(START_1)
+    PINS_ENCODER_2(START_2)
     *self = (encoder_counts){0};
 }
 
+#define READ_1(angle, voltage, motor, VOLTAGE) self->angle##_counts = (int32_t)TIM2->CNT;
+/*
+ * The difference of two readings modulo 2^16 has no overflow event that could be missed. The last reading is the low
+ * half of the total: a bit that flips there is mended here, and one that flips above is a jump.
+ */
+#define READ_2(angle, voltage, motor, VOLTAGE)                                                       \
+    const uint16_t angle = (uint16_t)TIM3->CNT;                                                      \
+    const int16_t moved = (int16_t)(uint16_t)(angle - (uint16_t)self->angle##_counts);               \
+    self->angle##_counts = (int32_t)((uint32_t)self->angle##_counts + (uint32_t)moved);
+
 encoder_counts encoders_read(encoder_counts *self)
 {
-    /*
-     * The difference of two readings modulo 2^16 has no overflow event that could be missed. The last reading is the low
-     * half of the total: a bit that flips there is mended here, and one that flips above is a jump.
-     */
-    const uint16_t phi = (uint16_t)TIM3->CNT;
-    const int16_t moved = (int16_t)(uint16_t)(phi - (uint16_t)self->phi_counts);
-    self->phi_counts = (int32_t)((uint32_t)self->phi_counts + (uint32_t)moved);
-    self->psi_counts = (int32_t)TIM2->CNT;
+    PINS_ENCODER_2(READ_2)
+    PINS_ENCODER_1(READ_1)
     return *self;
 }

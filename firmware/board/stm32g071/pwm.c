@@ -1,9 +1,15 @@
 #include "board.h"
 #include "law.h"
+#include "pins.h"
 #include "stm32g071.h"
 #include "wiring.h"
 
 _Static_assert(LAW_PWM_TICKS >= 1000 && LAW_PWM_TICKS <= 65535, "a PWM period is 1000 to 65535 ticks of 64 MHz");
+
+#define DIRECTION_OF_1(angle, voltage, motor, VOLTAGE) pin_output(PORT_B, MAIN_DIRECTION_PIN);
+#define DIRECTION_OF_2(angle, voltage, motor, VOLTAGE) pin_output(PORT_B, TAIL_DIRECTION_PIN);
+#define PWM_OF_1(angle, voltage, motor, VOLTAGE) pin_alternate(PORT_A, MAIN_PWM_PIN, PWM_FUNCTION, false);
+#define PWM_OF_2(angle, voltage, motor, VOLTAGE) pin_alternate(PORT_A, TAIL_PWM_PIN, PWM_FUNCTION, false);
 
 /* With MOE off and OSSI on the timer itself holds both pins low. */
 void pwm_start(void)
@@ -18,10 +24,10 @@ void pwm_start(void)
     TIM1->CCER = TIM_CCER_CC1E | TIM_CCER_CC2E;
     TIM1->EGR = TIM_EGR_UG;
     TIM1->CR1 = TIM_CR1_CEN | TIM_CR1_ARPE;
-    pin_output(PORT_B, MAIN_DIRECTION_PIN);
-    pin_output(PORT_B, TAIL_DIRECTION_PIN);
-    pin_alternate(PORT_A, MAIN_PWM_PIN, PWM_FUNCTION, false);
-    pin_alternate(PORT_A, TAIL_PWM_PIN, PWM_FUNCTION, false);
+    PINS_DIRECTION_1(DIRECTION_OF_1)
+    PINS_DIRECTION_2(DIRECTION_OF_2)
+    PINS_PWM_1(PWM_OF_1)
+    PINS_PWM_2(PWM_OF_2)
 }
 
 static uint32_t magnitude(int32_t ticks)
@@ -29,15 +35,20 @@ static uint32_t magnitude(int32_t ticks)
     return ticks < 0 ? 0u - (uint32_t)ticks : (uint32_t)ticks;
 }
 
+#define TURN_1(angle, voltage, motor, VOLTAGE) pin_write(PORT_B, MAIN_DIRECTION_PIN, duty->motor##_ticks < 0);
+#define TURN_2(angle, voltage, motor, VOLTAGE) pin_write(PORT_B, TAIL_DIRECTION_PIN, duty->motor##_ticks < 0);
+#define DRIVE_1(angle, voltage, motor, VOLTAGE) TIM1->CCR1 = magnitude(duty->motor##_ticks);
+#define DRIVE_2(angle, voltage, motor, VOLTAGE) TIM1->CCR2 = magnitude(duty->motor##_ticks);
+
 void pwm_write(const duty_pair *duty, bool power)
 {
     if (!power) {
         pwm_safe();
     }
-    pin_write(PORT_B, MAIN_DIRECTION_PIN, duty->main_ticks < 0);
-    pin_write(PORT_B, TAIL_DIRECTION_PIN, duty->tail_ticks < 0);
-    TIM1->CCR1 = magnitude(duty->main_ticks);
-    TIM1->CCR2 = magnitude(duty->tail_ticks);
+    PINS_DIRECTION_1(TURN_1)
+    PINS_DIRECTION_2(TURN_2)
+    PINS_PWM_1(DRIVE_1)
+    PINS_PWM_2(DRIVE_2)
     if (power) {
         TIM1->BDTR = TIM_BDTR_OSSI | TIM_BDTR_MOE;
     }

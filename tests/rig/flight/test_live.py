@@ -47,8 +47,11 @@ class Desk:
 
     def flying(self) -> FlyingFlight:
         plant = SteppedPlant(self.bound, at_rest(self.bound))
+        wires = wiring(self.bound, TABLE.loops)
         psi, phi = (round(y / step) for y, step in zip(plant.measured(), STEPS, strict=True))
-        flight = FlyingFlight(self.client, EmulatedRig(self.port, plant, STEPS), time_of(self.port), PERIOD_S)
+        flight = FlyingFlight(
+            self.client, EmulatedRig(self.port, plant, wires, STEPS), wires, time_of(self.port), PERIOD_S
+        )
         flight.preset(psi, phi)
         return flight
 
