@@ -10,7 +10,7 @@ from tests.test_project import ROOT
 
 FILE = re.compile(r"`((?:[\w.-]+/)*[\w-]+\.(?:py|toml|c|h|md|ld|svg|yml))`")
 MADE = {"run.toml", "plant.toml", "found/plant.toml", "build/diagnosis/plant.toml", "law.c", "law.h", "law_self_test.c"}
-MADE |= {"splits.md", "real-rigs.md", "protocol.h", "protocol.c", "Example/flight.c", "CMakeLists.txt"}
+MADE |= {"splits.md", "real-rigs.md", "protocol.h", "protocol.c", "pins.h", "Example/flight.c", "CMakeLists.txt"}
 MADE |= {f"fig-{number}.svg" for number in (6, 12, 13, 14)}
 KNOWN = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True).stdout.split()
 
