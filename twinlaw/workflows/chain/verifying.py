@@ -22,7 +22,6 @@ from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.kernel.law import is_kernel_s
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
@@ -157,7 +156,7 @@ def recorded_replay(
     """
     log = load_known_log(path, bound)
     replay = replay_of(log, table, path, arithmetic)
-    if replay.sent is None or not has_replayable_columns(log) or not is_kernel_s(table):
+    if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
     begins = None
     if log.columns == log_columns(bound.model):
