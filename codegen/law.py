@@ -82,7 +82,7 @@ class ScheduleNames:
     max_rad: float
 
 
-def demand_drivable(table: ControllerTable) -> None:
+def demand_drivable(table: FlownTable) -> None:
     """Raise BadInput for a loop whose voltages its driver on the board cannot give: beyond full scale, never 0 V, or of the wrong sign."""
     for loop, axis in zip(table.loops, table.axes, strict=True):
         if loop.pins is None:
@@ -98,13 +98,11 @@ def demand_drivable(table: ControllerTable) -> None:
 def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c.
 
-    Raises BadInput for an unknown arithmetic, for a table whose law could not run in it (codegen/law_constants.py), and for
-    pins that cannot carry its voltages.
+    Raises BadInput for an unknown arithmetic, and for a table whose law could not run in it (codegen/law_constants.py).
     """
     if arithmetic not in ARITHMETIC_CODES:
         known = " or ".join(ARITHMETIC_CODES)
         raise BadInput("arithmetic", "generate", arithmetic, known, "choose one of these with --arithmetic")
-    demand_drivable(table)
     return dict(_generated(_Digested(table.digest, table), arithmetic))
 
 

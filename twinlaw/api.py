@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from codegen.law import demand_drivable
 from controllers import loading
 from diagnosis.diagnose import diagnose as diagnosed
 from diagnosis.result import Result
@@ -67,6 +68,7 @@ def verify(plant: BoundPlant, table: ControllerTable, arithmetic: str = "float32
     """Twin, host and target over `steps` steps, bounds and cost; `passed` says whether all of it holds."""
     law = generate(table, arithmetic)
     poles = table_poles(plant, table, arithmetic)
+    demand_drivable(table)
     image = build_firmware(law, loops=table.loops)
     return verify_table(plant, table, poles, law, image, steps=steps, arithmetic=arithmetic)
 
@@ -84,6 +86,7 @@ def fly(plant: BoundPlant, table: FlownTable | None = None, on: str = "double", 
     if on != "board":
         raise BadInput("on", "fly", repr(on), f"one of {', '.join(FLYING)}", "name what is to fly")
     with tempfile.TemporaryDirectory() as folder:
+        demand_drivable(table)
         build_firmware(generate(table, arithmetic), Path(folder), loops=table.loops)
         with connected(table, board_url("emulated", Path(folder) / "firmware.elf"), arithmetic) as client:
             return fly_board(plant, table, client).log

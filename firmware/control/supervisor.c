@@ -25,9 +25,11 @@ uint8_t supervisor_arm(supervisor_state *self, uint8_t mode, bool table_matches,
     if (mode != PROTOCOL_MODE_FLYING && mode != PROTOCOL_MODE_LOOP) {
         return PROTOCOL_REASON_UNKNOWN_MODE;
     }
-    if (mode == PROTOCOL_MODE_FLYING && PROTOCOL_HAS_PINS == 0) {
+#if PROTOCOL_HAS_PINS == 0
+    if (mode == PROTOCOL_MODE_FLYING) {
         return PROTOCOL_REASON_UNKNOWN_MODE;
     }
+#endif
     if (!table_matches) {
         return PROTOCOL_REASON_WRONG_TABLE;
     }

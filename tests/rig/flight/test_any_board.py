@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.law import generate_law
+from codegen.law import demand_drivable, generate_law
 from codegen.law_equations import state_words
 from design.settings import read_settings
 from records.errors import BadInput
@@ -167,7 +167,7 @@ def test_voltages_beyond_a_driver_s_full_scale_are_refused(tmp_path: Path) -> No
     pins = {"theta_rad": {"encoder": ["PA0", "PA1"]}, "u_V": {"pwm": "PA8", "direction": "PB0"}}
     table = design_plant(bind(replace(bound.plant, board=pins))).table
     with pytest.raises(BadInput, match=r"got -12 to 12 V.*expected -10 to 10 V"):
-        generate_law(table)
+        demand_drivable(table)
 
 
 def test_a_table_with_pins_reads_back_as_itself(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from codegen.law import demand_drivable
 from codegen.library import library
 from codegen.prefix import prefixed
 from codegen.protocol_source import protocol_source
@@ -59,7 +60,11 @@ def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix:
 
 
 def build_image(table: FlownTable, law: Mapping[str, str], folder: Path) -> FirmwareImage:
-    """Compile and link the firmware around the table's law; leaves firmware.elf and firmware.bin in `folder`."""
+    """Compile and link the firmware around the table's law; leaves firmware.elf and firmware.bin in `folder`.
+
+    Raises BadInput for voltages that the drivers on its pins cannot give.
+    """
+    demand_drivable(table)
     with stage("building the firmware for the STM32G071"):
         return build_firmware(law, folder, loops=table.loops)
 
