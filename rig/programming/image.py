@@ -88,10 +88,12 @@ def board_sources(board: Board) -> list[Path]:
 
 
 def board_folders(board: Board) -> list[Path]:
-    """Where the C is that any board has, and that of this chip."""
-    return [FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / board.folder]
+    """Where the C is that any board has, that of the chip's family, and that of this chip."""
+    return [FIRMWARE_DIR / "board" / folder for folder in ("", board.family, board.folder)]
 
 
-def linker_script(board: Board) -> Path:
-    """The chip's memories as the linker knows them."""
-    return FIRMWARE_DIR / "board" / board.folder / "link.ld"
+def linker_script(board: Board) -> CText:
+    """The chip's memories as the linker knows them, and what goes where in them."""
+    _, family, chip = board_folders(board)
+    parts = (chip / "link.ld", family / "sections.ld")
+    return CText("link.ld", "\n".join(part.read_text(encoding="utf-8") for part in parts))

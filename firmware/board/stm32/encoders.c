@@ -1,5 +1,5 @@
 #include "board.h"
-#include "stm32g071.h"
+#include "chip.h"
 #include "wiring.h"
 
 /* Quadrature on both inputs, four counts a line, glitches below 8 clocks ignored. The period of a counter is ARR + 1. */
@@ -15,7 +15,7 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
 
 void encoders_start(encoder_counts *self)
 {
-    RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
+    clock_to_encoders();
     pin_alternate(PORT_A, ELEVATION_A_PIN, ELEVATION_FUNCTION, true);
     pin_alternate(PORT_A, ELEVATION_B_PIN, ELEVATION_FUNCTION, true);
     pin_alternate(PORT_A, AZIMUTH_A_PIN, AZIMUTH_FUNCTION, true);
