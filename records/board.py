@@ -10,10 +10,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Core:
-    """A processor core by the compiler's name; `abi` is how a function takes its floats: `eabi` in integer registers, `eabihf` in its unit's."""
+    """A processor core: its title and architecture, and what the compiler and unicorn call it.
 
+    Functions take floats in the registers of its floating-point unit, where it has one.
+    """
+
+    title: str
+    architecture: str
     name: str
-    abi: str
+    unicorn: str
+    has_float_unit: bool = False
+
+    @property
+    def abi(self) -> str:
+        """The calling convention, as the compiler's target names it."""
+        return "eabihf" if self.has_float_unit else "eabi"
 
 
 @dataclass(frozen=True)
@@ -83,9 +94,10 @@ class Tick:
 class Board:
     """One chip and its wiring; its C is in `firmware/board/FOLDER/`, that of all chips alike in `firmware/board/FAMILY/`.
 
-    `is_emulated` says whether `rig/emulator` is this chip; of any other only the core can be run. The flash is erased by pages and written by `flash_write_bytes`, where it is erased. An
-    option bit gives the RAM `largest_ram_bytes`; the link leaves `stack_reserve_bytes` of it to the stack. The chip's serial boot loader
-    answers `boot_loader_id` to GET ID and keeps the first `boot_loader_ram_bytes` for itself. OpenOCD finds the board by `openocd_config`.
+    `is_emulated` says whether `rig/emulator` is this chip; of any other only the core can be run. The flash is erased by pages and written
+    by `flash_write_bytes`, where it is erased. An option bit, or a memory behind it, gives the RAM `largest_ram_bytes`; the link leaves
+    `stack_reserve_bytes` of it to the stack. The chip's serial boot loader answers `boot_loader_id` to GET ID and keeps the first
+    `boot_loader_ram_bytes` for itself. OpenOCD finds the board by `openocd_config`.
     """
 
     chip: str
@@ -125,7 +137,7 @@ STM32G071 = Board(
     chip="STM32G071",
     family="stm32",
     folder="stm32g071",
-    core=Core("cortex_m0plus", "eabi"),
+    core=Core("Cortex-M0+", "ARMv6-M", "cortex_m0plus", "CORTEX_M0"),
     is_emulated=True,
     flash=Memory(0x08000000, 128 * 1024),
     flash_page_bytes=2048,
@@ -148,13 +160,13 @@ STM32G071 = Board(
     openocd_config="board/st_nucleo_g0.cfg",
 )
 
-# RM0440 by section: memories 2.2 and 2.4, flash pages 3.3.1, wait states 3.3.3, writing by 64 bits 3.3.7, clocks 7.2, vectors 14.3, device
-# id 47.6.1. Above SRAM1 and SRAM2 the RAM goes on with the 10 KiB of the core-coupled memory, which is left alone. The loader's RAM: AN2606.
+# RM0440 by section: memories 2.2 and 2.4, flash pages 3.3.1, wait states 3.3.3, writing by 64 bits 3.3.7, clocks 7.2, vectors 14.3,
+# device id 47.6.1. Behind SRAM1 and SRAM2 the RAM goes on with 10 KiB of core-coupled memory, left alone here. The loader's RAM: AN2606.
 STM32G431 = Board(
     chip="STM32G431",
     family="stm32",
     folder="stm32g431",
-    core=Core("cortex_m4+vfp4d16sp", "eabihf"),
+    core=Core("Cortex-M4F", "ARMv7E-M", "cortex_m4+vfp4d16sp", "CORTEX_M4", has_float_unit=True),
     is_emulated=False,
     flash=Memory(0x08000000, 128 * 1024),
     flash_page_bytes=2048,
@@ -177,4 +189,5 @@ STM32G431 = Board(
     openocd_config="board/st_nucleo_g4.cfg",
 )
 
+# The first is what a verb takes where none is named.
 BOARDS: Mapping[str, Board] = {board.chip: board for board in (STM32G071, STM32G431)}

@@ -62,7 +62,16 @@ def build_image(
     with tempfile.TemporaryDirectory(dir=image.parent) as work:
         built = Path(work) / "out.elf"
         run_zig(
-            ["cc", *_machine(core), *LINK_FLAGS, "-T", str(as_file(linker_script, Path(work))), *map(str, objects), "-o", str(built)],
+            [
+                "cc",
+                *_machine(core),
+                *LINK_FLAGS,
+                "-T",
+                str(as_file(linker_script, Path(work))),
+                *map(str, objects),
+                "-o",
+                str(built),
+            ],
             f"linking {name}",
         )
         built.replace(image)

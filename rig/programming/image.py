@@ -11,7 +11,7 @@ from records.errors import BadInput
 from records.files import write_atomic
 from records.protocol import PROTOCOL
 from toolchain.calls import callers_of
-from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
+from toolchain.elf import ImageSizes, Symbol, flash_content, image_board, image_sizes, image_symbols
 from toolchain.host import CText, Source
 from toolchain.target import build_image
 
@@ -25,12 +25,13 @@ SOFT_ARITHMETIC = re.compile(
 
 @dataclass(frozen=True)
 class FirmwareImage:
-    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash."""
+    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash of `board`."""
 
     elf: bytes
     binary: bytes
     sizes: ImageSizes
     symbols: Mapping[str, Symbol]
+    board: Board
 
 
 def build_firmware(
@@ -74,7 +75,8 @@ def refuse_soft_arithmetic(image: FirmwareImage) -> None:
 
 def describe_image(elf: bytes, where: str) -> FirmwareImage:
     """The record of an ELF image; raises BadInput when it is none."""
-    return FirmwareImage(elf, flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where))
+    content, sizes, symbols = flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where)
+    return FirmwareImage(elf, content, sizes, symbols, image_board(elf) or STM32G071)
 
 
 def control_sources() -> list[Path]:

@@ -18,6 +18,7 @@ from replay.firmware import CLEARED
 from replay.flight import has_replayable_columns
 from replay.stretches import replay_stretches
 from rig.emulator.board import EmulatedBoard
+from rig.flight.core_law import CoreLaw
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
@@ -58,7 +59,7 @@ def verify_table(
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = None if image is None else build_firmware(texts)
+                built = None if image is None else build_firmware(texts, board=image.board)
             checks[other] = _check(bound, table, other, texts, built, (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
@@ -94,7 +95,7 @@ def _check(
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
     chosen, loops = ARITHMETICS[arithmetic], table.loops
     twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
-    target = None if image is None else TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table))
+    target = None if image is None else _on_target(image, arithmetic, table)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
     pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), *([(host, target)] if target else [])]
     equality = [equal_steps(one, other, stimuli, loops) for one, other in pairs]
@@ -107,8 +108,16 @@ def _check(
         equality=tuple(equality),
         self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        cost=None if image is None or target is None else _cost(table, arithmetic, image, target),
+        cost=_cost(table, arithmetic, image, target) if image is not None and isinstance(target, TargetLaw) else None,
     )
+
+
+def _on_target(image: FirmwareImage, arithmetic: str, table: ControllerTable) -> TargetLaw | CoreLaw:
+    """The image's law on the emulated board, or on the core alone of a chip that is not emulated."""
+    words = state_words(table)
+    if image.board.is_emulated:
+        return TargetLaw(EmulatedBoard(image.elf), arithmetic, words)
+    return CoreLaw(image, arithmetic, words, len(table.loops))
 
 
 def _cost(table: ControllerTable, arithmetic: str, image: FirmwareImage, target: TargetLaw) -> TargetCost:
