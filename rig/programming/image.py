@@ -13,7 +13,7 @@ from records.files import write_atomic
 from records.loops import LOOPS, Loop, has_pins
 from records.protocol import protocol_of
 from toolchain.calls import callers_of
-from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
+from toolchain.elf import ImageSizes, Symbol, flash_content, image_board, image_sizes, image_symbols
 from toolchain.host import CText, Source
 from toolchain.target import build_image
 
@@ -27,12 +27,13 @@ SOFT_ARITHMETIC = re.compile(
 
 @dataclass(frozen=True)
 class FirmwareImage:
-    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash."""
+    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash of `board`."""
 
     elf: bytes
     binary: bytes
     sizes: ImageSizes
     symbols: Mapping[str, Symbol]
+    board: Board
 
 
 def build_firmware(
@@ -80,7 +81,8 @@ def refuse_soft_arithmetic(image: FirmwareImage) -> None:
 
 def describe_image(elf: bytes, where: str) -> FirmwareImage:
     """The record of an ELF image; raises BadInput when it is none."""
-    return FirmwareImage(elf, flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where))
+    content, sizes, symbols = flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where)
+    return FirmwareImage(elf, content, sizes, symbols, image_board(elf) or STM32G071)
 
 
 def control_sources() -> list[Path]:
@@ -97,10 +99,12 @@ def board_sources(board: Board, pins: bool = True) -> list[Path]:
 
 
 def board_folders(board: Board) -> list[Path]:
-    """Where the C is that any board has, and that of this chip."""
-    return [FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / board.folder]
+    """Where the C is that any board has, that of the chip's family, and that of this chip."""
+    return [FIRMWARE_DIR / "board" / folder for folder in ("", board.family, board.folder)]
 
 
-def linker_script(board: Board) -> Path:
-    """The chip's memories as the linker knows them."""
-    return FIRMWARE_DIR / "board" / board.folder / "link.ld"
+def linker_script(board: Board) -> CText:
+    """The chip's memories as the linker knows them, and what goes where in them."""
+    _, family, chip = board_folders(board)
+    parts = (chip / "link.ld", family / "sections.ld")
+    return CText("link.ld", "\n".join(part.read_text(encoding="utf-8") for part in parts))

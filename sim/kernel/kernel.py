@@ -18,6 +18,7 @@ SINGLE = ("single.c", "events.c", "sensitivity.c")
 BATCH = ("batch.c", "events.c")  # a library of its own: most models never fly side by side
 # One run has nothing to lay side by side: a compiler that looks for it takes a third longer, and what it makes is no faster.
 ONE_RUN_FLAGS = ("-fno-vectorize", "-fno-slp-vectorize")
+MANY_RUNS_FLAGS = ("-DMANY_RUNS",)
 HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
 Array = NDArray[np.float64]
@@ -67,7 +68,8 @@ def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
         CText("sincos_coefficients.h", sincos_header()),
         *(C_DIR / file for file in files),
     ]
-    flags = (*FAST_FLAGS, *(ONE_RUN_FLAGS if files is SINGLE else ()), f"-DBATCH_LANES={BATCH_LANES}")
+    own = ONE_RUN_FLAGS if files is SINGLE else MANY_RUNS_FLAGS
+    flags = (*FAST_FLAGS, *own, f"-DBATCH_LANES={BATCH_LANES}")
     return build_shared(name, sources, include_dirs=[C_DIR], flags=flags)
 
 

@@ -1,4 +1,5 @@
 """Verify a controller table: twin, compiled C and firmware image step by step, bit by bit; bounds; cost on the target.
+--chip runs the law on the core of that chip; of one that is not emulated as a whole there is no cost, and no proof of it.
 
 Writes DIR/verification.json, with the generated C and the image that were verified. --log replays what a run log recorded through
 all three as well; a log that another table flew is refused. --proofs adds what the tools of docs/proofs.md prove; one that is
@@ -10,6 +11,8 @@ from pathlib import Path
 
 from codegen.protocol_source import protocol_source
 from controllers.loading import load_scheduled
+from records.board import BOARDS
+from records.errors import BadInput
 from records.files import write_atomic
 from records.protocol import PROTOCOL
 from records.verification import verification_text
@@ -24,10 +27,11 @@ from verification.proofs import Subject
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --table, --arithmetic, --log, --steps, --proofs, --all, --out, --json."""
+    """--plant, --table, --arithmetic, --chip, --log, --steps, --proofs, --all, --out, --json."""
     options.plant(parser)
     options.table(parser)
     options.arithmetic(parser)
+    options.chip(parser)
     parser.add_argument(
         "--log", type=Path, action="append", default=[], metavar="LOG.csv", help="replay it too; may be repeated"
     )
@@ -40,6 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
+    board = BOARDS[chosen.chip]
+    if chosen.proofs and not board.is_emulated:
+        remedy = "leave --chip out: all other proofs are of the C, which is the same for every chip"
+        raise BadInput("--proofs", "verify", board.chip, "an emulated chip, whose cycles are counted", remedy)
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
     if chosen.proofs:
         demand_helicopter_loops(table, "the proofs' drivers")
@@ -47,7 +55,7 @@ def run(chosen: argparse.Namespace) -> int:
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
-    image = build_image(table, law, chosen.out)
+    image = build_image(table, law, chosen.out, board)
     verification = verify_table(
         bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
     )
@@ -59,6 +67,8 @@ def run(chosen: argparse.Namespace) -> int:
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(verification_rows(verification)))
+    if image is not None and not board.is_emulated and not chosen.json:
+        print(f"- {board.chip}: its law ran on the core alone; cycles, peripherals and line are not emulated")
     for _, lacks in recorded:
         if lacks is not None and not chosen.json:
             print(f"- {lacks}")

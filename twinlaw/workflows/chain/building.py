@@ -9,6 +9,7 @@ from codegen.prefix import prefixed
 from codegen.protocol_source import protocol_source
 from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
+from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.files import write_atomic
 from records.law_table import FlownTable
@@ -17,7 +18,7 @@ from records.protocol import protocol_of
 from records.table import ControllerTable
 from rig.programming.image import FirmwareImage, build_firmware
 from toolchain.dwarf import variable_members
-from toolchain.elf import image_symbols
+from toolchain.elf import image_board, image_symbols
 from twinlaw.cli.console import stage
 
 _WHERE = "firmware.elf"
@@ -59,14 +60,14 @@ def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix:
     return [folder / name for name in sorted(files)]
 
 
-def build_image(table: FlownTable, law: Mapping[str, str], folder: Path) -> FirmwareImage:
-    """Compile and link the firmware around the table's law; leaves firmware.elf and firmware.bin in `folder`.
+def build_image(table: FlownTable, law: Mapping[str, str], folder: Path, board: Board = STM32G071) -> FirmwareImage:
+    """Compile and link the firmware of `board` around the table's law; leaves firmware.elf and firmware.bin in `folder`.
 
     Raises BadInput for voltages that the drivers on its pins cannot give.
     """
     demand_drivable(table)
-    with stage("building the firmware for the STM32G071"):
-        return build_firmware(law, folder, loops=table.loops)
+    with stage(f"building the firmware for the {board.chip}"):
+        return build_firmware(law, folder, board=board, loops=table.loops)
 
 
 def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
@@ -79,4 +80,6 @@ def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
         for member in under(name, variable_members(elf, _WHERE, name))
     ]
     signals = variable_members(elf, _WHERE, "main.path")
-    return a2l_text(table, arithmetic, ImageMap(signals, limits, symbols["LAW_TABLE_DIGEST"].address))
+    return a2l_text(
+        table, arithmetic, ImageMap(image_board(elf) or STM32G071, signals, limits, symbols["LAW_TABLE_DIGEST"].address)
+    )

@@ -18,6 +18,7 @@ from replay.firmware import CLEARED
 from replay.flight import has_replayable_columns
 from replay.stretches import replay_stretches
 from rig.emulator.board import EmulatedBoard
+from rig.flight.core_law import CoreLaw
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
@@ -54,7 +55,7 @@ def verify_table(
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = build_firmware(texts, loops=table.loops)
+                built = build_firmware(texts, board=image.board, loops=table.loops)
             checks[other] = _check(bound, table, other, texts, built, (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
@@ -63,7 +64,7 @@ def verify_table(
         self_tests=tuple(row for check in ordered for row in check.self_tests),
         rounding=checks[arithmetic].rounding,
         poles=tuple(poles),
-        target=tuple(check.cost for check in ordered),
+        target=tuple(check.cost for check in ordered if check.cost is not None),
         roundings={name: checks[name].rounding for name in ARITHMETICS},
     )
 
@@ -75,7 +76,7 @@ class _Check:
     equality: tuple[Equality, ...]
     self_tests: tuple[SelfTest, ...]
     rounding: RoundingBound
-    cost: TargetCost
+    cost: TargetCost | None
 
 
 def _check(
@@ -90,7 +91,7 @@ def _check(
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
     chosen, loops = ARITHMETICS[arithmetic], table.loops
     twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
-    target = TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table), loops)
+    target = _on_target(image, arithmetic, table)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
     pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), (host, target)]
     equality = [equal_steps(one, other, stimuli, loops) for one, other in pairs]
@@ -103,8 +104,16 @@ def _check(
         equality=tuple(equality),
         self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        cost=_cost(table, arithmetic, image, target),
+        cost=_cost(table, arithmetic, image, target) if isinstance(target, TargetLaw) else None,
     )
+
+
+def _on_target(image: FirmwareImage, arithmetic: str, table: ControllerTable) -> TargetLaw | CoreLaw:
+    """The image's law on the emulated board, or on the core alone of a chip that is not emulated."""
+    words = state_words(table)
+    if image.board.is_emulated:
+        return TargetLaw(EmulatedBoard(image.elf), arithmetic, words, table.loops)
+    return CoreLaw(image, arithmetic, words, len(table.loops))
 
 
 def _cost(table: ControllerTable, arithmetic: str, image: FirmwareImage, target: TargetLaw) -> TargetCost:

@@ -1,10 +1,13 @@
 #include "board.h"
+#include "chip.h"
 #include "law.h"
 #include "pins.h"
-#include "stm32g071.h"
 #include "wiring.h"
 
 _Static_assert(LAW_PWM_TICKS >= 1000 && LAW_PWM_TICKS <= 65535, "a PWM period is 1000 to 65535 ticks of 64 MHz");
+
+#define PWM_CLOCK_HZ 64000000u /* of the table's ticks, on every chip */
+_Static_assert(BOARD_CLOCK_HZ % PWM_CLOCK_HZ == 0u, "the timer divides by whole numbers");
 
 #define DIRECTION_OF_1(angle, voltage, motor, VOLTAGE) pin_output(PORT_B, MAIN_DIRECTION_PIN);
 #define DIRECTION_OF_2(angle, voltage, motor, VOLTAGE) pin_output(PORT_B, TAIL_DIRECTION_PIN);
@@ -14,9 +17,9 @@ _Static_assert(LAW_PWM_TICKS >= 1000 && LAW_PWM_TICKS <= 65535, "a PWM period is
 /* With MOE off and OSSI on the timer itself holds both pins low. */
 void pwm_start(void)
 {
-    RCC->APBENR2 |= RCC_APBENR2_TIM1;
+    clock_to_pwm();
     TIM1->BDTR = TIM_BDTR_OSSI;
-    TIM1->PSC = 0;
+    TIM1->PSC = BOARD_CLOCK_HZ / PWM_CLOCK_HZ - 1u;
     TIM1->ARR = LAW_PWM_TICKS - 1u;
     TIM1->CCR1 = 0;
     TIM1->CCR2 = 0;

@@ -1,6 +1,6 @@
 #include "board.h"
+#include "chip.h"
 #include "pins.h"
-#include "stm32g071.h"
 #include "wiring.h"
 
 /* Quadrature on both inputs, four counts a line, glitches below 8 clocks ignored. The period of a counter is ARR + 1. */
@@ -25,7 +25,7 @@ static void encoder_timer_start(timer_registers *timer, uint32_t last_count)
 
 void encoders_start(encoder_counts *self)
 {
-    RCC->APBENR1 |= RCC_APBENR1_TIM2 | RCC_APBENR1_TIM3;
+    clock_to_encoders();
     PINS_ENCODER_1(PINS_OF_1)
     PINS_ENCODER_2(PINS_OF_2)
     PINS_ENCODER_1(START_1)
