@@ -82,6 +82,19 @@ class ScheduleNames:
     max_rad: float
 
 
+def demand_drivable(table: FlownTable) -> None:
+    """Raise BadInput for a loop whose voltages its driver on the board cannot give: beyond full scale, never 0 V, or of the wrong sign."""
+    for loop, axis in zip(table.loops, table.axes, strict=True):
+        if loop.pins is None:
+            continue
+        least_V = 0.0 if loop.pins.direction is None else -FULL_SCALE_V
+        if not (least_V <= axis.u_min_V and axis.u_max_V <= FULL_SCALE_V and axis.u_safe_V == 0.0):
+            got = f"{axis.u_min_V:g} to {axis.u_max_V:g} V, {axis.u_safe_V:g} V at rest"
+            expected = f"{least_V:g} to {FULL_SCALE_V:g} V with 0 V among them: full scale of its PWM"
+            remedy = "narrow u_min_V and u_max_V in its section of [design], name a direction, or leave [board] out"
+            raise BadInput(f"voltages of {loop.input}", f"loop {loop.axis} on {loop.pins.pwm}", got, expected, remedy)
+
+
 def generate_law(table: ControllerTable, arithmetic: str = "float32") -> dict[str, str]:
     """C texts by file name: law.h, law.c and law_self_test.c.
 

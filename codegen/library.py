@@ -12,6 +12,7 @@ from pathlib import Path
 import jinja2
 
 from codegen.prefix import prefixed
+from records.loops import LOOPS, Loop
 from toolchain.templates import text_templates
 
 _FOLDER = Path(__file__).resolve().parent / "libraries"
@@ -33,8 +34,8 @@ KINDS: Mapping[str, Kind] = {
 }
 
 
-def library(kind: str, texts: Mapping[str, str], prefix: str = "") -> dict[str, str]:
-    """Files by their path in the library of one of KINDS; with a prefix the files bear it too, as all share the include path.
+def library(kind: str, texts: Mapping[str, str], prefix: str = "", loops: tuple[Loop, ...] = LOOPS) -> dict[str, str]:
+    """Files of a law of `loops` by path in a library of one of KINDS; with a prefix they bear it too, as all share the include path.
 
     `texts` are the generated ones by file name, without the prefix. Raises BadInput for a prefix that cannot begin a name.
     """
@@ -51,6 +52,7 @@ def library(kind: str, texts: Mapping[str, str], prefix: str = "") -> dict[str, 
         "macro": prefix.upper(),
         "sources": [path for path in files if path.endswith(".c")],
         "headers": place.headers,
+        "loops": loops,
     }
     return files | {
         name.removesuffix(".j2"): _environment(kind).get_template(name).render(facts)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import jinja2
 
+from records.loops import has_pins
 from records.wire import CRC_SIZE, HEADER_SIZE, Field, Message, Protocol
 from toolchain.templates import text_templates
 
@@ -31,6 +32,7 @@ def protocol_source(protocol: Protocol) -> dict[str, str]:
 def _environment() -> jinja2.Environment:
     environment = text_templates(_TEMPLATES)
     environment.filters["c_name"] = _c_name
+    environment.filters["has_pins"] = has_pins
     return environment
 
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from design.pins import with_pins
 from records.errors import BadInput
 from records.loops import LOOPS, MOST_LOOPS, Loop
 from records.table import parse_loops
@@ -20,7 +21,11 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
 
     The helicopter's go without saying, and so do the columns of a plant of one output and one input.
     """
+    board, board_where = bound.plant.board, where.removesuffix("design") + "board"
     if not missing(bound):
+        if board:
+            expected = "none: the helicopter's loops have the board's own pins, docs/firmware.md"
+            raise BadInput("section [board]", board_where, "pins", expected, "leave it out")
         return LOOPS
     names = [key for key, entry in section.items() if isinstance(entry, Mapping) and key not in _NO_LOOP]
     if not 1 <= len(names) <= MOST_LOOPS:
@@ -30,7 +35,7 @@ def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple
     for loop in loops:
         _demand_column("output", loop.output, [str(name) for name in bound.model.outputs], f"{where}.{loop.axis}")
         _demand_column("input", loop.input, [str(name) for name in bound.model.inputs], f"{where}.{loop.axis}")
-    return loops
+    return with_pins(loops, board, board_where)
 
 
 def _named(bound: BoundPlant, name: str, entry: Any, where: str) -> dict[str, Any]:

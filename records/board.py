@@ -7,6 +7,27 @@ holds each of those, and those of the pages, against the record.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from records.loops import Pins
+
+
+@dataclass(frozen=True)
+class Core:
+    """A processor core: its title and architecture, and what the compiler and unicorn call it.
+
+    Functions take floats in the registers of its floating-point unit, where it has one.
+    """
+
+    title: str
+    architecture: str
+    name: str
+    unicorn: str
+    has_float_unit: bool = False
+
+    @property
+    def abi(self) -> str:
+        """The calling convention, as the compiler's target names it."""
+        return "eabihf" if self.has_float_unit else "eabi"
+
 
 @dataclass(frozen=True)
 class Memory:
@@ -73,16 +94,19 @@ class Tick:
 
 @dataclass(frozen=True)
 class Board:
-    """One chip and its wiring; its C is in `firmware/board/FOLDER/`.
+    """One chip and its wiring; its C is in `firmware/board/FOLDER/`, that of all chips alike in `firmware/board/FAMILY/`.
 
-    `core` is the compiler's name of the core. The flash is erased by pages and written by `flash_write_bytes`, where it is erased. An
-    option bit gives the RAM `largest_ram_bytes`; the link leaves `stack_reserve_bytes` of it to the stack. The chip's serial boot loader
-    answers `boot_loader_id` to GET ID and keeps the first `boot_loader_ram_bytes` for itself. OpenOCD finds the board by `openocd_config`.
+    `is_emulated` says whether `rig/emulator` is this chip; of any other only the core can be run. The flash is erased by pages and written
+    by `flash_write_bytes`, where it is erased. An option bit, or a memory behind it, gives the RAM `largest_ram_bytes`; the link leaves
+    `stack_reserve_bytes` of it to the stack. The chip's serial boot loader answers `boot_loader_id` to GET ID and keeps the first
+    `boot_loader_ram_bytes` for itself. OpenOCD finds the board by `openocd_config`.
     """
 
     chip: str
+    family: str
     folder: str
-    core: str
+    core: Core
+    is_emulated: bool
     flash: Memory
     flash_page_bytes: int
     flash_write_bytes: int
@@ -104,6 +128,27 @@ class Board:
     openocd_config: str
 
     @property
+    def encoders(self) -> tuple[Encoder, ...]:
+        """Its encoders."""
+        return self.elevation_encoder, self.azimuth_encoder
+
+    @property
+    def motors(self) -> tuple[Motor, ...]:
+        """Its motors' drivers."""
+        return self.main_motor, self.tail_motor
+
+    def encoder_of(self, pins: Pins) -> Encoder | None:
+        """The encoder on these pins, where there is one."""
+        return next((one for one in self.encoders if (str(one.a), str(one.b)) == pins.encoder), None)
+
+    def motor_of(self, pins: Pins) -> Motor | None:
+        """The driver on these pins, with or without its direction, where there is one."""
+        return next(
+            (one for one in self.motors if str(one.pwm) == pins.pwm and pins.direction in (None, str(one.direction))),
+            None,
+        )
+
+    @property
     def interrupts(self) -> dict[str, int]:
         """Numbers of the interrupts in use, by peripheral."""
         return {f"TIM{self.tick.timer}": self.tick.interrupt, f"USART{self.line.usart}": self.line.interrupt}
@@ -113,8 +158,10 @@ class Board:
 # 40.10.1 (that of the STM32G081 too). 32 KiB of the RAM are there whatever the parity option says. The loader's RAM: AN2606.
 STM32G071 = Board(
     chip="STM32G071",
+    family="stm32",
     folder="stm32g071",
-    core="cortex_m0plus",
+    core=Core("Cortex-M0+", "ARMv6-M", "cortex_m0plus", "CORTEX_M0"),
+    is_emulated=True,
     flash=Memory(0x08000000, 128 * 1024),
     flash_page_bytes=2048,
     flash_write_bytes=8,
@@ -136,4 +183,34 @@ STM32G071 = Board(
     openocd_config="board/st_nucleo_g0.cfg",
 )
 
-BOARDS: Mapping[str, Board] = {board.chip: board for board in (STM32G071,)}
+# RM0440 by section: memories 2.2 and 2.4, flash pages 3.3.1, wait states 3.3.3, writing by 64 bits 3.3.7, clocks 7.2, vectors 14.3,
+# device id 47.6.1. Behind SRAM1 and SRAM2 the RAM goes on with 10 KiB of core-coupled memory, left alone here. The loader's RAM: AN2606.
+STM32G431 = Board(
+    chip="STM32G431",
+    family="stm32",
+    folder="stm32g431",
+    core=Core("Cortex-M4F", "ARMv7E-M", "cortex_m4+vfp4d16sp", "CORTEX_M4", has_float_unit=True),
+    is_emulated=False,
+    flash=Memory(0x08000000, 128 * 1024),
+    flash_page_bytes=2048,
+    flash_write_bytes=8,
+    flash_wait_states=4,
+    ram=Memory(0x20000000, 22 * 1024),
+    largest_ram_bytes=32 * 1024,
+    stack_reserve_bytes=4 * 1024,
+    oscillator_hz=16_000_000,
+    clock_hz=128_000_000,
+    interrupt_count=102,
+    elevation_encoder=Encoder(timer=2, bits=32, a=Pin("A", 0, 1), b=Pin("A", 1, 1)),
+    azimuth_encoder=Encoder(timer=3, bits=16, a=Pin("A", 6, 2), b=Pin("A", 7, 2)),
+    main_motor=Motor(timer=1, channel=1, pwm=Pin("A", 8, 6), direction=Pin("B", 0)),
+    tail_motor=Motor(timer=1, channel=2, pwm=Pin("A", 9, 6), direction=Pin("B", 1)),
+    line=SerialLine(usart=2, interrupt=38, transmit=Pin("A", 2, 7), receive=Pin("A", 3, 7)),
+    tick=Tick(timer=6, interrupt=54),
+    boot_loader_id=0x468,
+    boot_loader_ram_bytes=0x4000,
+    openocd_config="board/st_nucleo_g4.cfg",
+)
+
+# The first is what a verb takes where none is named.
+BOARDS: Mapping[str, Board] = {board.chip: board for board in (STM32G071, STM32G431)}

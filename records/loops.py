@@ -6,16 +6,34 @@ MOST_LOOPS = 4
 
 
 @dataclass(frozen=True)
+class Pins:
+    """Where a loop hangs on a board: both inputs of its `encoder`, the `pwm` of its driver, and the driver's `direction`, by their names.
+
+    The direction is high for negative inputs; None is a driver that turns one way only.
+    """
+
+    encoder: tuple[str, str]
+    pwm: str
+    direction: str | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All of them."""
+        return (*self.encoder, self.pwm, *([] if self.direction is None else [self.direction]))
+
+
+@dataclass(frozen=True)
 class Loop:
     """One loop: its `axis`, the columns of the measured angle `output` [rad] and of the commanded `input` [V], the `motor` driven.
 
-    Columns bear their units: output psi_rad, reference psi_ref_rad, input u_M_V.
+    Columns bear their units: output psi_rad, reference psi_ref_rad, input u_M_V. A loop without `pins` flies with the host in the loop.
     """
 
     axis: str
     output: str
     input: str
     motor: str
+    pins: Pins | None = None
 
     @property
     def symbol(self) -> str:
@@ -44,4 +62,12 @@ class Loop:
 
 
 # The helicopter's, in the order of the plant's outputs and inputs.
-LOOPS = (Loop("elevation", "psi_rad", "u_M_V", "main"), Loop("azimuth", "phi_rad", "u_T_V", "tail"))
+LOOPS = (
+    Loop("elevation", "psi_rad", "u_M_V", "main", Pins(("PA0", "PA1"), "PA8", "PB0")),
+    Loop("azimuth", "phi_rad", "u_T_V", "tail", Pins(("PA6", "PA7"), "PA9", "PB1")),
+)
+
+
+def has_pins(loops: tuple[Loop, ...]) -> bool:
+    """Whether a board has an encoder and an output for each of `loops`; others fly with the host in the loop alone."""
+    return all(loop.pins is not None for loop in loops)

@@ -65,8 +65,9 @@ class Plant:
 
     `model` names its equations, those of the project's table or, where there are `equations` of its own, these by their file's stem.
     `sensors` maps an output name ("psi_rad") to the step of its encoder and `sensor_noise` to the standard deviation of the white
-    noise before it, where there is any; `design` holds the file's wishes for the controller
-    (section [design], read by the design stage) and `effects` the added effects (sections [effects.PLACE.NAME]) as plain tables.
+    noise before it, where there is any. `design` holds the file's wishes for the controller and `board` the pins on which its columns
+    hang (sections [design] and [board], read by the design stage), `effects` the added effects (sections [effects.PLACE.NAME]), as
+    plain tables.
     `correlation` tells how the parameters' sd hang together; without it they are independent.
     """
 
@@ -79,6 +80,7 @@ class Plant:
     sensor_noise: Mapping[str, float] = field(default_factory=dict)
     correlation: Correlation | None = None
     equations: Equations | None = None
+    board: Mapping[str, Any] = field(default_factory=dict)
 
 
 def load_plant(path: Path) -> Plant:
@@ -96,7 +98,9 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path 
     """A plant from the content of its file in `folder`; raises BadInput naming `where`, the file, and the key."""
     checks.schema(content, f"{where}: schema", SCHEMA)
     source = "equations" if "equations" in content else "model"
-    checks.keys(content, where, ("schema", source, "parameters", "sensors"), ("design", "effects", "correlation"))
+    checks.keys(
+        content, where, ("schema", source, "parameters", "sensors"), ("design", "board", "effects", "correlation")
+    )
     equations = read_equations(content, where, folder)
     parameters = checks.table(content["parameters"], f"{where}: parameters")
     sensors = checks.table(content["sensors"], f"{where}: sensors")
@@ -115,6 +119,7 @@ def parse_plant(content: Mapping[str, Any], name: str, where: str, folder: Path 
         if correlation is None
         else parse_correlation(correlation, f"{where}: correlation", coefficient_names(numbers)),
         equations=equations,
+        board=checks.table(content.get("board", {}), f"{where}: board"),
     )
 
 
@@ -169,7 +174,7 @@ def plant_text(plant: Plant) -> str:
         for key, entry in plant.parameters.items()
     }
     document["sensors"] = {key: _sensor_table(plant, key) for key in plant.sensors}
-    for section in ("design", "effects"):
+    for section in ("design", "board", "effects"):
         if getattr(plant, section):
             document[section] = dict(getattr(plant, section))
     if plant.correlation is not None:

@@ -1,9 +1,12 @@
-"""The serial protocol, declared once: C structures, C codecs and the Python codec are all derived from `PROTOCOL`.
+"""The serial protocol, declared once for a law of any loops: C structures, C codecs and the Python codec are all derived from it.
 
 Frame on the line: COBS(version | type | sequence (2) | payload | CRC-32 over all before (4)) 0x00, little-endian.
 """
 
-from records.loops import LOOPS
+from dataclasses import dataclass
+from functools import cache
+
+from records.loops import LOOPS, Loop
 from records.wire import I16, I32, U8, U16, U32, Choice, Constant, Enumeration, Field, Message, Protocol
 
 
@@ -19,14 +22,6 @@ _HEAD = (
     Field("echo_sequence", U16, "1", "sequence number of the last frame that the board accepted"),
     Field("device_time_us", U32, "us", "the board's own clock, modulo 2^32"),
     Field("state", U8, "state", "state of the supervisor"),
-)
-_REFERENCES = tuple(_number(loop.reference, "rad", f"{loop.axis} reference") for loop in LOOPS)
-_ANGLES = tuple(_number(loop.output, "rad", loop.axis) for loop in LOOPS)
-_INPUTS = tuple(
-    _number(loop.input, "V", f"{loop.motor} motor voltage out of the law, after its limits") for loop in LOOPS
-)
-_DUTIES = tuple(
-    Field(loop.duty, I16, "PWM ticks", f"signed duty written to the {loop.motor} motor's PWM") for loop in LOOPS
 )
 _LAW_CYCLES = Field("law_cycles", U32, "core cycles", "duration of the last step of the law")
 
@@ -88,145 +83,199 @@ _ENUMERATIONS = (
     ),
 )
 
-_TO_BOARD = (
-    Message("IDENTIFY", 0x01, True, "Who are you? Starts a session: sequence numbers continue from this frame."),
-    Message(
-        "ARM",
-        0x02,
-        True,
-        "Arm in a mode; refused unless the table is the expected one. Repeating it changes nothing.",
-        (
-            Field("mode", U8, "mode", "wanted mode"),
-            Field("digest_head", U8, "1", "first bytes of the expected table digest", count=8),
-        ),
+_CONSTANTS = (
+    Constant("WATCH_PERIOD_US", 10_000, "in which host and encoders are watched, whatever the sample period is"),
+    Constant("HOST_LOSS_PERIODS", 10, "watch periods without a setpoint from the host after which it counts as lost"),
+    Constant("RAMP_PERIODS", 8, "watch periods from the loss of the host to the safe value"),
+    Constant("ENCODER_JUMP_COUNTS", 256, "counts in one watch period beyond which an encoder is not believed"),
+    Constant(
+        "ENCODER_STILL_PERIODS", 100, "watch periods at full drive without a count after which it is not believed"
     ),
-    Message("DISARM", 0x03, True, "Power stage off at once; obeyed in any state and order."),
-    Message("REFERENCE", 0x04, True, "References while flying; the latest wins, none is acknowledged.", _REFERENCES),
-    Message(
-        "SAMPLE",
-        0x05,
-        True,
-        "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory.",
-        (*_REFERENCES, *_ANGLES),
+    Constant(
+        "TELEMETRY_LEAST_US", 2_000, "between two telemetry frames at the least: the line has room for replies too"
     ),
-    Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
-    Message(
-        "SELF_TEST", 0x07, True, "Ask for the result of the law's self-test, which the board runs once at its start."
-    ),
-    Message(
-        "PRESET",
-        0x08,
-        True,
-        "Declare what the encoders read now; refused while armed.",
-        tuple(Field(loop.counts, I32, "encoder counts", f"{loop.axis} at this moment") for loop in LOOPS),
-    ),
-    Message("RESET_LAW", 0x09, True, "In host-in-the-loop mode: start the law anew, at rest at these angles.", _ANGLES),
+    Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),
 )
 
-_FROM_BOARD = (
-    Message(
-        "IDENTITY",
-        0x81,
-        False,
-        "Answer to IDENTIFY.",
-        (
-            *_HEAD,
-            Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
-            Field("table_digest", U8, "1", "SHA-256 of the controller table", count=32),
-            Field("arithmetic", U8, "arithmetic", "arithmetic of the law"),
-            Field("sample_period_us", U32, "us", "control period"),
-            Field("pwm_full_scale_ticks", U16, "PWM ticks", "duty of full voltage"),
-            Field("firmware_version", U16, "1", "version of the firmware: major * 256 + minor"),
-            Field("unique_id", U8, "1", "serial number of the chip", count=12),
-            Field("reset_cause", U8, "reset_cause", "why the board started"),
-        ),
-    ),
-    Message(
-        "RESULT",
-        0x82,
-        False,
-        "Outcome of a command, or the reason why a setpoint was not taken.",
-        (
-            *_HEAD,
-            Field("command", U8, "message type", "the command that this answers"),
-            Field("reason", U8, "reason", "outcome"),
-        ),
-    ),
-    Message("ANSWER", 0x83, False, "Answer to SAMPLE.", (*_HEAD, *_INPUTS, *_DUTIES, _LAW_CYCLES)),
-    Message(
-        "TELEMETRY",
-        0x84,
-        False,
-        "Sent each tick while flying or ramping.",
-        (
-            *_HEAD,
-            Field("tick", U32, "1", "control ticks since the start"),
-            *(Field(loop.counts, I32, "encoder counts", f"{loop.axis} encoder") for loop in LOOPS),
-            *_ANGLES,
-            *_REFERENCES,
-            *_INPUTS,
-            *_DUTIES,
-            _LAW_CYCLES,
-            _count("frames_refused", "frames that reached the board and were not accepted"),
-            _count("frames_lost", "gaps in the host's sequence numbers"),
-            _count("tick_overruns", "ticks that came before the step of the last had finished"),
-        ),
-    ),
-    Message(
-        "COUNTERS",
-        0x85,
-        False,
-        "Answer to GET_COUNTERS: every frame that was delimited on the line is in exactly one of the first nine.",
-        (
-            *_HEAD,
-            _count("frames_accepted", "frames accepted"),
-            _count("cobs_errors", "frames that are no COBS block"),
-            _count("too_long", "frames longer than any message"),
-            _count("too_short", "frames shorter than header and CRC"),
-            _count("crc_errors", "frames with a wrong CRC"),
-            _count("wrong_version", "frames of another protocol version"),
-            _count("unknown_type", "frames of a type that the board does not take"),
-            _count("wrong_length", "frames whose length is not that of their type"),
-            _count("stale", "frames older than the last accepted one"),
-            _count("repeated", "accepted frames that repeat the last one"),
-            _count("frames_lost", "gaps in the host's sequence numbers"),
-            _count("uart_overruns", "bytes lost in the USART"),
-            _count("uart_framing_errors", "bytes without a stop bit"),
-            _count("uart_noise_errors", "bytes with noise"),
-            _count("rx_ring_overflows", "bytes lost for want of room in the receive ring"),
-            _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
-            _count("tick_overruns", "ticks that came before the step of the last had finished"),
-            _count("host_losses", "times that the host was lost while armed"),
-            _count("encoder_faults", "times that an encoder was not believed while flying"),
-            _count("resets", "resets since power on"),
-        ),
-    ),
-    Message(
-        "SELF_TEST_RESULT",
-        0x86,
-        False,
-        "Answer to SELF_TEST.",
-        (*_HEAD, Field("mismatches", U32, "1", "outputs that differ from the expected bits")),
-    ),
-)
 
-PROTOCOL = Protocol(
-    version=1,
-    constants=(
-        Constant("WATCH_PERIOD_US", 10_000, "in which host and encoders are watched, whatever the sample period is"),
-        Constant(
-            "HOST_LOSS_PERIODS", 10, "watch periods without a setpoint from the host after which it counts as lost"
+@dataclass(frozen=True)
+class _LoopFields:
+    """What the line carries of each loop."""
+
+    references: tuple[Field, ...]
+    angles: tuple[Field, ...]
+    inputs: tuple[Field, ...]
+    duties: tuple[Field, ...]
+    counts: tuple[Field, ...]
+
+
+def _fields_of(loops: tuple[Loop, ...]) -> _LoopFields:
+    return _LoopFields(
+        references=tuple(_number(loop.reference, "rad", f"{loop.axis} reference") for loop in loops),
+        angles=tuple(_number(loop.output, "rad", loop.axis) for loop in loops),
+        inputs=tuple(
+            _number(loop.input, "V", f"{loop.motor} motor voltage out of the law, after its limits") for loop in loops
         ),
-        Constant("RAMP_PERIODS", 8, "watch periods from the loss of the host to the safe value"),
-        Constant("ENCODER_JUMP_COUNTS", 256, "counts in one watch period beyond which an encoder is not believed"),
-        Constant(
-            "ENCODER_STILL_PERIODS", 100, "watch periods at full drive without a count after which it is not believed"
+        duties=tuple(
+            Field(loop.duty, I16, "PWM ticks", f"signed duty written to the {loop.motor} motor's PWM") for loop in loops
         ),
-        Constant(
-            "TELEMETRY_LEAST_US", 2_000, "between two telemetry frames at the least: the line has room for replies too"
+        counts=tuple(Field(loop.counts, I32, "encoder counts", f"{loop.axis} encoder") for loop in loops),
+    )
+
+
+def _to_board(fields: _LoopFields) -> tuple[Message, ...]:
+    return (
+        Message("IDENTIFY", 0x01, True, "Who are you? Starts a session: sequence numbers continue from this frame."),
+        Message(
+            "ARM",
+            0x02,
+            True,
+            "Arm in a mode; refused unless the table is the expected one. Repeating it changes nothing.",
+            (
+                Field("mode", U8, "mode", "wanted mode"),
+                Field("digest_head", U8, "1", "first bytes of the expected table digest", count=8),
+            ),
         ),
-        Constant("BAUD_RATE", 921_600, "of the serial line, 8N1"),
-    ),
-    enumerations=_ENUMERATIONS,
-    messages=_TO_BOARD + _FROM_BOARD,
-)
+        Message("DISARM", 0x03, True, "Power stage off at once; obeyed in any state and order."),
+        Message(
+            "REFERENCE",
+            0x04,
+            True,
+            "References while flying; the latest wins, none is acknowledged.",
+            fields.references,
+        ),
+        Message(
+            "SAMPLE",
+            0x05,
+            True,
+            "One sample in host-in-the-loop mode: exactly one step of the law; a repeated frame is answered from memory.",
+            (*fields.references, *fields.angles),
+        ),
+        Message("GET_COUNTERS", 0x06, True, "Ask for COUNTERS."),
+        Message(
+            "SELF_TEST",
+            0x07,
+            True,
+            "Ask for the result of the law's self-test, which the board runs once at its start.",
+        ),
+        Message(
+            "PRESET",
+            0x08,
+            True,
+            "Declare what the encoders read now; refused while armed.",
+            fields.counts,
+        ),
+        Message(
+            "RESET_LAW",
+            0x09,
+            True,
+            "In host-in-the-loop mode: start the law anew, at rest at these angles.",
+            fields.angles,
+        ),
+    )
+
+
+def _from_board(fields: _LoopFields) -> tuple[Message, ...]:
+    return (
+        Message(
+            "IDENTITY",
+            0x81,
+            False,
+            "Answer to IDENTIFY.",
+            (
+                *_HEAD,
+                Field("schema_hash", U8, "1", "hash of this protocol's declaration", count=8),
+                Field("table_digest", U8, "1", "SHA-256 of the controller table", count=32),
+                Field("arithmetic", U8, "arithmetic", "arithmetic of the law"),
+                Field("sample_period_us", U32, "us", "control period"),
+                Field("pwm_full_scale_ticks", U16, "PWM ticks", "duty of full voltage"),
+                Field("firmware_version", U16, "1", "version of the firmware: major * 256 + minor"),
+                Field("unique_id", U8, "1", "serial number of the chip", count=12),
+                Field("reset_cause", U8, "reset_cause", "why the board started"),
+            ),
+        ),
+        Message(
+            "RESULT",
+            0x82,
+            False,
+            "Outcome of a command, or the reason why a setpoint was not taken.",
+            (
+                *_HEAD,
+                Field("command", U8, "message type", "the command that this answers"),
+                Field("reason", U8, "reason", "outcome"),
+            ),
+        ),
+        Message("ANSWER", 0x83, False, "Answer to SAMPLE.", (*_HEAD, *fields.inputs, *fields.duties, _LAW_CYCLES)),
+        Message(
+            "TELEMETRY",
+            0x84,
+            False,
+            "Sent each tick while flying or ramping.",
+            (
+                *_HEAD,
+                Field("tick", U32, "1", "control ticks since the start"),
+                *fields.counts,
+                *fields.angles,
+                *fields.references,
+                *fields.inputs,
+                *fields.duties,
+                _LAW_CYCLES,
+                _count("frames_refused", "frames that reached the board and were not accepted"),
+                _count("frames_lost", "gaps in the host's sequence numbers"),
+                _count("tick_overruns", "ticks that came before the step of the last had finished"),
+            ),
+        ),
+        Message(
+            "COUNTERS",
+            0x85,
+            False,
+            "Answer to GET_COUNTERS: every frame that was delimited on the line is in exactly one of the first nine.",
+            (
+                *_HEAD,
+                _count("frames_accepted", "frames accepted"),
+                _count("cobs_errors", "frames that are no COBS block"),
+                _count("too_long", "frames longer than any message"),
+                _count("too_short", "frames shorter than header and CRC"),
+                _count("crc_errors", "frames with a wrong CRC"),
+                _count("wrong_version", "frames of another protocol version"),
+                _count("unknown_type", "frames of a type that the board does not take"),
+                _count("wrong_length", "frames whose length is not that of their type"),
+                _count("stale", "frames older than the last accepted one"),
+                _count("repeated", "accepted frames that repeat the last one"),
+                _count("frames_lost", "gaps in the host's sequence numbers"),
+                _count("uart_overruns", "bytes lost in the USART"),
+                _count("uart_framing_errors", "bytes without a stop bit"),
+                _count("uart_noise_errors", "bytes with noise"),
+                _count("rx_ring_overflows", "bytes lost for want of room in the receive ring"),
+                _count("tx_frames_dropped", "frames not sent for want of room in the transmit ring"),
+                _count("tick_overruns", "ticks that came before the step of the last had finished"),
+                _count("host_losses", "times that the host was lost while armed"),
+                _count("encoder_faults", "times that an encoder was not believed while flying"),
+                _count("resets", "resets since power on"),
+            ),
+        ),
+        Message(
+            "SELF_TEST_RESULT",
+            0x86,
+            False,
+            "Answer to SELF_TEST.",
+            (*_HEAD, Field("mismatches", U32, "1", "outputs that differ from the expected bits")),
+        ),
+    )
+
+
+@cache
+def protocol_of(loops: tuple[Loop, ...]) -> Protocol:
+    """The declaration for a board whose law closes `loops`."""
+    fields = _fields_of(loops)
+    return Protocol(
+        version=1,
+        constants=_CONSTANTS,
+        enumerations=_ENUMERATIONS,
+        messages=_to_board(fields) + _from_board(fields),
+        loops=loops,
+    )
+
+
+# The helicopter's; constants, enumerations, and messages without a loop in them are those of any.
+PROTOCOL = protocol_of(LOOPS)

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from records.errors import BadInput
-from records.loops import LOOPS, MOST_LOOPS, Loop
+from records.loops import LOOPS, MOST_LOOPS, Loop, Pins
 from records.text import checks
 from records.text.reading import read_json
 
@@ -35,6 +35,7 @@ AXES = tuple(loop.axis for loop in LOOPS)  # the helicopter's
 ORDERS = range(1, 6)  # states of an axis that a law can be made for
 Polynomial = tuple[float, ...]
 A = TypeVar("A")
+_LOOP_NAMES = ("axis", "output", "input", "motor")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
@@ -188,7 +189,7 @@ def content_of(table: Table[Any]) -> dict[str, Any]:
     The helicopter's loops go without saying.
     """
     own = [entry.name for entry in fields(table) if entry.name not in Table.__dataclass_fields__]
-    told = {} if table.loops == LOOPS else {"loops": [asdict(loop) for loop in table.loops]}
+    told = {} if table.loops == LOOPS else {"loops": [_told_loop(loop) for loop in table.loops]}
     return {
         **{name: getattr(table, name) for name in own},
         "plant": table.plant,
@@ -198,6 +199,16 @@ def content_of(table: Table[Any]) -> dict[str, Any]:
         **{loop.axis: asdict(axis) for loop, axis in zip(table.loops, table.axes, strict=True)},
         "origin": table.origin,
     }
+
+
+def _told_loop(loop: Loop) -> dict[str, Any]:
+    """What there is of a loop."""
+    pins = {} if loop.pins is None else {"pins": _without_none(asdict(loop.pins))}
+    return {**{name: getattr(loop, name) for name in _LOOP_NAMES}, **pins}
+
+
+def _without_none(section: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in section.items() if value is not None}
 
 
 def text_of(schema: str, table: Table[Any]) -> str:
@@ -240,19 +251,20 @@ def parse_loops(entries: Any, where: str) -> tuple[Loop, ...]:
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_LOOPS:
         raise BadInput("loops", where, repr(entries)[:60], f"a list of 1 to {MOST_LOOPS} loops", "name fewer loops")
     loops = tuple(_loop(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
-    for name in Loop.__dataclass_fields__:
-        named = [getattr(loop, name) for loop in loops]
-        if len(set(named)) < len(named):
-            raise BadInput("loops", where, f"{name} {', '.join(named)}", "each once", "name each loop's own")
+    named = {name: [getattr(loop, name) for loop in loops] for name in _LOOP_NAMES}
+    named["pins"] = [name for loop in loops if loop.pins is not None for name in loop.pins.names]
+    for what, names in named.items():
+        if len(set(names)) < len(names):
+            raise BadInput("loops", where, f"{what} {', '.join(names)}", "each once", "name each loop's own")
     return loops
 
 
 def _loop(entry: Any, where: str) -> Loop:
     section = checks.table(entry, where)
-    names = tuple(Loop.__dataclass_fields__)
-    checks.keys(section, where, names)
-    loop = Loop(**{name: checks.text(section[name], f"{where}.{name}") for name in names})
-    for name, value in asdict(loop).items():
+    checks.keys(section, where, _LOOP_NAMES, ("pins",))
+    named = {name: checks.text(section[name], f"{where}.{name}") for name in _LOOP_NAMES}
+    loop = Loop(**named, pins=_pins(section["pins"], f"{where}.pins") if "pins" in section else None)
+    for name, value in named.items():
         if not _NAME.fullmatch(value) or (name == "axis" and value in _SHARED):
             raise BadInput(
                 "name", f"{where}.{name}", repr(value), "letters, digits and _, as in C", "choose another name"
@@ -261,6 +273,17 @@ def _loop(entry: Any, where: str) -> Loop:
         expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
         raise BadInput("loop", where, f"{loop.output} and {loop.input}", expected, "choose such a loop")
     return loop
+
+
+def _pins(entry: Any, where: str) -> Pins:
+    section = checks.table(entry, where)
+    checks.keys(section, where, ("encoder", "pwm"), ("direction",))
+    encoder = section["encoder"]
+    if not isinstance(encoder, list | tuple) or len(encoder) != 2:
+        raise BadInput("encoder", where, repr(encoder)[:40], "the names of two pins", 'write encoder = ["PA0", "PA1"]')
+    first, second = (checks.text(name, f"{where}.encoder") for name in encoder)
+    names = {name: checks.text(section[name], f"{where}.{name}") for name in ("pwm", "direction") if name in section}
+    return Pins((first, second), **names)
 
 
 def _schedule(content: Mapping[str, Any], loops: tuple[Loop, ...], where: str) -> Schedule | None:

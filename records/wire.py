@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from records.loops import Loop
+
 
 @dataclass(frozen=True)
 class WireType:
@@ -103,12 +105,13 @@ class Constant:
 
 @dataclass(frozen=True)
 class Protocol:
-    """The whole declaration; `schema_hash` changes with every change that the other end could notice."""
+    """The whole declaration for a law of `loops`; `schema_hash` changes with every change that the other end could notice."""
 
     version: int
     constants: tuple[Constant, ...]
     enumerations: tuple[Enumeration, ...]
     messages: tuple[Message, ...]
+    loops: tuple[Loop, ...]
 
     @cached_property
     def schema_hash(self) -> bytes:

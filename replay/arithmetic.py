@@ -21,7 +21,7 @@ FLOAT32, FIXED = "float32", "fixed"
 
 @dataclass(frozen=True, eq=False)
 class Replayed:
-    """Inputs (n, 2) in V that the law of one arithmetic gives on a log, and where (n, 2) the log holds another word.
+    """Inputs (n, loops) in V that the law of one arithmetic gives on a log, and where the log holds another word.
 
     `word_V` is the unit of the last place in fixed point, 0 in float32.
     """
@@ -33,7 +33,7 @@ class Replayed:
 
     @property
     def agreeing(self) -> float:
-        """Share of the samples in which both inputs agree."""
+        """Share of the samples in which all inputs agree."""
         return float(np.mean(~self.differs.any(axis=1)))
 
 
@@ -71,8 +71,8 @@ def _given(flight: ReplayedLog) -> Array:
 
 
 def _run(table: ControllerTable, arithmetic: str, words: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """Outputs (n, 2) of the generated C on inputs (n, 4), from rest at the first angles."""
-    host = HostLaw(generate_law(table, arithmetic), arithmetic)
-    start = host.start(np.ascontiguousarray(words[:1, 2:]))
+    """Outputs (n, loops) of the generated C on inputs (n, 2 loops), from rest at the first angles."""
+    host = HostLaw(generate_law(table, arithmetic), arithmetic, loops=table.loops)
+    start = host.start(np.ascontiguousarray(words[:1, len(table.loops) :]))
     _, outputs = host.run(start, np.ascontiguousarray(words[:, np.newaxis]))
     return np.ascontiguousarray(outputs[:, 0])

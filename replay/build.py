@@ -16,20 +16,20 @@ Array = NDArray[np.float64]
 
 
 def fused_outputs(table: ControllerTable, inputs: NDArray[np.float32]) -> Array | None:
-    """Outputs (n, 2) in V, from rest at the first row, of the law of `table` built with fused multiply-add.
+    """Outputs (n, loops) in V, from rest at the first row, of the law of `table` built with fused multiply-add.
 
-    `inputs` (n, 4) as the law takes them. None where this processor, or its compiler, has no such instruction.
+    `inputs` (n, 2 loops) as the law takes them. None where this processor, or its compiler, has no such instruction.
     """
     if not _has_fused_multiply_add():
         return None
     flags = [flag for flag in STRICT_FLOAT_FLAGS if "contract" not in flag]
     machine = ["-mfma"] if platform.machine() in ("x86_64", "AMD64") else []
     try:
-        law = HostLaw(generate_law(table), flags=(*flags, "-ffp-contract=fast", *machine))
+        law = HostLaw(generate_law(table), flags=(*flags, "-ffp-contract=fast", *machine), loops=table.loops)
     except BadInput:
         return None
     bits = np.ascontiguousarray(inputs[:, np.newaxis], dtype=np.float32).view(np.uint32)
-    _, outputs = law.run(law.start(np.ascontiguousarray(bits[0, :, 2:])), bits)
+    _, outputs = law.run(law.start(np.ascontiguousarray(bits[0, :, len(table.loops) :])), bits)
     return np.asarray(outputs[:, 0].view(np.float32), dtype=float)
 
 

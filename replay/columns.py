@@ -4,11 +4,12 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
+from itertools import chain, combinations, permutations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from records.table import ControllerTable
 from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel
@@ -26,7 +27,6 @@ EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT = (
 )
 INPUTS_EXCHANGED, INPUT_SIGN = "inputs_exchanged", "input_sign"
 OF_THE_COLUMNS = (EXCHANGED, TURNED, UNIT, SCALED, OFFSET, CONSTANT, INPUTS_EXCHANGED, INPUT_SIGN)
-GIVEN = ("elevation reference", "azimuth reference", "elevation angle", "azimuth angle")
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,19 @@ class _Line:
     offset_V: float
 
 
-def given_columns() -> Iterator[Variant]:
-    """References or angles taken for each other, and each of the four with its sign turned."""
-    for what, columns in (("references", (1, 0, 2, 3)), ("angles", (0, 1, 3, 2))):
-        sentence = f"takes its two {what} for each other, or the log has these columns exchanged"
-        yield Variant(INPUTS_EXCHANGED, "columns", sentence, partial(replace, columns=columns))
-    for place, what in enumerate(GIVEN):
-        signs = tuple(-1.0 if column == place else 1.0 for column in range(4))
+def given_columns(table: ControllerTable) -> Iterator[Variant]:
+    """References or angles taken for each other, and each of them with its sign turned."""
+    names, count = [loop.axis for loop in table.loops], 2 * len(table.loops)
+    for begin, what in ((0, "references"), (len(names), "angles")):
+        for one, other in combinations(range(len(names)), 2):
+            columns = list(range(count))
+            columns[begin + one], columns[begin + other] = begin + other, begin + one
+            which = "two" if len(names) == 2 else f"{names[one]} and {names[other]}"
+            sentence = f"takes its {which} {what} for each other, or the log has these columns exchanged"
+            yield Variant(INPUTS_EXCHANGED, "columns", sentence, partial(replace, columns=tuple(columns)))
+    given = [f"{name} {what}" for what in ("reference", "angle") for name in names]
+    for place, what in enumerate(given):
+        signs = tuple(-1.0 if column == place else 1.0 for column in range(count))
         sentence = f"takes the {what} with the other sign than the log"
         yield Variant(INPUT_SIGN, "columns", sentence, partial(replace, signs=signs))
 
@@ -62,31 +68,26 @@ def constant_inputs(flight: ReplayedLog, names: Sequence[str]) -> Iterator[Varia
         CONSTANT,
         "channel",
         sentence,
-        partial(replace, channel=Channel(low_V=(low[0], low[1]), high_V=(high[0], high[1]))),
+        partial(replace, channel=Channel(low_V=tuple(low), high_V=tuple(high))),
     )
 
 
 def output_lines(own_V: Array, logged_V: Array, names: Sequence[str]) -> Iterator[Variant]:
-    """Both logged inputs (n, 2) as lines of the law's answers (n, 2): exchanged, turned, in another unit, or set off."""
-    for source in ((0, 1), (1, 0)):
-        lines = [_line(own_V[:, of], logged_V[:, place]) for place, of in enumerate(source)]
-        first, second = lines
-        if (
-            first is None
-            or second is None
-            or first.gain * second.gain == 0.0
-            or (source == (0, 1) and first == second == _Line(1.0, 0.0))
-        ):
+    """All logged inputs (n, loops) as lines of the law's answers, alike: exchanged, turned, in another unit, or set off."""
+    own = tuple(range(own_V.shape[1]))
+    which = "its two" if len(own) == 2 else "some of its"
+    for source in permutations(own):
+        found = [_line(own_V[:, of], logged_V[:, place]) for place, of in enumerate(source)]
+        lines = [line for line in found if line is not None and line.gain != 0.0]
+        if len(lines) < len(own) or (source == own and all(line == _Line(1.0, 0.0) for line in lines)):
             continue
         told = [
-            [(EXCHANGED, "exchanges its two outputs, or the log has these columns exchanged")]
-            if source == (1, 0)
-            else []
+            [(EXCHANGED, f"exchanges {which} outputs, or the log has these columns exchanged")] if source != own else []
         ]
-        told += [list(_told(line, name)) for line, name in zip((first, second), names, strict=True)]
+        told += [list(_told(line, name)) for line, name in zip(lines, names, strict=True)]
         kinds = dict.fromkeys(kind for kind, _ in chain(*told))
         clauses = "; it ".join(sentence for _, sentence in chain(*told))
-        channel = Channel(source, (first.gain, second.gain), (first.offset_V, second.offset_V))
+        channel = Channel(source, tuple(line.gain for line in lines), tuple(line.offset_V for line in lines))
         yield Variant(" + ".join(kinds), "channel", clauses, partial(replace, channel=channel))
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from replay import thresholds
 from replay.flight import ReplayedLog, advanced, candidates_for_missing, candidates_for_unmeasured, lagged
-from replay.law import FLOAT64, Fold, ReplayLaw, Setup, number_type
+from replay.law import FLOAT64, Fold, ReplayLaw, Setup, each, number_type
 
 Array = NDArray[np.float64]
 
@@ -72,14 +72,14 @@ class Workshop:
         self._answers: dict[object, tuple[Array, Array]] = {}
 
     def inputs(self, setup: Setup) -> NDArray[Any]:
-        """What the setup's law is given (n, 4): references, angles."""
+        """What the setup's law is given (n, 2 loops): references, angles."""
         key = (setup.angle_lags, setup.reference_lag, setup.folds, setup.columns, setup.signs, setup.arithmetic)
         if key not in self._inputs:
             self._inputs[key] = _inputs(self.flight, setup).astype(number_type(setup.arithmetic))
         return self._inputs[key]
 
     def answers(self, setup: Setup) -> tuple[Array, Array]:
-        """What the setup's law should answer (n, 2), and how exactly that is known (n, 2); in V."""
+        """What the setup's law should answer (n, loops), and how exactly that is known, alike; in V."""
         key = (setup.arithmetic, setup.channel, setup.output_lag, setup.angle_lags)
         if key not in self._answers:
             self._answers[key] = _wanted(self.flight, setup)
@@ -95,12 +95,13 @@ class Follower:
         self._flight = workshop.flight
         self.inputs = workshop.inputs(setup)
         self._wanted, self._slack = workshop.answers(setup)
-        self._late = np.array([setup.reference_lag] * 2 + list(setup.angle_lags)) > 0
+        self._loops = setup.loops
+        self._late = np.array([setup.reference_lag] * self._loops + list(each(setup.angle_lags, self._loops))) > 0
 
     def follow(self) -> Trace:
         """Run through the log, accepting incidents."""
         n = len(self.inputs)
-        state, row = self._law.start(self.inputs[0, 2:]), 0
+        state, row = self._law.start(self.inputs[0, self._loops :]), 0
         incidents: list[Incident] = []
         gaps = list(self._flight.missing)
         last_gap: _Gap | None = None
@@ -160,9 +161,12 @@ class Follower:
         if row == len(self.inputs) or row == 0:
             return
         yield from self._held(row, state)
-        yield _Hypothesis(RESET, row, row, self._law.start(self.inputs[row, 2:]))
-        yield from self._other_input(row, state, STALE_ANGLES, slice(2, 4), self.inputs[row - 1, 2:])
-        yield from self._other_input(row, state, STALE_REFERENCES, slice(0, 2), self.inputs[row - 1, :2])
+        yield _Hypothesis(RESET, row, row, self._law.start(self.inputs[row, self._loops :]))
+        for kind, columns in (
+            (STALE_ANGLES, slice(self._loops, 2 * self._loops)),
+            (STALE_REFERENCES, slice(0, self._loops)),
+        ):
+            yield from self._other_input(row, state, kind, columns, self.inputs[row - 1, columns])
         if np.isnan(self.inputs[row]).any():
             yield from self._given(state, (row, row + 1), candidates_for_unmeasured(self._flight, row))
         if last_gap is not None and row <= last_gap[1][1] + 2:
@@ -219,12 +223,13 @@ class Follower:
 
 
 def _inputs(flight: ReplayedLog, setup: Setup) -> Array:
-    """What the law was given (n, 4): references and angles, each as late as the setup says."""
-    folds = zip(flight.angle_rad.T, flight.steps_rad, setup.folds, strict=True)
+    """What the law was given (n, 2 loops): references and angles, each as late as the setup says."""
+    folds = zip(flight.angle_rad.T, flight.steps_rad, each(setup.folds, setup.loops), strict=True)
     folded = [_folded(*column)[:, np.newaxis] for column in folds]
-    angles = [lagged(column, lag) for column, lag in zip(folded, setup.angle_lags, strict=True)]
+    angles = [lagged(column, lag) for column, lag in zip(folded, each(setup.angle_lags, setup.loops), strict=True)]
     references = lagged(flight.reference_rad, setup.reference_lag)
-    given = np.hstack([references, *angles])[:, list(setup.columns)]
+    given = np.hstack([references, *angles])
+    given = given[:, list(setup.columns)] if setup.columns else given
     return np.ascontiguousarray(given * np.array(setup.signs))
 
 
@@ -241,7 +246,7 @@ def _folded(angle_rad: Array, step_rad: float, fold: Fold | None) -> Array:
 
 
 def _wanted(flight: ReplayedLog, setup: Setup) -> tuple[Array, Array]:
-    """What the law should have answered (n, 2) in V, and how exactly that is known (n, 2)."""
+    """What the law should have answered (n, loops) in V, and how exactly that is known, alike."""
     logged, slack = flight.logged_V, flight.half_step_V
     as_float32 = logged.astype(np.float32).astype(float)
     steps = np.array(setup.channel.step_V)

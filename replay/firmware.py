@@ -74,7 +74,7 @@ def replay_firmware(log: RunLog, table: ControllerTable, others: Sequence[Contro
     is one that no law can be made from.
     """
     demand_own(log, table)
-    if not has_replayable_columns(log):
+    if not has_replayable_columns(log, table):
         sentence = "the log lacks a reference or an angle that the law takes"
         return FirmwareReplay(False, False, None, "not_replayable", sentence)
     flight = flight_of(log, table)
@@ -171,7 +171,7 @@ def _residuals(log: RunLog, flight: ReplayedLog, run: Replayed) -> tuple[Residua
     present = ~np.isnan(flight.logged_V[:, 0])
     result = []
     columns = (flight.logged_V[present].T, run.u_V[present].T, run.differs[present].T)
-    for name, logged, own, differs in zip(log.columns.inputs, *columns, strict=True):
+    for name, logged, own, differs in zip(flight.input_names, *columns, strict=True):
         error = logged - own
         ulp = np.abs(error) / np.spacing(np.abs(own).astype(np.float32)).astype(float)
         rms_V = float(np.sqrt(np.mean(error**2)))
@@ -183,7 +183,7 @@ def _hint(flight: ReplayedLog, table: ControllerTable, run: Replayed, row: int) 
     """What is striking about the first row that differs, or about the log's references."""
     if row > 0 and _meets_limit(table, run, row):
         return ", from where the law first meets a limit, or leaves it: is its anti-windup another?"
-    digits = dict.fromkeys(str(entry) for entry in flight.printings[2:4] if not entry.is_exact)
+    digits = dict.fromkeys(str(entry) for entry in flight.reference_printings if not entry.is_exact)
     if digits:
         few = " and ".join(digits)
         return f"; the log holds its references with {few}: a law that was given more cannot be run again, so log all digits"

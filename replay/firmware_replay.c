@@ -2,7 +2,8 @@
  * firmware_replay.c - the generated law with its numbers as data and its decisions as switches, to be held against a log.
  *
  * Operations and their order are those of the generated law.c: with every switch at its first value and the numbers of a table,
- * outputs are the same bits. No part of the firmware. `number` is float, or double for a law in double precision.
+ * outputs are the same bits. No part of the firmware. `number` is float, or double for a law in double precision; LOOPS and ORDER are
+ * the law's loops and the states of each.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,6 +15,12 @@
 #define NUMBER float
 #endif
 typedef NUMBER number;
+#ifndef LOOPS
+#define LOOPS 2
+#endif
+#ifndef ORDER
+#define ORDER 3
+#endif
 
 #define ROOM 12
 
@@ -31,7 +38,7 @@ typedef struct {
 } polynomial;
 
 typedef struct {
-    polynomial q[4], p[4], a[3], u_ff;
+    polynomial q[ORDER + 1], p[ORDER + 1], a[ORDER], u_ff;
     int32_t prefilter_poles;
     number prefilter_gain;
     number u_min_V, u_max_V, u_safe_V;
@@ -39,44 +46,45 @@ typedef struct {
 } axis_law;
 
 typedef struct {
-    axis_law axis[2];
-    number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
+    axis_law axis[LOOPS];
+    int32_t scheduling; /* the loop by whose angle the coefficients go */
+    number schedule_min_rad, schedule_max_rad, least_schedule_rad, plausible_V;
     int32_t schedule, windup, feedforward_of_raw_reference;
     int32_t overflow, overflow_at;
-    number overflow_low_V[2], overflow_span_V[2];
+    number overflow_low_V[LOOPS], overflow_span_V[LOOPS];
 } replay_law;
 
 typedef struct {
     number reference_1_rad, reference_2_rad;
-    number e_0_rad, e_1_rad, e_2_rad;
+    number e_rad[ORDER]; /* by power of delta, as below */
     number v_V;
-    number s_V[4], w_V[3];
+    number s_V[ORDER + 1], w_V[ORDER];
 } axis_state;
 
 typedef struct {
-    axis_state axis[2];
-    number angle_rad[2], reference_rad[2];
+    axis_state axis[LOOPS];
+    number angle_rad[LOOPS], reference_rad[LOOPS];
 } replay_state;
 
 /*
- * What lies between the law's output and the logged number: which of the two it is, a factor and an offset, limits, a grid (step 0: none)
+ * What lies between the law's output and the logged number: which of them it is, a factor and an offset, limits, a grid (step 0: none)
  * and the range in which an integer wraps round (span 0: none).
  */
 typedef struct {
-    int32_t source[2];
-    double gain[2], offset_V[2];
-    double low_V[2], high_V[2], step_V[2];
-    double wrap_low_V[2], wrap_span_V[2];
+    int32_t source[LOOPS];
+    double gain[LOOPS], offset_V[LOOPS];
+    double low_V[LOOPS], high_V[LOOPS], step_V[LOOPS];
+    double wrap_low_V[LOOPS], wrap_span_V[LOOPS];
     int32_t rounding;
 } replay_channel;
 
-void replay_start(const replay_law *law, const number angles_rad[2], replay_state *state);
-void replay_step(const replay_law *law, replay_state *state, const number input[4], number output[2]);
-bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[2],
-                           const double (*logged_V)[2], const double (*slack_V)[2]);
+void replay_start(const replay_law *law, const number angles_rad[LOOPS], replay_state *state);
+void replay_step(const replay_law *law, replay_state *state, const number input[2 * LOOPS], number output[LOOPS]);
+bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[LOOPS],
+                           const double (*logged_V)[LOOPS], const double (*slack_V)[LOOPS]);
 int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from, int32_t to,
-                   const number (*inputs)[4], const double (*logged_V)[2], const double (*slack_V)[2],
-                   number (*outputs)[2]);
+                   const number (*inputs)[2 * LOOPS], const double (*logged_V)[LOOPS], const double (*slack_V)[LOOPS],
+                   number (*outputs)[LOOPS]);
 
 static number finite_or(number value, number last)
 {
@@ -161,17 +169,17 @@ static void add_term(number *sum, bool *is_empty, const polynomial *terms, numbe
     *is_empty = false;
 }
 
-static number move(const axis_law *axis, const axis_state *state, const number e_rad[4], number schedule_rad)
+static number move(const axis_law *axis, const axis_state *state, const number e_rad[ORDER + 1], number schedule_rad)
 {
     number sum = 0;
     bool is_empty = true;
-    for (int32_t i = 0; i < 4; i++) {
+    for (int32_t i = 0; i <= ORDER; i++) {
         add_term(&sum, &is_empty, &axis->q[i], schedule_rad, e_rad[i], false);
     }
-    for (int32_t i = 0; i < 4; i++) {
+    for (int32_t i = 0; i <= ORDER; i++) {
         add_term(&sum, &is_empty, &axis->p[i], schedule_rad, state->s_V[i], i == 0);
     }
-    for (int32_t i = 0; i < 3; i++) {
+    for (int32_t i = 0; i < ORDER; i++) {
         add_term(&sum, &is_empty, &axis->a[i], schedule_rad, state->w_V[i], i == 0);
     }
     return sum;
@@ -201,7 +209,7 @@ static void remember(number *differences, int32_t count, number value)
     }
 }
 
-static number drive(const replay_law *law, int32_t i, axis_state *state, const number e_rad[4], number v_V, number u_ff_V)
+static number drive(const replay_law *law, int32_t i, axis_state *state, const number e_rad[ORDER + 1], number v_V, number u_ff_V)
 {
     const axis_law *axis = &law->axis[i];
     const number last_v_V = state->v_V;
@@ -225,58 +233,58 @@ static number drive(const replay_law *law, int32_t i, axis_state *state, const n
         v_V = last_v_V;
     }
     const number w_V = (law->windup == WINDUP_OBSERVER) ? u_V - limited_V : (number)0;
-    remember(state->w_V, 3, w_V);
-    remember(state->s_V, 4, v_V - w_V);
-    state->e_0_rad = e_rad[0];
-    state->e_1_rad = is_plausible ? e_rad[1] : (number)0;
-    state->e_2_rad = is_plausible ? e_rad[2] : (number)0;
+    remember(state->w_V, ORDER, w_V);
+    remember(state->s_V, ORDER + 1, v_V - w_V);
+    for (int32_t i = 0; i < ORDER; i++) {
+        state->e_rad[i] = (is_plausible || i == 0) ? e_rad[i] : (number)0;
+    }
     state->v_V = v_V;
     return limited_V;
 }
 
-static number scheduling_angle(const replay_law *law, const replay_state *state, number last_psi_rad)
+static number scheduling_angle(const replay_law *law, const replay_state *state, number last_rad)
 {
-    number psi_rad = state->angle_rad[0];
+    number angle_rad = state->angle_rad[law->scheduling];
     if (law->schedule == SCHEDULE_LAST_MEASURED) {
-        psi_rad = last_psi_rad;
+        angle_rad = last_rad;
     } else if (law->schedule == SCHEDULE_FILTERED_REFERENCE) {
-        psi_rad = state->axis[0].reference_2_rad;
+        angle_rad = state->axis[law->scheduling].reference_2_rad;
     } else if (law->schedule == SCHEDULE_REFERENCE) {
-        psi_rad = state->reference_rad[0];
+        angle_rad = state->reference_rad[law->scheduling];
     }
-    const number held_rad = clamp(psi_rad, law->psi_min_rad, law->psi_max_rad);
+    const number held_rad = clamp(angle_rad, law->schedule_min_rad, law->schedule_max_rad);
     return (magnitude(held_rad) < law->least_schedule_rad) ? (number)0 : held_rad;
 }
 
-void replay_step(const replay_law *law, replay_state *state, const number input[4], number output[2])
+void replay_step(const replay_law *law, replay_state *state, const number input[2 * LOOPS], number output[LOOPS])
 {
-    const number last_psi_rad = state->angle_rad[0];
-    for (int32_t i = 0; i < 2; i++) {
+    const number last_rad = state->angle_rad[law->scheduling];
+    for (int32_t i = 0; i < LOOPS; i++) {
         state->reference_rad[i] = finite_or(input[i], state->reference_rad[i]);
-        state->angle_rad[i] = finite_or(input[2 + i], state->angle_rad[i]);
+        state->angle_rad[i] = finite_or(input[LOOPS + i], state->angle_rad[i]);
         prefilter(&law->axis[i], &state->axis[i], state->reference_rad[i]);
     }
-    const number schedule_rad = scheduling_angle(law, state, last_psi_rad);
-    const axis_state *elevation = &state->axis[0];
-    const number ahead_rad = law->feedforward_of_raw_reference ? state->reference_rad[0] : elevation->reference_2_rad;
-    for (int32_t i = 0; i < 2; i++) {
+    const number schedule_rad = scheduling_angle(law, state, last_rad);
+    const number filtered_rad = state->axis[law->scheduling].reference_2_rad;
+    const number ahead_rad = law->feedforward_of_raw_reference ? state->reference_rad[law->scheduling] : filtered_rad;
+    for (int32_t i = 0; i < LOOPS; i++) {
         const axis_law *axis = &law->axis[i];
         axis_state *self = &state->axis[i];
         const number u_ff_V = (axis->u_ff.count == 0) ? (number)0 : value_at(&axis->u_ff, ahead_rad);
-        number e_rad[4];
+        number e_rad[ORDER + 1];
         e_rad[0] = self->reference_2_rad - state->angle_rad[i];
-        e_rad[1] = e_rad[0] - self->e_0_rad;
-        e_rad[2] = e_rad[1] - self->e_1_rad;
-        e_rad[3] = e_rad[2] - self->e_2_rad;
+        for (int32_t power = 0; power < ORDER; power++) {
+            e_rad[power + 1] = e_rad[power] - self->e_rad[power];
+        }
         const number v_V = self->v_V + move(axis, self, e_rad, schedule_rad);
         output[i] = drive(law, i, self, e_rad, v_V, u_ff_V);
     }
 }
 
-void replay_start(const replay_law *law, const number angles_rad[2], replay_state *state)
+void replay_start(const replay_law *law, const number angles_rad[LOOPS], replay_state *state)
 {
     memset(state, 0, sizeof *state);
-    for (int32_t i = 0; i < 2; i++) {
+    for (int32_t i = 0; i < LOOPS; i++) {
         const axis_law *axis = &law->axis[i];
         const number angle_rad = finite_or(angles_rad[i], (number)0);
         const number reference_rad = clamp(angle_rad, axis->reference_min_rad, axis->reference_max_rad);
@@ -284,7 +292,7 @@ void replay_start(const replay_law *law, const number angles_rad[2], replay_stat
         state->reference_rad[i] = reference_rad;
         state->axis[i].reference_1_rad = reference_rad;
         state->axis[i].reference_2_rad = reference_rad;
-        state->axis[i].e_0_rad = reference_rad - angle_rad;
+        state->axis[i].e_rad[0] = reference_rad - angle_rad;
     }
 }
 
@@ -303,7 +311,7 @@ static double on_grid(double u_V, double step_V, int32_t rounding)
     }
 }
 
-static double seen(const replay_channel *channel, int32_t i, const number output[2])
+static double seen(const replay_channel *channel, int32_t i, const number output[LOOPS])
 {
     double value_V = channel->gain[i] * (double)output[channel->source[i]] + channel->offset_V[i];
     value_V = (value_V < channel->low_V[i]) ? channel->low_V[i] : value_V;
@@ -314,7 +322,7 @@ static double seen(const replay_channel *channel, int32_t i, const number output
 }
 
 /* A number that was calculated with behind the law was rounded once more there; one that was only passed on was not. */
-static double rounding_V(const replay_channel *channel, int32_t i, const number output[2], double seen_V)
+static double rounding_V(const replay_channel *channel, int32_t i, const number output[LOOPS], double seen_V)
 {
     const double own_V = (double)output[channel->source[i]];
     const bool is_passed_on = seen_V == own_V || channel->step_V[i] > 0.0;
@@ -323,10 +331,10 @@ static double rounding_V(const replay_channel *channel, int32_t i, const number 
 }
 
 /* True where the log agrees within the slack; a row whose logged number is NaN is not in the log, and agrees. */
-static bool agrees(const replay_channel *channel, const number output[2], const double logged_V[2],
-                   const double slack_V[2])
+static bool agrees(const replay_channel *channel, const number output[LOOPS], const double logged_V[LOOPS],
+                   const double slack_V[LOOPS])
 {
-    for (int32_t i = 0; i < 2; i++) {
+    for (int32_t i = 0; i < LOOPS; i++) {
         const double seen_V = seen(channel, i, output);
         const double slack = slack_V[i] + rounding_V(channel, i, output, seen_V);
         if (!isnan(logged_V[i]) && !(fabs(seen_V - logged_V[i]) <= slack)) {
@@ -337,8 +345,8 @@ static bool agrees(const replay_channel *channel, const number output[2], const 
 }
 
 /* True where the log agrees within the slack with outputs that some other law gave. */
-bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[2],
-                           const double (*logged_V)[2], const double (*slack_V)[2])
+bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const number (*outputs)[LOOPS],
+                           const double (*logged_V)[LOOPS], const double (*slack_V)[LOOPS])
 {
     for (int32_t row = 0; row < rows; row++) {
         if (!agrees(channel, outputs[row], logged_V[row], slack_V[row])) {
@@ -353,16 +361,15 @@ bool replay_channel_agrees(const replay_channel *channel, int32_t rows, const nu
  * Without a log (NULL) nothing is compared. Outputs, where asked for, are written up to the returned row and in it.
  */
 int32_t replay_run(const replay_law *law, const replay_channel *channel, replay_state *state, int32_t from, int32_t to,
-                   const number (*inputs)[4], const double (*logged_V)[2], const double (*slack_V)[2],
-                   number (*outputs)[2])
+                   const number (*inputs)[2 * LOOPS], const double (*logged_V)[LOOPS], const double (*slack_V)[LOOPS],
+                   number (*outputs)[LOOPS])
 {
     for (int32_t row = from; row < to; row++) {
         const replay_state before = *state;
-        number output[2];
+        number output[LOOPS];
         replay_step(law, state, inputs[row], output);
         if (outputs != NULL) {
-            outputs[row][0] = output[0];
-            outputs[row][1] = output[1];
+            memcpy(outputs[row], output, sizeof output);
         }
         if (logged_V != NULL && !agrees(channel, output, logged_V[row], slack_V[row])) {
             *state = before;

@@ -10,7 +10,6 @@ from records.log import RunLog
 from records.table import ControllerTable
 from replay import thresholds
 from replay.digits import Printing, printing
-from sim.columns import reference_name
 
 Array = NDArray[np.float64]
 
@@ -22,10 +21,10 @@ PRINT_MARGIN = 1.0 + 1e-6
 
 @dataclass(frozen=True, eq=False)
 class ReplayedLog:
-    """Samples k = 0..n-1: references and angles (n, 2) in rad, logged inputs (n, 2) in V, their rounding `half_step_V` (n, 2).
+    """Samples k = 0..n-1: references and angles (n, loops) in rad, logged inputs in V and their rounding `half_step_V`, alike.
 
     A sample that the log lacks has NaN everywhere; where it lacks too many (`lacking`), rows stand as they come.
-    `printings` are those of u_M, u_T, the two references and the two angles.
+    `printings` are those of the inputs, of the references and of the angles, each in the order of the loops.
     """
 
     t_s: Array
@@ -35,36 +34,61 @@ class ReplayedLog:
     half_step_V: Array
     missing: tuple[tuple[int, int], ...]
     printings: tuple[Printing, ...]
-    steps_rad: tuple[float, float]
+    steps_rad: tuple[float, ...]
     rows: NDArray[np.int64]
     input_names: tuple[str, ...]
     lacking: int
 
     @property
     def reference_half_step_rad(self) -> Array:
-        """How far printing may have moved each reference (n, 2): a few numbers tell no digits, those of its angle do."""
-        columns = zip(self.reference_rad.T, self.printings[2:4], self.printings[4:], strict=True)
+        """How far printing may have moved each reference (n, loops): a few numbers tell no digits, those of its angle do."""
+        columns = zip(self.reference_rad.T, self.reference_printings, self.angle_printings, strict=True)
         return np.column_stack(
             [np.maximum(own.half_step(column), angle.half_step(column)) for column, own, angle in columns]
         )
 
     @property
+    def loops(self) -> int:
+        """How many loops the law closes."""
+        return len(self.input_names)
+
+    @property
+    def input_printings(self) -> tuple[Printing, ...]:
+        """Those of the inputs."""
+        return self.printings[: self.loops]
+
+    @property
+    def reference_printings(self) -> tuple[Printing, ...]:
+        """Those of the references."""
+        return self.printings[self.loops : 2 * self.loops]
+
+    @property
+    def angle_printings(self) -> tuple[Printing, ...]:
+        """Those of the angles."""
+        return self.printings[2 * self.loops :]
+
+    @property
     def inputs_are_rounded(self) -> bool:
         """True where the log wrote the voltages down with fewer digits than a float32 has."""
-        return not all(entry.is_exact for entry in self.printings[:2])
+        return not all(entry.is_exact for entry in self.input_printings)
 
 
-def has_replayable_columns(log: RunLog) -> bool:
-    """True where the log holds two inputs, two angles and both references."""
-    names = [reference_name(output) for output in log.columns.outputs]
-    return len(log.columns.inputs) == 2 and len(names) == 2 and all(name in log.extra for name in names)
+def has_replayable_columns(log: RunLog, table: ControllerTable) -> bool:
+    """True where the log holds input, angle and reference of every loop of the table."""
+    return all(
+        loop.input in log.columns.inputs and loop.output in log.columns.outputs and loop.reference in log.extra
+        for loop in table.loops
+    )
 
 
 def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
     """The log on its control samples; rows that are missing by sequence number or by time are put in as NaN."""
-    references = np.column_stack([log.extra[reference_name(output)] for output in log.columns.outputs])
+    loops = table.loops
+    references = np.column_stack([log.extra[loop.reference] for loop in loops])
+    inputs = [log.columns.inputs.index(loop.input) for loop in loops]
+    outputs = [log.columns.outputs.index(loop.output) for loop in loops]
     samples, lacking = _samples(log)
-    columns = [log.u, references, log.y]
+    columns = [log.u[:, inputs], references, log.y[:, outputs]]
     n = int(samples[-1]) + 1
     u_V, reference_rad, angle_rad = (_spread(column, samples, n) for column in columns)
     written = tuple(printing(column) for block in columns for column in block.T)
@@ -77,9 +101,9 @@ def flight_of(log: RunLog, table: ControllerTable) -> ReplayedLog:
         * PRINT_MARGIN,
         missing=_blocks(np.isnan(u_V[:, 0])),
         printings=written,
-        steps_rad=(table.axes[0].resolution_rad, table.axes[1].resolution_rad),
+        steps_rad=tuple(axis.resolution_rad for axis in table.axes),
         rows=samples,
-        input_names=tuple(log.columns.inputs),
+        input_names=tuple(loop.input for loop in loops),
         lacking=lacking,
     )
 
@@ -116,7 +140,7 @@ def _in_float32(counts: Array, steps: Array) -> Array:
 
 
 def _as_written(references: Array, flight: ReplayedLog) -> bool:
-    """Whether these references (n, 2) are written down as those that the log holds."""
+    """Whether these references (n, loops) are written down as those that the log holds."""
     half = flight.reference_half_step_rad
     off = np.abs(references - flight.reference_rad)
     return bool(
@@ -180,7 +204,7 @@ def advanced(values: Array, lead: int) -> Array:
 def candidates_for_missing(flight: ReplayedLog, block: tuple[int, int]) -> Sequence[Array]:
     """What the law may have been given in up to two missing samples: counts near the line between their neighbours.
 
-    Each candidate is (samples, 4): references, then angles; nothing for longer gaps or gaps at an end.
+    Each candidate is (samples, 2 loops): references, then angles; nothing for longer gaps or gaps at an end.
     """
     first, behind = block
     if behind - first > 2 or first == 0 or behind == len(flight.t_s) or not all(flight.steps_rad):
@@ -190,7 +214,8 @@ def candidates_for_missing(flight: ReplayedLog, block: tuple[int, int]) -> Seque
         return ()
     steps = np.array(flight.steps_rad)
     reach = UNMEASURED_REACH[:5] if behind - first == 1 else UNMEASURED_REACH[:3]
-    offsets = np.stack(np.meshgrid(reach, reach, indexing="ij"), axis=-1).reshape(-1, 2)
+    grids = np.meshgrid(*[reach] * flight.loops, indexing="ij")
+    offsets = np.stack(grids, axis=-1).reshape(-1, flight.loops)
     rows = [
         (np.round((before + (after - before) * (k + 1) / (behind - first + 1)) / steps) + offsets) * steps
         for k in range(behind - first)
@@ -203,7 +228,7 @@ def candidates_for_missing(flight: ReplayedLog, block: tuple[int, int]) -> Seque
 def candidates_for_unmeasured(flight: ReplayedLog, sample: int) -> Sequence[Array]:
     """What the law may have measured in a sample whose angles the log lacks: counts near the line between known ones.
 
-    Each candidate is (1, 4): the sample's references, then angles; those that are known stay as they are.
+    Each candidate is (1, 2 loops): the sample's references, then angles; those that are known stay as they are.
     """
     steps, known = np.array(flight.steps_rad), flight.angle_rad[sample]
     if not steps.all():
@@ -216,7 +241,7 @@ def candidates_for_unmeasured(flight: ReplayedLog, sample: int) -> Sequence[Arra
             continue
         count = np.round(np.interp(sample, finite, angles[finite]) / steps[axis])
         choices.append((count + UNMEASURED_REACH) * steps[axis])
-    grid = np.array(np.meshgrid(*choices, indexing="ij")).reshape(2, -1).T
+    grid = np.array(np.meshgrid(*choices, indexing="ij")).reshape(flight.loops, -1).T
     return [np.hstack([flight.reference_rad[sample], angles])[np.newaxis] for angles in grid]
 
 

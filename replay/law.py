@@ -3,20 +3,21 @@
 from dataclasses import asdict, dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from codegen.law_constants import AxisConstants, law_constants
 from records.errors import BadInput
+from records.loops import Loop
 from records.table import AxisLaw, ControllerTable, Schedule, changed_axis
-from sim.kernel.law import is_kernel_s
 from toolchain.host import STRICT_FLOAT_FLAGS, build_shared, load_shared
 
 Array = NDArray[np.float64]
-Pair = tuple[float, float]
-Gains = tuple[float | None, float | None]
+Each = tuple[float, ...]  # one number a loop, or one for all of them
+Gains = tuple[float | None, ...]
+T = TypeVar("T")
 
 ROOM = 12  # coefficients of a polynomial, as in firmware_replay.c
 SCHEDULE_MEASURED, SCHEDULE_LAST_MEASURED, SCHEDULE_FILTERED_REFERENCE, SCHEDULE_REFERENCE = range(4)
@@ -34,29 +35,34 @@ FLOAT32, FLOAT64 = "float32", "float64"
 
 _SOURCE = Path(__file__).with_name("firmware_replay.c")
 _C_NAMES = {FLOAT32: "float", FLOAT64: "double"}
-_DECLARATIONS = f"""
+
+
+def _declarations(loops: int, order: int) -> str:
+    return f"""
     typedef struct {{ int32_t count; number c[{ROOM}]; }} polynomial;
     typedef struct {{
-        polynomial q[4], p[4], a[3], u_ff;
+        polynomial q[{order + 1}], p[{order + 1}], a[{order}], u_ff;
         int32_t prefilter_poles;
         number prefilter_gain;
         number u_min_V, u_max_V, u_safe_V;
         number reference_min_rad, reference_max_rad;
     }} axis_law;
     typedef struct {{
-        axis_law axis[2];
-        number psi_min_rad, psi_max_rad, least_schedule_rad, plausible_V;
+        axis_law axis[{loops}];
+        int32_t scheduling;
+        number schedule_min_rad, schedule_max_rad, least_schedule_rad, plausible_V;
         int32_t schedule, windup, feedforward_of_raw_reference;
         int32_t overflow, overflow_at;
-        number overflow_low_V[2], overflow_span_V[2];
+        number overflow_low_V[{loops}], overflow_span_V[{loops}];
     }} replay_law;
     typedef struct {{
-        number reference_1_rad, reference_2_rad, e_0_rad, e_1_rad, e_2_rad, v_V, s_V[4], w_V[3];
+        number reference_1_rad, reference_2_rad, e_rad[{order}], v_V, s_V[{order + 1}], w_V[{order}];
     }} axis_state;
-    typedef struct {{ axis_state axis[2]; number angle_rad[2], reference_rad[2]; }} replay_state;
+    typedef struct {{ axis_state axis[{loops}]; number angle_rad[{loops}], reference_rad[{loops}]; }} replay_state;
     typedef struct {{
-        int32_t source[2];
-        double gain[2], offset_V[2], low_V[2], high_V[2], step_V[2], wrap_low_V[2], wrap_span_V[2];
+        int32_t source[{loops}];
+        double gain[{loops}], offset_V[{loops}], low_V[{loops}], high_V[{loops}], step_V[{loops}];
+        double wrap_low_V[{loops}], wrap_span_V[{loops}];
         int32_t rounding;
     }} replay_channel;
     void replay_start(const replay_law *law, const number *angles_rad, replay_state *state);
@@ -67,20 +73,33 @@ _DECLARATIONS = f"""
 """
 
 
+def each(values: tuple[T, ...], count: int) -> tuple[T, ...]:
+    """One value a loop; a single one stands for all."""
+    return values * count if len(values) == 1 else values
+
+
 @dataclass(frozen=True)
 class Channel:
     """What lies between the law's output and the log, per input: which output it is, times `gain`, plus `offset_V`, limits, a grid of
-    `step_V` (0: none), and the range of `wrap_span_V` (0: none) from `wrap_low_V` up in which it wraps round."""
+    `step_V` (0: none), and the range of `wrap_span_V` (0: none) from `wrap_low_V` up in which it wraps round. Without `source` each
+    input is its own output."""
 
-    source: tuple[int, int] = (0, 1)
-    gain: Pair = (1.0, 1.0)
-    offset_V: Pair = (0.0, 0.0)
-    low_V: Pair = (-1e9, -1e9)
-    high_V: Pair = (1e9, 1e9)
-    step_V: Pair = (0.0, 0.0)
-    wrap_low_V: Pair = (0.0, 0.0)
-    wrap_span_V: Pair = (0.0, 0.0)
+    source: tuple[int, ...] = ()
+    gain: Each = (1.0,)
+    offset_V: Each = (0.0,)
+    low_V: Each = (-1e9,)
+    high_V: Each = (1e9,)
+    step_V: Each = (0.0,)
+    wrap_low_V: Each = (0.0,)
+    wrap_span_V: Each = (0.0,)
     rounding: int = ROUND_NEAREST
+
+    def fields(self, loops: int) -> dict[str, Any]:
+        """As the C's structure of so many loops."""
+        numbers = {
+            name: each(value, loops) for name, value in asdict(self).items() if name not in ("source", "rounding")
+        }
+        return {**numbers, "source": self.source or tuple(range(loops)), "rounding": self.rounding}
 
 
 @dataclass(frozen=True)
@@ -89,8 +108,8 @@ class Overflow:
 
     kind: int = OVERFLOW_NONE
     at: int = AT_SUM
-    low_V: Pair = (0.0, 0.0)
-    span_V: Pair = (0.0, 0.0)
+    low_V: Each = (0.0,)
+    span_V: Each = (0.0,)
 
 
 @dataclass(frozen=True)
@@ -102,15 +121,16 @@ class Fold:
     saturates: bool = False
 
 
-Folds = tuple[Fold | None, Fold | None]
+Folds = tuple[Fold | None, ...]
 
 
 @dataclass(frozen=True)
 class Setup:
     """A firmware that may have flown: numbers, switches, and by how many samples its inputs and its output are late.
 
-    `prefilter_gains` replaces b of both axes' reference filters, `prefilter_poles` their number; None is the table's own. `folds` are
-    of the two angles; `columns` and `signs` say which of references and angles the law took for which.
+    `prefilter_gains` replaces b of the axes' reference filters, `prefilter_poles` their number; None is the table's own. `folds` are
+    of the angles; `columns` and `signs` say which of references and angles the law took for which, each its own without. Of what is one
+    a loop a single one stands for all.
     """
 
     table: ControllerTable
@@ -120,14 +140,19 @@ class Setup:
     raw_feedforward: bool = False
     prefilter_poles: int | None = None
     prefilter_gains: Gains | None = None
-    angle_lags: tuple[int, int] = (0, 0)
+    angle_lags: tuple[int, ...] = (0,)
     reference_lag: int = 0
     output_lag: int = 0
     channel: Channel = Channel()
     overflow: Overflow = Overflow()
-    folds: Folds = (None, None)
-    columns: tuple[int, int, int, int] = (0, 1, 2, 3)
-    signs: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    folds: Folds = (None,)
+    columns: tuple[int, ...] = ()
+    signs: Each = (1.0,)
+
+    @property
+    def loops(self) -> int:
+        """How many loops the law closes."""
+        return len(self.table.loops)
 
     def with_axis(self, name: str, **change: object) -> "Setup":
         """The setup with fields of the table's axis `name` replaced."""
@@ -139,17 +164,21 @@ class ReplayLaw:
 
     def __init__(self, setup: Setup) -> None:
         """Raises BadInput for a table that no law can be made from."""
-        self.ffi, self._lib = _library(setup.arithmetic)
+        self.loops, self.order = setup.loops, setup.table.order
+        self.ffi, self._lib = _library(setup.arithmetic, self.loops, self.order)
         self.number = number_type(setup.arithmetic)
         self._law = _law(setup)
-        self._channel = _channel(setup.arithmetic, setup.channel)
+        self._channel = _channel(setup.arithmetic, self.loops, self.order, setup.channel)
+
+    @property
+    def scheduling(self) -> int:
+        """The loop by whose angle the coefficients go."""
+        return int(self._law.scheduling)
 
     def start(self, angles_rad: Array) -> Any:
-        """A state at rest at the angles (2,)."""
+        """A state at rest at the angles (loops,)."""
         state = self.ffi.new("replay_state *")
-        self._lib.replay_start(
-            self._law, self.ffi.new("number[2]", np.asarray(angles_rad, self.number).tolist()), state
-        )
+        self._lib.replay_start(self._law, self.ffi.new("number[]", np.asarray(angles_rad, self.number).tolist()), state)
         return state
 
     def copied(self, state: Any) -> Any:
@@ -161,24 +190,25 @@ class ReplayLaw:
     ) -> int:
         """Step the rows from..to and return the first that does not agree with the log within the slack; moves `state` up to it.
 
-        inputs (n, 4), logged_V and slack_V (n, 2) in V; a logged NaN agrees with anything, None compares nothing.
+        inputs (n, 2 loops), logged_V and slack_V (n, loops) in V; a logged NaN agrees with anything, None compares nothing.
         """
         arrays = (self._address(array) for array in (inputs, logged_V, slack_V))
         return int(self._lib.replay_run(self._law, self._channel, state, *rows, *arrays, self.ffi.NULL))
 
     def outputs(self, inputs: NDArray[Any]) -> Array:
-        """Outputs (n, 2) in V from rest at the first row's angles, before the channel."""
-        result = np.empty((len(inputs), 2), self.number)
+        """Outputs (n, loops) in V from rest at the first row's angles, before the channel."""
+        result = np.empty((len(inputs), self.loops), self.number)
         arguments = (0, len(inputs), self._address(inputs), self.ffi.NULL, self.ffi.NULL, self._address(result))
-        self._lib.replay_run(self._law, self._channel, self.start(inputs[0, 2:]), *arguments)
+        self._lib.replay_run(self._law, self._channel, self.start(inputs[0, self.loops :]), *arguments)
         return result.astype(float)
 
     def sums(self, inputs: NDArray[Any], behind: int) -> tuple[Array, Array]:
-        """The law's sum v and its command u before the limits, each (behind, 2) in V, of the first rows from rest."""
-        state, v_V, w_V = self.start(inputs[0, 2:]), np.empty((behind, 2)), np.empty((behind, 2))
+        """The law's sum v and its command u before the limits, each (behind, loops) in V, of the first rows from rest."""
+        state, shape = self.start(inputs[0, self.loops :]), (behind, self.loops)
+        v_V, w_V = np.empty(shape), np.empty(shape)
         for row in range(behind):
             self.run(state, (row, row + 1), inputs, None, None)
-            for i in range(2):
+            for i in range(self.loops):
                 v_V[row, i], w_V[row, i] = state.axis[i].v_V, state.axis[i].w_V[0]
         return v_V, self.outputs(inputs[:behind]) + w_V
 
@@ -187,11 +217,14 @@ class ReplayLaw:
 
 
 def channel_agrees(channel: Channel, own_V: Array, logged_V: Array, slack_V: Array) -> bool:
-    """Whether the log (n, 2) holds what the channel makes of answers (n, 2) that were computed elsewhere, within the slack (n, 2)."""
-    ffi, lib = _library(FLOAT64)
+    """Whether the log (n, loops) holds what the channel makes of answers that were computed elsewhere, within the slack, alike."""
+    loops = own_V.shape[1]
+    ffi, lib = _library(FLOAT64, loops, 1)
     arrays = [np.ascontiguousarray(array, dtype=float) for array in (own_V, logged_V, slack_V)]
     addresses = (ffi.cast("void *", array.ctypes.data) for array in arrays)
-    return bool(lib.replay_channel_agrees(ffi.new("replay_channel *", asdict(channel)), len(arrays[0]), *addresses))
+    return bool(
+        lib.replay_channel_agrees(ffi.new("replay_channel *", channel.fields(loops)), len(arrays[0]), *addresses)
+    )
 
 
 def number_type(arithmetic: str) -> np.dtype[Any]:
@@ -200,11 +233,12 @@ def number_type(arithmetic: str) -> np.dtype[Any]:
 
 
 @cache
-def _library(arithmetic: str) -> tuple[Any, Any]:
+def _library(arithmetic: str, loops: int, order: int) -> tuple[Any, Any]:
     name = _C_NAMES[arithmetic]
     flags = (*(flag for flag in STRICT_FLOAT_FLAGS if flag != "-Wdouble-promotion"), f"-DNUMBER={name}")
-    library = build_shared(f"firmware-replay-{arithmetic}", [_SOURCE], flags=flags)
-    return load_shared(f"typedef {name} number; {_DECLARATIONS}", library)
+    flags = (*flags, f"-DLOOPS={loops}", f"-DORDER={order}")
+    library = build_shared(f"firmware-replay-{arithmetic}-{loops}-{order}", [_SOURCE], flags=flags)
+    return load_shared(f"typedef {name} number; {_declarations(loops, order)}", library)
 
 
 @dataclass(frozen=True)
@@ -214,10 +248,11 @@ class _Numbers:
     axes: tuple[AxisLaw, ...]
     sample_period_s: float
     schedule: Schedule | None
+    loops: tuple[Loop, ...]
 
     @classmethod
     def of(cls, table: ControllerTable) -> "_Numbers":
-        return cls(table.axes, table.sample_period_s, table.schedule)
+        return cls(table.axes, table.sample_period_s, table.schedule, table.loops)
 
     @property
     def table(self) -> ControllerTable:
@@ -227,14 +262,16 @@ class _Numbers:
             sample_period_s=self.sample_period_s,
             schedule=self.schedule,
             axes=self.axes,
+            loops=self.loops,
         )
 
 
 def _law(setup: Setup) -> Any:
     """The C's law: its table's numbers, then what the setup changes in a copy of them."""
-    ffi, _ = _library(setup.arithmetic)
+    loops = setup.loops
+    ffi, _ = _library(setup.arithmetic, loops, setup.table.order)
     law = ffi.new("replay_law *", _table_law(_Numbers.of(setup.table), setup.arithmetic)[0])
-    for axis, gain in zip(law.axis, setup.prefilter_gains or (None, None), strict=True):
+    for axis, gain in zip(law.axis, setup.prefilter_gains or (None,) * loops, strict=True):
         if gain is not None:
             axis.prefilter_gain, axis.prefilter_poles = gain, 2
         if setup.prefilter_poles is not None and axis.prefilter_poles:
@@ -242,26 +279,22 @@ def _law(setup: Setup) -> Any:
     law.schedule, law.windup = setup.schedule, setup.windup
     law.feedforward_of_raw_reference = setup.raw_feedforward
     law.overflow, law.overflow_at = setup.overflow.kind, setup.overflow.at
-    law.overflow_low_V, law.overflow_span_V = setup.overflow.low_V, setup.overflow.span_V
+    law.overflow_low_V, law.overflow_span_V = each(setup.overflow.low_V, loops), each(setup.overflow.span_V, loops)
     return law
 
 
 # A search pairs some hundred changes, most of them of no number in the table: the same tables come back thousands of times.
 @lru_cache(maxsize=1024)
 def _table_law(numbers: _Numbers, arithmetic: str) -> Any:
-    ffi, _ = _library(arithmetic)
     table = numbers.table
+    ffi, _ = _library(arithmetic, len(table.loops), table.order)
     constants = law_constants(table, np.float32 if arithmetic == FLOAT32 else np.float64)
-    if constants.schedule is None or not is_kernel_s(table):
-        got = f"loops {', '.join(loop.axis for loop in table.loops)} of up to {table.order} states"
-        expected = "the helicopter's two of three, which a firmware is run again for"
-        raise BadInput(
-            "controller table", "replay", got, expected, "replay it through twin and C: `twinlaw verify --log`"
-        )
+    schedule = constants.schedule  # without one all polynomials are constants, at any angle
     fields = {
-        "axis": [_axis_fields(axis) for axis in constants.axes],
-        "psi_min_rad": constants.schedule.min_rad,
-        "psi_max_rad": constants.schedule.max_rad,
+        "axis": [_axis_fields(axis, table.order) for axis in constants.axes],
+        "scheduling": 0 if schedule is None else schedule.index,
+        "schedule_min_rad": 0.0 if schedule is None else schedule.min_rad,
+        "schedule_max_rad": 0.0 if schedule is None else schedule.max_rad,
         "least_schedule_rad": constants.least_schedule_rad,
         "plausible_V": constants.plausible_V,
     }
@@ -270,17 +303,19 @@ def _table_law(numbers: _Numbers, arithmetic: str) -> Any:
 
 # The C only reads it.
 @lru_cache(maxsize=1024)
-def _channel(arithmetic: str, channel: Channel) -> Any:
-    ffi, _ = _library(arithmetic)
-    return ffi.new("replay_channel *", asdict(channel))
+def _channel(arithmetic: str, loops: int, order: int, channel: Channel) -> Any:
+    ffi, _ = _library(arithmetic, loops, order)
+    return ffi.new("replay_channel *", channel.fields(loops))
 
 
-def _axis_fields(axis: AxisConstants[Any]) -> dict[str, Any]:
+def _axis_fields(axis: AxisConstants[Any], order: int) -> dict[str, Any]:
+    """Rows that the axis does not have, as it has fewer states or no roll-off, are left out of the sum."""
+    left_out = [()] * (order + 1)
     scalars = ("u_min_V", "u_max_V", "u_safe_V", "reference_min_rad", "reference_max_rad")
     return {
-        "q": [_polynomial(row) for row in axis.q_V_rad],
-        "p": [_polynomial(row) for row in (*axis.p, ())[:4]],
-        "a": [_polynomial(row) for row in axis.a],
+        "q": [_polynomial(row) for row in (*axis.q_V_rad, *left_out)[: order + 1]],
+        "p": [_polynomial(row) for row in (*axis.p, *left_out)[: order + 1]],
+        "a": [_polynomial(row) for row in (*axis.a, *left_out)[:order]],
         "u_ff": _polynomial(axis.feedforward_V),
         "prefilter_poles": 0 if axis.prefilter_gain is None else 2,
         "prefilter_gain": 1.0 if axis.prefilter_gain is None else axis.prefilter_gain,

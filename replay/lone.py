@@ -7,10 +7,10 @@ from itertools import product
 
 import numpy as np
 
-from records.table import AXES, ControllerTable
+from records.table import ControllerTable
 from replay import thresholds
 from replay.law import Setup
-from replay.variants import BY_ANGLES, Variant
+from replay.variants import Variant, by_angles
 
 PAIRED_AGE = 2  # what is no older is among the variants that come in pairs
 ROWS = ("q_V_rad", "p")
@@ -19,19 +19,22 @@ LOGGED_LATE, ANGLE_LOGGED_LATE = "reference_logged_late", "angle_logged_late"
 
 def lone_variants(table: ControllerTable) -> list[Variant]:
     """Those that are too many, or too fine, to be paired with others."""
-    return [*_older_angles(), *_angles_logged_late(), *_other_times_of_references(), *_last_places(table)]
+    return [*_older_angles(table), *_angles_logged_late(table), *_other_times_of_references(), *_last_places(table)]
 
 
-def _older_angles() -> Iterator[Variant]:
-    for psi, phi in product(range(thresholds.OLDEST_ANGLES + 1), repeat=2):
-        if {0, psi, phi} != {0, max(psi, phi)} or max(psi, phi) > PAIRED_AGE:  # the rest may be paired
-            sentence = f"used the elevation measured {_samples(psi)} and the azimuth measured {_samples(phi)} before"
-            yield Variant("stale_sample", "angles", sentence, partial(replace, angle_lags=(psi, phi)))
+def _older_angles(table: ControllerTable) -> Iterator[Variant]:
+    names = [loop.axis for loop in table.loops]
+    for lags in product(range(thresholds.OLDEST_ANGLES + 1), repeat=len(names)):
+        if {0, *lags} != {0, max(lags)} or max(lags) > PAIRED_AGE:  # the rest may be paired
+            measured = " and ".join(
+                f"the {name} measured {_samples(lag)}" for name, lag in zip(names, lags, strict=True)
+            )
+            yield Variant("stale_sample", "angles", f"used {measured} before", partial(replace, angle_lags=lags))
 
 
-def _angles_logged_late() -> Iterator[Variant]:
+def _angles_logged_late(table: ControllerTable) -> Iterator[Variant]:
     for samples in range(1, thresholds.OLDEST_ANGLES + 1):
-        for angles, lags in BY_ANGLES.items():
+        for angles, lags in by_angles(table).items():
             sentence = f"used {angles} that the log holds {_samples(samples)} too late"
             ahead = tuple(-samples * lag for lag in lags)
             yield Variant(ANGLE_LOGGED_LATE, "angles", sentence, partial(replace, angle_lags=ahead))
@@ -52,7 +55,7 @@ def _samples(count: int) -> str:
 
 def _last_places(table: ControllerTable) -> Iterator[Variant]:
     """Each coefficient one unit of its last place up or down: a number that another program rounded, or one bit that was lost."""
-    for name in AXES:
+    for name in (loop.axis for loop in table.loops):
         axis = table.axis(name)
         for key in ("q_V_rad", "p", "a", "feedforward_V"):
             for place in _places(getattr(axis, key)):

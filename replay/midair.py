@@ -8,6 +8,7 @@ that flew. Where the output was then off its limits for four samples, the feedba
 Known to the rounding of u only, the state cannot give equal bits: agreement is within a stated voltage.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -73,20 +74,23 @@ def _run_before(marked: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
 def _state(law: ReplayLaw, inputs: NDArray[Any], flight: ReplayedLog, table: ControllerTable, row: int) -> Any:
     """The state before `row`."""
     first, ahead_rad = row - thresholds.HISTORY, []
-    state = law.start(inputs[0, 2:])
+    state = law.start(inputs[0, law.loops :])
     law.run(state, (0, first), inputs, None, None)
     for last in range(first, row):
         law.run(state, (last, last + 1), inputs, None, None)
-        ahead_rad.append(state.axis[0].reference_2_rad)
+        ahead_rad.append(state.axis[law.scheduling].reference_2_rad)
     for index, axis in enumerate(table.axes):
         s_V = flight.logged_V[first:row, index] - [polynomial(axis.feedforward_V, angle) for angle in ahead_rad]
         own = state.axis[index]
         own.v_V = float(s_V[-1])
-        for power, value in enumerate(_differences(s_V)):
+        for power, value in enumerate(_differences(s_V, min(law.order, thresholds.HISTORY))):
             own.s_V[power], own.w_V[power] = value, 0.0
     return state
 
 
-def _differences(values: Array) -> tuple[float, float, float]:
-    """The last value, its first and its second backward difference."""
-    return float(values[-1]), float(values[-1] - values[-2]), float(values[-1] - 2.0 * values[-2] + values[-3])
+def _differences(values: Array, count: int) -> list[float]:
+    """The last value, its first backward difference, and so on, `count` in all."""
+    return [
+        float(sum((-1.0) ** back * math.comb(power, back) * values[-1 - back] for back in range(power + 1)))
+        for power in range(count)
+    ]

@@ -15,10 +15,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import AXES, ControllerTable
+from records.table import ControllerTable
 from replay import law, thresholds
 from replay.flight import ReplayedLog
-from replay.law import Channel, Fold, Overflow, ReplayLaw, Setup
+from replay.law import Channel, Each, Fold, Overflow, ReplayLaw, Setup
 from replay.variants import Variant, grid_step, steps_in_words
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Wrap:
 
 
 def output_wraps(own_V: Array, logged_V: Array, flight: ReplayedLog) -> Iterator[Variant]:
-    """The range in which the logged inputs (n, 2) wrap round, read off against what the law answers (n, 2)."""
+    """The range in which the logged inputs (n, loops) wrap round, read off against what the law answers, alike."""
     names, digits_V = flight.input_names, np.nanmax(flight.half_step_V, axis=0)
     steps = [grid_step(column) for column in logged_V.T]
     found = [output_wrap(*columns) for columns in zip(own_V.T, logged_V.T, steps, digits_V, strict=True)]
@@ -48,12 +48,12 @@ def output_wraps(own_V: Array, logged_V: Array, flight: ReplayedLog) -> Iterator
         return
     ranges = [wrap or Wrap(0.0, 0.0) for wrap in found]
     clauses = [in_words(name, wrap) for name, wrap in zip(names, found, strict=True) if wrap is not None]
-    channel = Channel(wrap_low_V=(ranges[0].low, ranges[1].low), wrap_span_V=(ranges[0].span, ranges[1].span))
+    channel = Channel(wrap_low_V=tuple(wrap.low for wrap in ranges), wrap_span_V=tuple(wrap.span for wrap in ranges))
     sentence = f"lets an integer overflow: {'; '.join(clauses)}"
     yield Variant("output_wraps", "channel", sentence, partial(replace, channel=channel))
     if any(steps):
         for rounding in law.ROUNDINGS:
-            on_grid = replace(channel, step_V=(steps[0], steps[1]), rounding=rounding)
+            on_grid = replace(channel, step_V=tuple(steps), rounding=rounding)
             stepped = f"{sentence}; it sends voltages in steps of {steps_in_words(steps)}"
             yield Variant("output_wraps", "channel", stepped, partial(replace, channel=on_grid))
 
@@ -117,7 +117,7 @@ def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDAr
 
     Its end lies between the greatest number before the first difference and that in it.
     """
-    replay = ReplayLaw(Setup(table))
+    replay, names = ReplayLaw(Setup(table)), [loop.axis for loop in table.loops]
     off_V = replay.outputs(inputs) - flight.logged_V
     differs = np.abs(off_V) > flight.half_step_V + thresholds.LEAST_WRAP_V
     rows = np.flatnonzero(differs.any(axis=1))
@@ -127,15 +127,17 @@ def sums_that_overflow(table: ControllerTable, flight: ReplayedLog, inputs: NDAr
     whats = ((law.AT_SUM, "sum"), (law.AT_COMMAND, "command before its limits"))
     for axis in np.flatnonzero(differs[rows[0]]).tolist():
         for (at, what), numbers_V in zip(whats, sites, strict=True):
-            for axes, whose in (((axis,), AXES[axis]), ((0, 1), "elevation and azimuth")):
+            for axes in dict.fromkeys(((axis,), tuple(range(len(names))))):
+                whose = " and ".join(names[index] for index in axes)
+                places = tuple(index in axes for index in range(len(names)))
                 yield from _overflows(
-                    numbers_V[:, axis], abs(float(off_V[rows[0], axis])), _Place(axes, at, f"{whose} {what}")
+                    numbers_V[:, axis], abs(float(off_V[rows[0], axis])), _Place(places, at, f"{whose} {what}")
                 )
 
 
 @dataclass(frozen=True)
 class _Place:
-    axes: tuple[int, ...]
+    axes: tuple[bool, ...]
     at: int
     what: str
 
@@ -149,8 +151,8 @@ class _Place:
         sentence = f"lets an integer overflow: the {self.what} {verb} {ends}"
         return Variant(name, "overflow", sentence, partial(replace, overflow=overflow))
 
-    def _there(self, value_V: float) -> tuple[float, float]:
-        return (value_V if 0 in self.axes else 0.0, value_V if 1 in self.axes else 0.0)
+    def _there(self, value_V: float) -> Each:
+        return tuple(value_V if there else 0.0 for there in self.axes)
 
 
 def _overflows(numbers_V: Array, off_V: float, place: _Place) -> Iterator[Variant]:
@@ -193,17 +195,19 @@ def _between(before: float, reached: float, per_unit: float) -> float | None:
     return end if end <= reached else None
 
 
-def angles_that_wrap(flight: ReplayedLog) -> Iterator[Variant]:
+def angles_that_wrap(table: ControllerTable, flight: ReplayedLog) -> Iterator[Variant]:
     """Encoder counts in an integer that is too narrow, for the angles of the log that leave its range."""
+    names = [loop.axis for loop in table.loops]
+    all_of_them = tuple(range(len(names)))
     for bits in thresholds.ANGLE_BITS:
         for name, low, saturates, how in ANGLE_OVERFLOWS:
             columns = zip(flight.angle_rad.T, flight.steps_rad, strict=True)
             folds = [_fold(angle, step, step * 2.0**bits, low, saturates) for angle, step in columns]
-            for only in ((0, 1), (0,), (1,)):
-                chosen = [folds[axis] if axis in only else None for axis in range(2)]
+            for only in dict.fromkeys((all_of_them, *((axis,) for axis in all_of_them))):
+                chosen = [folds[axis] if axis in only else None for axis in all_of_them]
                 if any(fold is None for axis, fold in enumerate(chosen) if axis in only):
                     continue
-                whose = " and the ".join(AXES[axis] for axis in only)
+                whose = " and the ".join(names[axis] for axis in only)
                 sentence = f"lets an integer overflow: the {whose} counts {how} in {bits} bits"
                 yield Variant(name, "folds", sentence, partial(replace, folds=tuple(chosen)))
 

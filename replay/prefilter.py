@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import AXES, ControllerTable, lag_gain
+from records.table import ControllerTable, lag_gain
 from replay import thresholds
 from replay.flight import ReplayedLog
 from replay.law import ReplayLaw, Setup
@@ -22,23 +22,25 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 def fitted_prefilters(table: ControllerTable, flight: ReplayedLog, inputs: NDArray[Any]) -> Iterator[Variant]:
-    """Both axes with the time constants that fit the log best, rounded to few digits, then to more; none where no reference moves.
+    """All axes with the time constants that fit the log best, rounded to few digits, then to more; none where no reference moves.
 
-    `inputs` (n, 4) are what the law was given. Elevation is fitted to u_M alone, azimuth then to u_T, on which both act.
+    `inputs` (n, 2 loops) are what the law was given. One axis after the other is fitted to its own input: the elevation to u_M alone, the
+    azimuth then to u_T, on which both act.
     """
     window = _window(flight)
     if window is None:
         return
     given = np.ascontiguousarray(inputs[:window], dtype=np.float32)
     logged = flight.logged_V[:window]
-    found_s = [_constant(table, axis) for axis in range(2)]
-    for axis in range(2):
+    names = [loop.axis for loop in table.loops]
+    found_s = [_constant(table, axis) for axis in range(len(names))]
+    for axis in range(len(names)):
         if np.ptp(flight.reference_rad[:window, axis][~np.isnan(flight.reference_rad[:window, axis])]) > 0.0:
             found_s[axis] = _fitted(partial(_misfit, table, given, logged, axis, tuple(found_s)))
     for digits in thresholds.WRITTEN_DIGITS:
         constants_s = tuple(float(f"{value:.{digits}g}") for value in found_s)
         shown = " and ".join(f"{value:g} s" for value in constants_s)
-        sentence = f"filters its references with time constants of {shown} (elevation and azimuth)"
+        sentence = f"filters its references with time constants of {shown} ({' and '.join(names)})"
         yield Variant("other_prefilter", "prefilter", sentence, partial(_with_constants, constants_s=constants_s))
 
 
@@ -52,8 +54,8 @@ def _constant(table: ControllerTable, axis: int) -> float:
 
 
 def _with_constants(setup: Setup, constants_s: tuple[float, ...]) -> Setup:
-    for axis, constant_s in zip(AXES, constants_s, strict=True):
-        setup = setup.with_axis(axis, prefilter_time_constant_s=constant_s)
+    for loop, constant_s in zip(setup.table.loops, constants_s, strict=True):
+        setup = setup.with_axis(loop.axis, prefilter_time_constant_s=constant_s)
     return setup
 
 

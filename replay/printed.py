@@ -46,7 +46,7 @@ def _usual(off_V: Array) -> Array:
 
 def _rounded_otherwise(flight: ReplayedLog, rng: np.random.Generator) -> ReplayedLog:
     """The flight with references and angles anywhere within their last printed digit."""
-    halves = [entry.half_step(column) for entry, column in zip(flight.printings[4:], flight.angle_rad.T, strict=True)]
+    halves = [entry.half_step(column) for entry, column in zip(flight.angle_printings, flight.angle_rad.T, strict=True)]
     return replace(
         flight,
         reference_rad=_anywhere(flight.reference_rad, flight.reference_half_step_rad, rng),
@@ -55,7 +55,7 @@ def _rounded_otherwise(flight: ReplayedLog, rng: np.random.Generator) -> Replaye
 
 
 def _anywhere(columns: Array, half: Array, rng: np.random.Generator) -> Array:
-    """Columns (n, 2) with each number anywhere in its half step (n, 2); one that stands is rounded alike in all its rows."""
+    """Columns (n, loops) with each number anywhere in its half step, alike; one that stands is rounded alike in all its rows."""
     new = np.concatenate([np.ones((1, columns.shape[1]), bool), columns[1:] != columns[:-1]])
     last = np.maximum.accumulate(np.where(new, np.arange(len(columns))[:, np.newaxis], 0), axis=0)
     drawn = np.take_along_axis(rng.uniform(-1.0, 1.0, columns.shape), last, axis=0)

@@ -148,15 +148,15 @@ def _lone(shop: Workshop, table: ControllerTable) -> list[Variant]:
         *constant_inputs(flight, names),
         *output_wraps(own_V, flight.logged_V, flight),
         *output_lines(own_V, flight.logged_V, names),
-        *given_columns(),
+        *given_columns(table),
         *sums_that_overflow(table, flight, inputs),
-        *angles_that_wrap(flight),
+        *angles_that_wrap(table, flight),
         *lone_variants(table),
     ]
 
 
 def channel_cause(flight: ReplayedLog, table: ControllerTable, own_V: Array, word_V: float) -> Variant | None:
-    """What lies between answers (n, 2) of the table's law, computed elsewhere in words of `word_V`, and the log; None: unknown."""
+    """What lies between answers (n, loops) of the table's law, computed elsewhere in words of `word_V`, and the log; None: unknown."""
     names, base = flight.input_names, Setup(table)
     single = [
         *variants(table, flight, ()),
@@ -290,7 +290,7 @@ def _rounded_only(flight: ReplayedLog) -> Told:
 
 
 def _digits(flight: ReplayedLog) -> str:
-    written = Counter(str(entry) for entry in flight.printings[:2])
+    written = Counter(str(entry) for entry in flight.input_printings)
     return " and ".join(written)
 
 

@@ -41,7 +41,7 @@ def replay_stretches(
     """`replay_firmware` of a log that is cut where rows or readings are missing, and in front of the rows `begins` (n,)."""
     demand_own(log, table)
     parts = list(_parts(log, begins))
-    if len(parts) < 2 or not has_replayable_columns(log):
+    if len(parts) < 2 or not has_replayable_columns(log, table):
         return replay_firmware(log, table, others)
     first = replay_firmware(part(log, parts[0]), table, others)
     if not first.bit_exact and first.cause not in CLEARED:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from records.table import AXES, AxisLaw, ControllerTable, Polynomial
+from records.table import AxisLaw, ControllerTable, Polynomial
 from replay import law, thresholds
 from replay.flight import ReplayedLog
 from replay.law import Channel, Gains, Setup
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Change = Callable[[Setup], Setup]
 Round = Callable[[float], float]
 
-BY_ANGLES = {"both angles": (1, 1), "the elevation": (1, 0), "the azimuth": (0, 1)}
+COUNTED = ("no", "one", "two", "three", "four", "five")
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,20 @@ class Variant:
     change: Change
 
 
+def by_angles(table: ControllerTable) -> dict[str, tuple[int, ...]]:
+    """All angles, and each of them, by name: which are meant."""
+    names = [loop.axis for loop in table.loops]
+    every = {} if len(names) == 1 else {"both angles" if len(names) == 2 else "all angles": (1,) * len(names)}
+    return every | {f"the {name}": tuple(int(name == other) for other in names) for name in names}
+
+
 def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[ControllerTable]) -> list[Variant]:
     """All single variants that this table and this log allow and that may come in pairs, the plain ones first."""
     limits = _limits_found(table, flight)
     return [
-        *_timing(),
+        *_timing(table),
         *_other_tables(table, others),
-        *_windup(),
+        *_windup(table.order),
         *_references(table),
         *_limits(limits),
         *_quantised(flight, limits),
@@ -47,11 +54,11 @@ def variants(table: ControllerTable, flight: ReplayedLog, others: Sequence[Contr
     ]
 
 
-def _timing() -> Iterator[Variant]:
+def _timing(table: ControllerTable) -> Iterator[Variant]:
     for samples, what in ((1, "one sample"), (2, "two samples")):
-        for angles, (psi, phi) in BY_ANGLES.items():
+        for angles, meant in by_angles(table).items():
             sentence = f"used {angles} measured {what} before"
-            change = partial(replace, angle_lags=(samples * psi, samples * phi))
+            change = partial(replace, angle_lags=tuple(samples * lag for lag in meant))
             yield Variant("stale_sample", "angles", sentence, change)
         yield Variant(
             "stale_reference", "references", f"used references {what} old", partial(replace, reference_lag=samples)
@@ -64,33 +71,42 @@ def _timing() -> Iterator[Variant]:
 
 def _other_tables(table: ControllerTable, others: Sequence[ControllerTable]) -> Iterator[Variant]:
     for other in others:
-        if other.digest != table.digest:
+        if other.digest != table.digest and other.loops == table.loops:
             sentence = f"ran table {other.digest[:16]}, not {table.digest[:16]} that the log names"
             yield Variant("other_table", "coefficients", sentence, partial(replace, table=other))
 
 
-def _windup() -> Iterator[Variant]:
+def _windup(order: int) -> Iterator[Variant]:
     yield Variant("no_anti_windup", "windup", "has no anti-windup", partial(replace, windup=law.WINDUP_NONE))
     sentence = "holds its sum where the limited voltage would come from (clamped integrator)"
     yield Variant("clamped_integrator", "windup", sentence, partial(replace, windup=law.WINDUP_CLAMP))
     sentence = "does not move its sum while its voltage is at a limit (conditional integration)"
     yield Variant("conditional_integration", "windup", sentence, partial(replace, windup=law.WINDUP_FREEZE))
     sentence = "feeds the limited voltage back into its recursion (anti-windup polynomial 1)"
-    yield Variant("anti_windup_fb", "windup", sentence, partial(_observer, a=(1.0, 0.0, 0.0)))
+    yield Variant("anti_windup_fb", "windup", sentence, partial(_observer, a=(1.0, *[0.0] * (order - 1))))
     for pole in thresholds.OBSERVER_POLES:
-        sentence = f"has three anti-windup poles at {pole:g}"
-        yield Variant("anti_windup_poles", "windup", sentence, partial(_observer, a=_recursion(pole)))
+        sentence = f"has {COUNTED[order]} anti-windup pole{'s' if order > 1 else ''} at {pole:g}"
+        yield Variant("anti_windup_poles", "windup", sentence, partial(_observer_poles, pole=pole))
 
 
-def _recursion(pole: float) -> tuple[float, float, float]:
-    """a_i of A = (1 - pole z^-1)^3 = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2]."""
-    c_0, c_1, c_2 = 3.0 * pole, -3.0 * pole**2, pole**3  # bracket c_0 + c_1 z^-1 + c_2 z^-2 with z^-1 = 1 - delta
-    return 1.0 - (c_0 + c_1 + c_2), -(c_1 + 2.0 * c_2), c_2
+def _recursion(pole: float, order: int) -> tuple[float, ...]:
+    """a_i of A = (1 - pole z^-1)^order = 1 - z^-1 [(1 - a_0) + a_1 delta + a_2 delta^2 + ..]."""
+    # The bracket is c_0 + c_1 z^-1 + c_2 z^-2 + .. with z^-1 = 1 - delta.
+    c = [(-1.0) ** k * math.comb(order, k + 1) * pole ** (k + 1) for k in range(order)]
+    powers = (sum((-1.0) ** i * math.comb(k, i) * c[k] for k in range(i, order)) for i in range(1, order))
+    return (1.0 - sum(c), *powers)
 
 
-def _observer(setup: Setup, a: tuple[float, float, float]) -> Setup:
-    for axis in AXES:
-        setup = setup.with_axis(axis, a=a)
+def _observer(setup: Setup, a: tuple[float, ...]) -> Setup:
+    """The anti-windup polynomial of each axis, as far as its states go."""
+    for loop, axis in zip(setup.table.loops, setup.table.axes, strict=True):
+        setup = setup.with_axis(loop.axis, a=a[: axis.order])
+    return setup
+
+
+def _observer_poles(setup: Setup, pole: float) -> Setup:
+    for loop, axis in zip(setup.table.loops, setup.table.axes, strict=True):
+        setup = setup.with_axis(loop.axis, a=_recursion(pole, axis.order))
     return setup
 
 
@@ -107,7 +123,7 @@ def _references(table: ControllerTable) -> Iterator[Variant]:
         "feeds the unfiltered reference forward",
         partial(replace, raw_feedforward=True),
     )
-    without: Mapping[str, Polynomial] = dict.fromkeys(AXES, (0.0,))
+    without: Mapping[str, Polynomial] = {loop.axis: (0.0,) for loop in table.loops}
     yield Variant("no_feedforward", "feedforward", "has no feed-forward", partial(_feedforward, by_axis=without))
     for name, gain in (("T_s/T", _euler_gain), ("T_s/(T + T_s)", _backward_gain)):
         gains = prefilter_gains(table, gain)
@@ -122,10 +138,9 @@ def _feedforward(setup: Setup, by_axis: Mapping[str, Polynomial]) -> Setup:
 
 
 def prefilter_gains(table: ControllerTable, gain: Callable[[float, float], float]) -> Gains:
-    """b of both axes by the rule `gain` of time constant and sample period; None where there is no filter."""
-    constants_s = [table.axis(axis).prefilter_time_constant_s for axis in AXES]
-    first, second = (gain(value, table.sample_period_s) if value > 0.0 else None for value in constants_s)
-    return first, second
+    """b of each axis by the rule `gain` of time constant and sample period; None where there is no filter."""
+    constants_s = [axis.prefilter_time_constant_s for axis in table.axes]
+    return tuple(gain(value, table.sample_period_s) if value > 0.0 else None for value in constants_s)
 
 
 def _euler_gain(time_constant_s: float, sample_period_s: float) -> float:
@@ -139,14 +154,13 @@ def _backward_gain(time_constant_s: float, sample_period_s: float) -> float:
 def _limits_found(table: ControllerTable, flight: ReplayedLog) -> dict[str, dict[str, float]]:
     """Limits read off the log, by axis: extremes at which it stays, or beyond the stated ones."""
     found: dict[str, dict[str, float]] = {}
-    for axis, u_V in zip(AXES, flight.logged_V.T, strict=True):
-        stated = table.axis(axis)
+    for loop, stated, u_V in zip(table.loops, table.axes, flight.logged_V.T, strict=True):
         if np.nanmin(u_V) == np.nanmax(u_V):  # an input that stands still shows no limit
             continue
         for name, extreme, outwards in (("u_min_V", np.nanmin(u_V), -1.0), ("u_max_V", np.nanmax(u_V), 1.0)):
             beyond = outwards * (np.float32(extreme) - np.float32(getattr(stated, name)))
             if beyond > 0.0 or (beyond < 0.0 and np.sum(u_V == extreme) >= thresholds.LEAST_PLATEAU):
-                found.setdefault(axis, {})[name] = float(extreme)
+                found.setdefault(loop.axis, {})[name] = float(extreme)
     return found
 
 
@@ -175,9 +189,10 @@ def _changed_and_limited(setup: Setup, change: Change, found: dict[str, dict[str
 
 
 def _limited_behind(setup: Setup, found: dict[str, dict[str, float]]) -> Setup:
-    low = [found.get(axis, {}).get("u_min_V", -1e9) for axis in AXES]
-    high = [found.get(axis, {}).get("u_max_V", 1e9) for axis in AXES]
-    return replace(setup, channel=replace(setup.channel, low_V=(low[0], low[1]), high_V=(high[0], high[1])))
+    axes = [loop.axis for loop in setup.table.loops]
+    low_V = tuple(found.get(axis, {}).get("u_min_V", -1e9) for axis in axes)
+    high_V = tuple(found.get(axis, {}).get("u_max_V", 1e9) for axis in axes)
+    return replace(setup, channel=replace(setup.channel, low_V=low_V, high_V=high_V))
 
 
 def _quantised(flight: ReplayedLog, limits: dict[str, dict[str, float]]) -> Iterator[Variant]:
@@ -186,7 +201,7 @@ def _quantised(flight: ReplayedLog, limits: dict[str, dict[str, float]]) -> Iter
     if not any(steps) or (flight.inputs_are_rounded and all(_is_decimal(step) for step in steps)):
         return
     for rounding, name in law.ROUNDINGS.items():
-        channel = Channel(step_V=(steps[0], steps[1]), rounding=rounding)
+        channel = Channel(step_V=tuple(steps), rounding=rounding)
         sentence = f"sends voltages in steps of {steps_in_words(steps)}, rounded {name}"
         change = partial(replace, channel=channel)
         yield Variant("quantised_output", "channel", sentence, change)
@@ -197,7 +212,7 @@ def _quantised(flight: ReplayedLog, limits: dict[str, dict[str, float]]) -> Iter
 
 
 def steps_in_words(steps: Sequence[float]) -> str:
-    """The steps of both inputs as a person says them."""
+    """The steps of all inputs as a person says them."""
     return " and ".join(dict.fromkeys(f"{step:.6g} V" for step in steps if step))
 
 
@@ -230,20 +245,23 @@ def _arithmetic() -> Iterator[Variant]:
 
 
 def _schedule(table: ControllerTable) -> Iterator[Variant]:
+    if table.schedule is None:
+        return
+    axis = table.schedule.axis
     for schedule, sentence in (
-        (law.SCHEDULE_LAST_MEASURED, "schedules on the elevation of the sample before"),
-        (law.SCHEDULE_FILTERED_REFERENCE, "schedules on the filtered elevation reference"),
-        (law.SCHEDULE_REFERENCE, "schedules on the elevation reference"),
+        (law.SCHEDULE_LAST_MEASURED, f"schedules on the {axis} of the sample before"),
+        (law.SCHEDULE_FILTERED_REFERENCE, f"schedules on the filtered {axis} reference"),
+        (law.SCHEDULE_REFERENCE, f"schedules on the {axis} reference"),
     ):
         yield Variant("other_schedule", "schedule", sentence, partial(replace, schedule=schedule))
-    rows = [row for axis in AXES for row in (*table.axis(axis).q_V_rad, *table.axis(axis).p)]
+    rows = [row for entry in table.axes for row in (*entry.q_V_rad, *entry.p)]
     for degree in reversed(range(max(len(row) for row in rows) - 1)):
         sentence = f"schedules with polynomials cut to degree {degree}"
         yield Variant("cut_schedule", "coefficients", sentence, partial(_cut, degree=degree))
 
 
 def _cut(setup: Setup, degree: int) -> Setup:
-    for name in AXES:
+    for name in (loop.axis for loop in setup.table.loops):
         axis = setup.table.axis(name)
         cut = {key: tuple(row[: degree + 1] for row in getattr(axis, key)) for key in ("q_V_rad", "p")}
         setup = setup.with_axis(name, **cut)

@@ -44,16 +44,12 @@ class Wired:
 
     def reset(self, *angles_rad: float) -> None:
         """Start anew at rest at these outputs."""
-        self._law.reset(*(angles_rad[place] for place in self._wires.outputs))
+        self._law.reset(*self._wires.angles(angles_rad))
 
     def step(self, *given_rad: float) -> tuple[float, ...]:
         """References, then measurements, of all outputs; returns all inputs."""
-        count, places = len(given_rad) // 2, self._wires.outputs
-        voltages_V = self._law.step(*(given_rad[start + place] for start in (0, count) for place in places))
-        command_V = self._wires.rest_V.tolist()
-        for place, u_V in zip(self._wires.inputs, voltages_V, strict=True):
-            command_V[place] = u_V
-        return tuple(command_V)
+        count, angles = len(given_rad) // 2, self._wires.angles
+        return self._wires.command_V(self._law.step(*angles(given_rad[:count]), *angles(given_rad[count:])))
 
 
 def fly(

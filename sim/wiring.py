@@ -1,5 +1,6 @@
 """Between a plant's columns and a law's loops: which outputs a law measures, which inputs it commands, what the others stay at."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -20,6 +21,25 @@ class Wiring:
     outputs: tuple[int, ...]
     inputs: tuple[int, ...]
     rest_V: Array
+    output_count: int
+
+    def angles(self, outputs: Sequence[float]) -> tuple[float, ...]:
+        """What the loops measure of all the plant's outputs."""
+        return tuple(outputs[place] for place in self.outputs)
+
+    def columns(self, angles: Sequence[float]) -> tuple[float, ...]:
+        """The loops' angles or references as all the plant's outputs, NaN where there is no loop."""
+        spread = [math.nan] * self.output_count
+        for place, angle in zip(self.outputs, angles, strict=True):
+            spread[place] = angle
+        return tuple(spread)
+
+    def command_V(self, voltages_V: Sequence[float]) -> tuple[float, ...]:
+        """All the plant's inputs where the loops command `voltages_V`."""
+        command_V: list[float] = self.rest_V.tolist()
+        for place, u_V in zip(self.inputs, voltages_V, strict=True):
+            command_V[place] = u_V
+        return tuple(command_V)
 
 
 def wiring(bound: BoundPlant, loops: Sequence[Loop], u0_V: Array | None = None) -> Wiring:
@@ -43,4 +63,5 @@ def wiring(bound: BoundPlant, loops: Sequence[Loop], u0_V: Array | None = None) 
         tuple(outputs.index(loop.output) for loop in loops),
         tuple(inputs.index(loop.input) for loop in loops),
         np.asarray(rest_V, dtype=float),
+        len(outputs),
     )

@@ -1,13 +1,17 @@
 """What an ELF image holds: its bytes for the flash, its sizes, its symbols."""
 
 import io
+import re
 from dataclasses import dataclass
 
 from elftools.common.exceptions import ELFError
 from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
+from records.board import BOARDS, Board
 from records.errors import BadInput
+
+_CHIP = re.compile(rb"\0_chip_(\w+)\0")  # a name in the table of symbols
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,12 @@ def open_elf(elf: bytes, where: str) -> ELFFile:
     if machine != "EM_ARM":
         raise _foreign(where, f"an ELF file for {machine}")
     return parsed
+
+
+def image_board(elf: bytes) -> Board | None:
+    """The board whose linker script made the image; None where it names none."""
+    named = _CHIP.search(elf)
+    return BOARDS.get(named[1].decode()) if named else None
 
 
 def flash_content(elf: bytes, where: str) -> bytes:

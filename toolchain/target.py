@@ -9,11 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import IO
 
-from records.board import STM32G071
+from records.board import STM32G071, Core
 from toolchain.cache import CACHE_DIR, is_whole
 from toolchain.host import CText, Source, as_file, content_digest, run_zig, zig_folder, zig_version
-
-_TARGET = "thumb-freestanding-eabi"
 
 # As on the host, no contraction and no relaxed arithmetic: the law must give the same bits on both.
 TARGET_FLAGS = (
@@ -55,18 +53,18 @@ LINK_FLAGS = ("-O2", "-nostdlib", "-Wl,--gc-sections", "-Wl,--entry=Reset_Handle
 def build_image(
     name: str,
     sources: Sequence[Source],
-    linker_script: Path,
+    linker_script: Source,
     *,
     include_dirs: Sequence[Path] = (),
     flags: Sequence[str] = TARGET_FLAGS,
-    core: str = STM32G071.core,
+    core: Core = STM32G071.core,
 ) -> Path:
-    """Compile and link `sources` for `core` (zig's name of it) and return the path of the ELF; the same content is built once only.
+    """Compile and link `sources` for `core` and return the path of the ELF; the same content is built once only.
 
     Sources that are headers only as text count as content and are found by `#include`. Raises BadInput with file and line when
     compiler or linker refuse, which includes an image that does not fit the memories of `linker_script`.
     """
-    key = content_digest([*sources, linker_script], include_dirs, [core, *flags, *LINK_FLAGS])
+    key = content_digest([*sources, linker_script], include_dirs, [*_machine(core), *flags, *LINK_FLAGS])
     image = CACHE_DIR / "target" / f"{name}-{key}.elf"
     if is_whole(image):
         return image
@@ -74,24 +72,37 @@ def build_image(
     with tempfile.TemporaryDirectory(dir=image.parent) as work:
         built = Path(work) / "out.elf"
         run_zig(
-            ["cc", *_machine(core), *LINK_FLAGS, "-T", str(linker_script), *map(str, objects), "-o", str(built)],
+            [
+                "cc",
+                *_machine(core),
+                *LINK_FLAGS,
+                "-T",
+                str(as_file(linker_script, Path(work))),
+                *map(str, objects),
+                "-o",
+                str(built),
+            ],
             f"linking {name}",
         )
         built.replace(image)
     return image
 
 
-def _machine(core: str) -> list[str]:
-    return ["-target", _TARGET, f"-mcpu={core}"]
+def _machine(core: Core) -> list[str]:
+    return ["-target", _triple(core), f"-mcpu={core.name}"]
 
 
-def runtime_library(core: str = STM32G071.core) -> Path:
+def _triple(core: Core) -> str:
+    return f"thumb-freestanding-{core.abi}"
+
+
+def runtime_library(core: Core = STM32G071.core) -> Path:
     """Soft float and what else the core lacks (compiler-rt), built from the zig wheel's own sources.
 
     The library that zig would link by itself carries a megabyte of debug information with this computer's paths; the one built
     for size is no slower than that built for speed (1.4 % faster over the law's self-test). Raises BadInput where zig refuses.
     """
-    library = CACHE_DIR / "target" / f"compiler_rt-{core}-{zig_version()}.a"
+    library = CACHE_DIR / "target" / f"compiler_rt-{core.name}-{zig_version()}.a"
     if is_whole(library):
         return library
     library.parent.mkdir(parents=True, exist_ok=True)
@@ -109,14 +120,14 @@ def _lock(lock: IO[str]) -> None:
     fcntl.flock(lock, fcntl.LOCK_EX)
 
 
-def _built(library: Path, core: str) -> Path:
+def _built(library: Path, core: Core) -> Path:
     sources = zig_folder() / "lib"
     with tempfile.TemporaryDirectory(dir=library.parent) as work:
         source, built = Path(work) / "compiler_rt.zig", Path(work) / "libcompiler_rt.a"
         source.write_text(_called((sources / source.name).read_text(encoding="utf-8")), encoding="utf-8")
         (Path(work) / "compiler_rt").symlink_to(sources / "compiler_rt")
         options = ["-OReleaseSmall", "-fstrip", "-fno-unwind-tables", "-ffunction-sections", "-fdata-sections"]
-        machine = ["-target", _TARGET, "-mcpu", core]
+        machine = ["-target", _triple(core), "-mcpu", core.name]
         run_zig(["build-lib", *options, *machine, str(source), f"-femit-bin={built}"], "compiler-rt")
         built.replace(library)
     return library
@@ -136,7 +147,7 @@ def compile_objects(
     *,
     include_dirs: Sequence[Path] = (),
     flags: Sequence[str] = TARGET_FLAGS,
-    core: str = STM32G071.core,
+    core: Core = STM32G071.core,
 ) -> list[Path]:
     """Compile each C source of `sources` for `core`, side by side; returns the object files in the same order.
 

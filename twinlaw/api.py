@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from codegen.law import demand_drivable
 from controllers import loading
 from diagnosis.diagnose import diagnose as diagnosed
 from diagnosis.result import Result
@@ -27,7 +28,6 @@ from rig.programming.image import build_firmware
 from sim.bind import BoundPlant
 from twinlaw.cli.options import plant_file
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
-from twinlaw.workflows.chain.building import demand_image, has_image
 from twinlaw.workflows.chain.designing import Designed, design_other_on, design_plant, table_poles
 from twinlaw.workflows.chain.flying import fly_double, fly_host, stirred
 from twinlaw.workflows.chain.verifying import STEPS, verify_table
@@ -68,7 +68,8 @@ def verify(plant: BoundPlant, table: ControllerTable, arithmetic: str = "float32
     """Twin, host and target over `steps` steps, bounds and cost; `passed` says whether all of it holds."""
     law = generate(table, arithmetic)
     poles = table_poles(plant, table, arithmetic)
-    image = build_firmware(law) if has_image(table) else None
+    demand_drivable(table)
+    image = build_firmware(law, loops=table.loops)
     return verify_table(plant, table, poles, law, image, steps=steps, arithmetic=arithmetic)
 
 
@@ -84,9 +85,9 @@ def fly(plant: BoundPlant, table: FlownTable | None = None, on: str = "double", 
         return fly_host(plant, table, arithmetic).log
     if on != "board":
         raise BadInput("on", "fly", repr(on), f"one of {', '.join(FLYING)}", "name what is to fly")
-    demand_image(table)
     with tempfile.TemporaryDirectory() as folder:
-        build_firmware(generate(table, arithmetic), Path(folder))
+        demand_drivable(table)
+        build_firmware(generate(table, arithmetic), Path(folder), loops=table.loops)
         with connected(table, board_url("emulated", Path(folder) / "firmware.elf"), arithmetic) as client:
             return fly_board(plant, table, client).log
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from codegen.fixed.formats import law_formats
 from codegen.traceability.names import constants
+from records.board import Board, Core
 from records.table import ControllerTable
 from toolchain.dwarf import Member
 
@@ -21,8 +22,9 @@ _FIXED_SIGNALS = re.compile(r"^(law|input|output)\.|^\w+_limits\.")
 
 @dataclass(frozen=True)
 class ImageMap:
-    """Where an image keeps what is described: the path's state, the limits of all axes, and the digest."""
+    """Whose image it is, and where it keeps what is described: the path's state, the limits of all axes, and the digest."""
 
+    board: Board
     signals: Sequence[Member]
     limits: Sequence[Member]
     digest_address: int
@@ -44,8 +46,8 @@ def a2l_text(table: ControllerTable, arithmetic: str, image: ImageMap) -> str:
     lines = [
         "ASAP2_VERSION 1 71",
         f'/begin PROJECT twinlaw "control law of {table.plant}, {arithmetic}"',
-        '/begin MODULE firmware "STM32G071"',
-        *_module_parameters(table, arithmetic),
+        f'/begin MODULE firmware "{image.board.chip}"',
+        *_module_parameters(table, arithmetic, image.board.core),
         *(line for method in methods for line in _method(method)),
         *_layouts(image.limits),
         *(line for member in image.signals for line in _measurement(member, _conversion(table, arithmetic, member))),
@@ -62,15 +64,15 @@ def under(name: str, members: Sequence[Member]) -> tuple[Member, ...]:
     return tuple(replace(member, path=f"{name}.{member.path}") for member in members)
 
 
-def _module_parameters(table: ControllerTable, arithmetic: str) -> Iterator[str]:
+def _module_parameters(table: ControllerTable, arithmetic: str, core: Core) -> Iterator[str]:
     yield '/begin MOD_PAR "controller table and the coefficients that are part of the code"'
     yield f'EPK "{table.digest}"'
-    yield 'CPU_TYPE "Cortex-M0+"'
+    yield f'CPU_TYPE "{core.title}"'
     yield f'SYSTEM_CONSTANT "LAW_ARITHMETIC" "{arithmetic}"'
     for constant in constants(table, arithmetic):
         yield f'SYSTEM_CONSTANT "{constant.name}" "{constant.literal.number}"'
     yield "/end MOD_PAR"
-    yield '/begin MOD_COMMON "ARMv6-M"'
+    yield f'/begin MOD_COMMON "{core.architecture}"'
     yield "BYTE_ORDER MSB_LAST"
     yield "ALIGNMENT_WORD 2"
     yield "ALIGNMENT_LONG 4"

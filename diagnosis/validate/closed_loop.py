@@ -15,6 +15,7 @@ from diagnosis.hypothesis.hypothesis import Hypothesis, passes
 from diagnosis.validate.prediction import SETTLE_S
 from diagnosis.validate.simulated import Flown
 from records.diagnosis import ClosedLoop
+from records.log import RunLog
 from records.table import ControllerTable
 from replay.flight import ReplayedLog as Samples
 from replay.flight import flight_of, has_replayable_columns
@@ -51,10 +52,17 @@ def closed_loop(
     flown = [
         refly(case.with_flights([flight]), name, table, variants)
         for flight, name, table in zip(case.flights, names, tables, strict=True)
-        if table is not None and flight.log.loop == "closed" and has_replayable_columns(flight.log)
+        if table is not None and flight.log.loop == "closed" and _is_whole(flight.log, table)
     ]
     found = [entry for entry in flown if entry is not None]
     return _summary(case, found) if found else None
+
+
+def _is_whole(log: RunLog, table: ControllerTable) -> bool:
+    """Whether the table's loops are all the log's outputs and inputs, in their order, with the references."""
+    columns = [(loop.output, loop.input) for loop in table.loops]
+    whole = columns == list(zip(log.columns.outputs, log.columns.inputs, strict=False))
+    return whole and len(log.columns.outputs) == len(log.columns.inputs) and has_replayable_columns(log, table)
 
 
 def refly(case: Case, name: str, table: ControllerTable, variants: Mapping[str, Hypothesis]) -> Reflown | None:
@@ -89,7 +97,9 @@ def _led(law: HostLaw, samples: Samples, first: int) -> NDArray[np.uint32]:
     """The law's state in front of sample `first`, from the log's own readings; what the log lacks stays as it was."""
     inputs = _held(np.hstack([samples.reference_rad, samples.angle_rad])[: first + 1]).astype(np.float32)
     words = np.ascontiguousarray(inputs[:, np.newaxis]).view(np.uint32)
-    state, _ = law.run(law.start(np.ascontiguousarray(words[0, :, 2:])), np.ascontiguousarray(words[:first]))
+    state, _ = law.run(
+        law.start(np.ascontiguousarray(words[0, :, words.shape[2] // 2 :])), np.ascontiguousarray(words[:first])
+    )
     return state
 
 
@@ -118,16 +128,17 @@ def _flight(law: HostLaw, state: NDArray[np.uint32], samples: Samples, first: in
     count = min(len(samples.t_s) - first, MOST_SAMPLES)
     reference = _held(samples.reference_rad)[first:]
     times = samples.t_s[first : first + count].tolist()
-    found = np.full((count, 4), np.nan)
-    given = np.empty((1, 1, 4), dtype=np.float32)
+    loops = samples.loops
+    found = np.full((count, 2 * loops), np.nan)
+    given = np.empty((1, 1, 2 * loops), dtype=np.float32)
     for k in range(count):
         y = plant.measured()
         if plant.lost:
             break
-        given[0, 0, :2], given[0, 0, 2:] = reference[k], y
+        given[0, 0, :loops], given[0, 0, loops:] = reference[k], y
         state, words = law.run(state, given.view(np.uint32))
         u = words[0, 0].view(np.float32).astype(float)
-        found[k, :2], found[k, 2:] = y, u
+        found[k, :loops], found[k, loops:] = y, u
         if k + 1 < count:
             plant.advance(u, times[k + 1])
     return found

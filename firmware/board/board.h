@@ -1,6 +1,7 @@
 /*
- * What each chip's folder gives to the main loop: two quadrature encoders, two PWM outputs with direction, one serial line.
- * A folder has one file for each part below, its linker script, and its wiring in wiring.h.
+ * What a chip gives to the main loop: two quadrature encoders, two PWM outputs with direction, one serial line.
+ * A file for each part below is in the family's folder, or in the chip's where chips differ: its clock, its registers in chip.h,
+ * its wiring in wiring.h, its memories in link.ld.
  */
 #ifndef BOARD_H
 #define BOARD_H
@@ -12,7 +13,9 @@
 #include "exchange.h"
 
 /* clock.c */
-void clock_start(void);       /* to BOARD_CLOCK_HZ */
+void clock_start(void); /* to BOARD_CLOCK_HZ */
+
+/* cycles.c */
 void cycle_counter_start(void);
 uint32_t cycle_counter(void); /* core cycles, modulo 2^24, counting up */
 uint32_t cycles_between(uint32_t start, uint32_t end);

@@ -25,6 +25,8 @@ static bool same_digest(const uint8_t *head)
     return true;
 }
 
+#define HELD(angle, voltage, motor, VOLTAGE) \
+    self->input.angle##_ref_rad = law_angle_from_counts_##angle(self->measured.angle##_counts);
 static path_demand arm(path_state *self, const uint8_t *payload)
 {
     protocol_arm wish;
@@ -37,8 +39,7 @@ static path_demand arm(path_state *self, const uint8_t *payload)
         self->output = (law_output){0}; /* nothing of an earlier flight until the law has run */
         encoder_watch_start(&self->watch, &self->measured);
         /* Hold the present place until the host names another. */
-        self->input.psi_ref_rad = law_angle_from_counts_psi(self->measured.psi_counts);
-        self->input.phi_ref_rad = law_angle_from_counts_phi(self->measured.phi_counts);
+        PROTOCOL_LOOPS(HELD)
     }
     return reply_result(self, PROTOCOL_TYPE_ARM, reason);
 }
@@ -49,6 +50,7 @@ static path_demand disarm(path_state *self)
     return reply_result(self, PROTOCOL_TYPE_DISARM, PROTOCOL_REASON_DONE);
 }
 
+#define REFERENCE(angle, voltage, motor, VOLTAGE) self->input.angle##_ref_rad = number_of_word(wish.angle##_ref_rad);
 static path_demand reference(path_state *self, const uint8_t *payload)
 {
     protocol_reference wish;
@@ -56,12 +58,13 @@ static path_demand reference(path_state *self, const uint8_t *payload)
         return reply_result(self, PROTOCOL_TYPE_REFERENCE, PROTOCOL_REASON_NOT_ARMED);
     }
     protocol_reference_unpack(&wish, payload);
-    self->input.psi_ref_rad = number_of_word(wish.psi_ref_rad);
-    self->input.phi_ref_rad = number_of_word(wish.phi_ref_rad);
+    PROTOCOL_LOOPS(REFERENCE)
     supervisor_host_alive(&self->supervisor);
     return PATH_NOTHING;
 }
 
+#define GIVEN_REFERENCE(angle, voltage, motor, VOLTAGE) .angle##_ref_rad = number_of_word(given.angle##_ref_rad),
+#define GIVEN_ANGLE(angle, voltage, motor, VOLTAGE) .angle##_rad = number_of_word(given.angle##_rad),
 static path_demand sample(path_state *self, const link_frame *frame)
 {
     protocol_sample given;
@@ -74,15 +77,11 @@ static path_demand sample(path_state *self, const link_frame *frame)
         return PATH_REPLY;
     }
     protocol_sample_unpack(&given, frame->payload);
-    self->input = (law_input){
-        .psi_ref_rad = number_of_word(given.psi_ref_rad),
-        .phi_ref_rad = number_of_word(given.phi_ref_rad),
-        .psi_rad = number_of_word(given.psi_rad),
-        .phi_rad = number_of_word(given.phi_rad),
-    };
+    self->input = (law_input){PROTOCOL_LOOPS(GIVEN_REFERENCE) PROTOCOL_LOOPS(GIVEN_ANGLE)};
     return PATH_STEP;
 }
 
+#define START(angle, voltage, motor, VOLTAGE) , number_of_word(start.angle##_rad)
 static path_demand restart_law(path_state *self, const uint8_t *payload)
 {
     protocol_reset_law start;
@@ -90,12 +89,16 @@ static path_demand restart_law(path_state *self, const uint8_t *payload)
         return reply_result(self, PROTOCOL_TYPE_RESET_LAW, PROTOCOL_REASON_NOT_ARMED);
     }
     protocol_reset_law_unpack(&start, payload);
-    law_reset(&self->law, number_of_word(start.psi_rad), number_of_word(start.phi_rad));
+    law_reset(&self->law PROTOCOL_LOOPS(START));
     self->law_reset_due = false;
     supervisor_host_alive(&self->supervisor);
     return reply_result(self, PROTOCOL_TYPE_RESET_LAW, PROTOCOL_REASON_DONE);
 }
 
+#define MOVE_ORIGIN(angle, voltage, motor, VOLTAGE)                                                             \
+    self->offset.angle##_counts = (int32_t)((uint32_t)self->offset.angle##_counts + (uint32_t)now.angle##_counts \
+                                            - (uint32_t)self->measured.angle##_counts);
+#define NOW(angle, voltage, motor, VOLTAGE) .angle##_counts = now.angle##_counts,
 static path_demand preset(path_state *self, const uint8_t *payload)
 {
     protocol_preset now;
@@ -103,11 +106,8 @@ static path_demand preset(path_state *self, const uint8_t *payload)
         return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_ARMED);
     }
     protocol_preset_unpack(&now, payload);
-    self->offset.psi_counts = (int32_t)((uint32_t)self->offset.psi_counts + (uint32_t)now.psi_counts
-                                        - (uint32_t)self->measured.psi_counts);
-    self->offset.phi_counts = (int32_t)((uint32_t)self->offset.phi_counts + (uint32_t)now.phi_counts
-                                        - (uint32_t)self->measured.phi_counts);
-    self->measured = (encoder_counts){.psi_counts = now.psi_counts, .phi_counts = now.phi_counts};
+    PROTOCOL_LOOPS(MOVE_ORIGIN)
+    self->measured = (encoder_counts){PROTOCOL_LOOPS(NOW)};
     supervisor_position_known(&self->supervisor);
     return reply_result(self, PROTOCOL_TYPE_PRESET, PROTOCOL_REASON_DONE);
 }

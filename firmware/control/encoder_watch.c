@@ -1,7 +1,5 @@
 #include "encoder_watch.h"
 
-#include "protocol.h"
-
 void encoder_watch_start(encoder_watch *self, const encoder_counts *now)
 {
     *self = (encoder_watch){.last = *now};
@@ -19,15 +17,19 @@ static uint32_t still_ticks(uint32_t before, uint32_t moved, int32_t duty, int32
     return full && moved == 0u ? before + passed : 0u;
 }
 
+#define MOVED(angle, voltage, motor, VOLTAGE) \
+    const uint32_t moved_##angle = distance(self->last.angle##_counts, now->angle##_counts);
+#define STILL(angle, voltage, motor, VOLTAGE) \
+    self->still_##angle = still_ticks(self->still_##angle, moved_##angle, applied->motor##_ticks, full_drive, passed);
+#define NEAR(angle, voltage, motor, VOLTAGE) moved_##angle < farthest &&
+#define TURNING(angle, voltage, motor, VOLTAGE) self->still_##angle < PROTOCOL_ENCODER_STILL_PERIODS &&
+
 bool encoder_watch_believes(
     encoder_watch *self, const encoder_counts *now, const duty_pair *applied, int32_t full_drive, uint32_t passed)
 {
-    const uint32_t moved_psi = distance(self->last.psi_counts, now->psi_counts);
-    const uint32_t moved_phi = distance(self->last.phi_counts, now->phi_counts);
+    PROTOCOL_LOOPS(MOVED)
     const uint32_t farthest = PROTOCOL_ENCODER_JUMP_COUNTS * passed;
     self->last = *now;
-    self->still_psi = still_ticks(self->still_psi, moved_psi, applied->main_ticks, full_drive, passed);
-    self->still_phi = still_ticks(self->still_phi, moved_phi, applied->tail_ticks, full_drive, passed);
-    return moved_psi < farthest && moved_phi < farthest && self->still_psi < PROTOCOL_ENCODER_STILL_PERIODS
-           && self->still_phi < PROTOCOL_ENCODER_STILL_PERIODS;
+    PROTOCOL_LOOPS(STILL)
+    return PROTOCOL_LOOPS(NEAR) PROTOCOL_LOOPS(TURNING) true;
 }

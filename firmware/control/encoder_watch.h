@@ -12,15 +12,15 @@
 #include "supervisor.h"
 
 /* Encoder positions in counts. */
+#define ENCODER_COUNTS(angle, voltage, motor, VOLTAGE) int32_t angle##_counts;
 typedef struct {
-    int32_t psi_counts;
-    int32_t phi_counts;
+    PROTOCOL_LOOPS(ENCODER_COUNTS)
 } encoder_counts;
 
+#define ENCODER_STILL(angle, voltage, motor, VOLTAGE) uint32_t still_##angle; /* ticks at full drive without a count */
 typedef struct {
     encoder_counts last;
-    uint32_t still_psi; /* ticks at full drive without a count */
-    uint32_t still_phi;
+    PROTOCOL_LOOPS(ENCODER_STILL)
 } encoder_watch;
 
 /* Begin a flight at `now`. */

@@ -48,12 +48,11 @@ static int32_t shifted(int32_t counts, int32_t offset)
     return (int32_t)((uint32_t)counts + (uint32_t)offset); /* counters wrap, they do not overflow */
 }
 
+#define SHIFTED(angle, voltage, motor, VOLTAGE) \
+    .angle##_counts = shifted(measured->angle##_counts, self->offset.angle##_counts),
 static void measure(path_state *self, const encoder_counts *measured)
 {
-    self->measured = (encoder_counts){
-        .psi_counts = shifted(measured->psi_counts, self->offset.psi_counts),
-        .phi_counts = shifted(measured->phi_counts, self->offset.phi_counts),
-    };
+    self->measured = (encoder_counts){PROTOCOL_LOOPS(SHIFTED)};
 }
 
 /* Watch periods that end with these ticks; one by one, as a Cortex-M0+ has no divide instruction. */
@@ -97,6 +96,8 @@ static void supervise(path_state *self, uint32_t periods)
     }
 }
 
+#define MEASURED(angle, voltage, motor, VOLTAGE) \
+    self->input.angle##_rad = law_angle_from_counts_##angle(self->measured.angle##_counts);
 path_demand path_tick(path_state *self, const encoder_counts *measured, uint32_t passed)
 {
     const uint32_t counted = passed > PASSED_MAX ? PASSED_MAX : passed;
@@ -111,15 +112,15 @@ path_demand path_tick(path_state *self, const encoder_counts *measured, uint32_t
     if (self->supervisor.state != PROTOCOL_STATE_FLYING) {
         return PATH_NOTHING;
     }
-    self->input.psi_rad = law_angle_from_counts_psi(self->measured.psi_counts);
-    self->input.phi_rad = law_angle_from_counts_phi(self->measured.phi_counts);
+    PROTOCOL_LOOPS(MEASURED)
     return PATH_STEP;
 }
 
+#define ANGLE(angle, voltage, motor, VOLTAGE) , self->input.angle##_rad
 void path_law(path_state *self)
 {
     if (self->law_reset_due) {
-        law_reset(&self->law, self->input.psi_rad, self->input.phi_rad);
+        law_reset(&self->law PROTOCOL_LOOPS(ANGLE));
         self->law_reset_due = false;
     }
     law_step(&self->law, &self->input, &self->output);
@@ -133,12 +134,10 @@ static int32_t clamped(int32_t ticks)
     return ticks < -(int32_t)LAW_PWM_TICKS ? -(int32_t)LAW_PWM_TICKS : ticks;
 }
 
+#define WANTED(angle, voltage, motor, VOLTAGE) .motor##_ticks = clamped(law_duty_##motor(self->output.voltage##_V)),
 const duty_pair *path_limits(path_state *self)
 {
-    const duty_pair wanted = {
-        .main_ticks = clamped(law_duty_main(self->output.u_M_V)),
-        .tail_ticks = clamped(law_duty_tail(self->output.u_T_V)),
-    };
+    const duty_pair wanted = {PROTOCOL_LOOPS(WANTED)};
     self->applied = supervisor_limit(&self->supervisor, &wanted);
     return &self->applied;
 }

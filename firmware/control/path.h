@@ -19,7 +19,9 @@
 
 #define PATH_FIRMWARE_VERSION 0x0002u /* major * 256 + minor */
 _Static_assert(LAW_SAMPLE_PERIOD_US >= 500 && LAW_SAMPLE_PERIOD_US <= 50000, "a step below fills the period, the watchdog bites above");
-_Static_assert(LAW_U_M_SAFE_V == 0 && LAW_U_T_SAFE_V == 0, "the safe state of this board is an open power stage, 0 V");
+#define PATH_SAFE(angle, voltage, motor, VOLTAGE) \
+    _Static_assert(PROTOCOL_HAS_PINS == 0 || LAW_##VOLTAGE##_SAFE_V == 0, "the safe state of a board is an open power stage, 0 V");
+PROTOCOL_LOOPS(PATH_SAFE)
 _Static_assert(sizeof(law_number) == 4, "numbers cross the line as 32-bit words");
 _Static_assert(LAW_PWM_TICKS <= INT16_MAX, "duties cross the line as int16_t");
 

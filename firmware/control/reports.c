@@ -42,13 +42,17 @@ static size_t result(path_state *self, uint32_t now_us, uint8_t *payload)
     return PROTOCOL_RESULT_SIZE;
 }
 
+#define VOLTAGE_WORD(angle, voltage, motor, VOLTAGE) .voltage##_V = word_of_number(self->output.voltage##_V),
+#define DUTY(angle, voltage, motor, VOLTAGE) .duty_##motor##_ticks = (int16_t)self->applied.motor##_ticks,
+#define COUNTS(angle, voltage, motor, VOLTAGE) .angle##_counts = self->measured.angle##_counts,
+#define ANGLE_WORD(angle, voltage, motor, VOLTAGE) .angle##_rad = word_of_number(self->input.angle##_rad),
+#define REFERENCE_WORD(angle, voltage, motor, VOLTAGE) .angle##_ref_rad = word_of_number(self->input.angle##_ref_rad),
+
 static size_t answer(path_state *self, uint32_t now_us, uint8_t *payload)
 {
     protocol_answer message = {
-        .u_M_V = word_of_number(self->output.u_M_V),
-        .u_T_V = word_of_number(self->output.u_T_V),
-        .duty_main_ticks = (int16_t)self->applied.main_ticks,
-        .duty_tail_ticks = (int16_t)self->applied.tail_ticks,
+        PROTOCOL_LOOPS(VOLTAGE_WORD)
+        PROTOCOL_LOOPS(DUTY)
         .law_cycles = self->law_cycles,
     };
     FILL_HEAD(message, self, now_us);
@@ -113,16 +117,11 @@ size_t path_telemetry(path_state *self, uint32_t now_us, uint8_t line[PROTOCOL_L
     }
     protocol_telemetry message = {
         .tick = self->tick,
-        .psi_counts = self->measured.psi_counts,
-        .phi_counts = self->measured.phi_counts,
-        .psi_rad = word_of_number(self->input.psi_rad),
-        .phi_rad = word_of_number(self->input.phi_rad),
-        .psi_ref_rad = word_of_number(self->input.psi_ref_rad),
-        .phi_ref_rad = word_of_number(self->input.phi_ref_rad),
-        .u_M_V = word_of_number(self->output.u_M_V),
-        .u_T_V = word_of_number(self->output.u_T_V),
-        .duty_main_ticks = (int16_t)self->applied.main_ticks,
-        .duty_tail_ticks = (int16_t)self->applied.tail_ticks,
+        PROTOCOL_LOOPS(COUNTS)
+        PROTOCOL_LOOPS(ANGLE_WORD)
+        PROTOCOL_LOOPS(REFERENCE_WORD)
+        PROTOCOL_LOOPS(VOLTAGE_WORD)
+        PROTOCOL_LOOPS(DUTY)
         .law_cycles = self->law_cycles,
         .frames_refused = link_refused(&self->link),
         .frames_lost = self->link.counters.frames_lost,

@@ -1,7 +1,5 @@
 #include "supervisor.h"
 
-#include "protocol.h"
-
 /* RAMP_PERIODS is a power of two: a Cortex-M0+ has no divide instruction. */
 #define RAMP_SHIFT 3
 _Static_assert(PROTOCOL_RAMP_PERIODS == 1u << RAMP_SHIFT, "the ramp is computed by a shift");
@@ -27,6 +25,11 @@ uint8_t supervisor_arm(supervisor_state *self, uint8_t mode, bool table_matches,
     if (mode != PROTOCOL_MODE_FLYING && mode != PROTOCOL_MODE_LOOP) {
         return PROTOCOL_REASON_UNKNOWN_MODE;
     }
+#if PROTOCOL_HAS_PINS == 0
+    if (mode == PROTOCOL_MODE_FLYING) {
+        return PROTOCOL_REASON_UNKNOWN_MODE;
+    }
+#endif
     if (!table_matches) {
         return PROTOCOL_REASON_WRONG_TABLE;
     }
@@ -110,16 +113,14 @@ static int32_t ramped(int32_t start, uint32_t left)
     return start < 0 ? -scaled : scaled;
 }
 
+#define RAMPED(angle, voltage, motor, VOLTAGE) .motor##_ticks = ramped(self->ramp_start.motor##_ticks, self->ramp_left),
 duty_pair supervisor_limit(const supervisor_state *self, const duty_pair *wanted)
 {
     if (supervisor_is_armed(self)) {
         return *wanted;
     }
     if (self->state == PROTOCOL_STATE_RAMPING) {
-        return (duty_pair){
-            .main_ticks = ramped(self->ramp_start.main_ticks, self->ramp_left),
-            .tail_ticks = ramped(self->ramp_start.tail_ticks, self->ramp_left),
-        };
+        return (duty_pair){PROTOCOL_LOOPS(RAMPED)};
     }
     return (duty_pair){0};
 }

@@ -6,7 +6,7 @@
  *         |                  +-----------arm-------------+--------arm---------+
  *         +--disarm, from every state
  *
- * Time is counted in control ticks, those included that a late main loop has missed; the safe value of both inputs is
+ * Time is counted in control ticks, those included that a late main loop has missed; the safe value of all inputs is
  * 0 V. After an encoder fault nobody knows where the plant is: FLYING is refused until PRESET has told.
  */
 #ifndef SUPERVISOR_H
@@ -15,10 +15,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Signed duties of both motors in PWM ticks. */
+#include "protocol.h"
+
+/* Signed duties of all motors in PWM ticks. */
+#define SUPERVISOR_DUTY(angle, voltage, motor, VOLTAGE) int32_t motor##_ticks;
 typedef struct {
-    int32_t main_ticks;
-    int32_t tail_ticks;
+    PROTOCOL_LOOPS(SUPERVISOR_DUTY)
 } duty_pair;
 
 typedef struct {

@@ -292,7 +292,7 @@ class EmulatedBoard:
         return (self.image.ram_end + 7) & ~7
 
     def call(self, name: str, *arguments: int, max_cycles: int = 64_000_000) -> CallResult:
-        """Run one function (up to 4 words in r0-r3), interrupts off, peripherals halted; raises StoppedError if it does not return."""
+        """Run one function of up to 8 words, interrupts off, peripherals halted; raises StoppedError if it does not return."""
         kind, result = self._calls.call(self.symbol(name)[0], arguments, max_cycles)
         self._demand_return(kind)
         return result

@@ -26,7 +26,8 @@ class Caller:
     def call(self, address: int, arguments: Sequence[int], max_cycles: int) -> tuple[int, CallResult]:
         """Run the function at `address` once: the kind of stop, and what it gave if it returned."""
         report = self._ffi.new("call_report *")
-        self._lib.emulator_call(self._machine, address, _words(arguments), max_cycles, report)
+        words, stacked = _words(arguments, 8), max(0, len(arguments) - 4)
+        self._lib.emulator_call(self._machine, address, words, stacked, max_cycles, report)
         estimate = report.cycles + self._wait_states * report.flash_stalls
         result = CallResult(report.result, report.cycles, estimate, report.instructions, report.stack_bytes)
         return report.stop_kind, result
@@ -46,7 +47,7 @@ class Caller:
         wells = [(place, np.zeros((steps, size), np.uint8)) for place, size in outputs]
         results, cycles = np.zeros(steps, np.uint32), np.zeros(steps, np.uint64)
         self._lib.emulator_call_many(
-            self._machine, address, _words(arguments), max_cycles, steps,
+            self._machine, address, _words(arguments, 4), max_cycles, steps,
             self._blocks(rows), len(rows), self._blocks(wells), len(wells),
             cast("uint32_t *", results.ctypes.data), cast("uint64_t *", cycles.ctypes.data), report,
         )  # fmt: skip
@@ -66,12 +67,12 @@ class Caller:
         return blocks
 
 
-def _words(arguments: Sequence[int]) -> list[int]:
-    if len(arguments) > 4:
+def _words(arguments: Sequence[int], most: int) -> list[int]:
+    if len(arguments) > most:
         raise BadInput(
-            "call", "emulated board", f"{len(arguments)} arguments", "at most 4 words", "pass the rest in memory"
+            "call", "emulated board", f"{len(arguments)} arguments", f"at most {most} words", "pass the rest in memory"
         )
-    return [value & 0xFFFFFFFF for value in (*arguments, 0, 0, 0, 0)[:4]]
+    return [value & 0xFFFFFFFF for value in (*arguments, *[0] * most)[:most]]
 
 
 def _rows(data: NDArray[Any], steps: int) -> NDArray[np.uint8]:

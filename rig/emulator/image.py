@@ -12,7 +12,7 @@ from elftools.elf.sections import SymbolTableSection
 
 from records.board import STM32G071, Board
 from records.errors import BadInput
-from toolchain.elf import open_elf
+from toolchain.elf import image_board, open_elf
 
 SMALLEST_BYTES = 8  # initial stack pointer and reset vector
 
@@ -45,6 +45,7 @@ class Image:
     def __init__(self, elf: bytes, where: str, chip: Board = STM32G071) -> None:
         self.where, self.chip = where, chip
         self._elf: ELFFile | None = open_elf(elf, where)
+        _demand_chip(image_board(elf), where, chip)
         try:
             self.flash = _flash_content(self._elf, where, chip)
             self._table = self._elf.get_section_by_name(".symtab")
@@ -136,6 +137,16 @@ def as_image(source: "bytes | Path | Image", chip: Board) -> Image:
     if isinstance(source, Image):
         return source
     return Image(source, "image in memory", chip) if isinstance(source, bytes) else Image.from_file(source, chip)
+
+
+def _demand_chip(named: Board | None, where: str, chip: Board) -> None:
+    """Raise BadInput for an image of another chip, whose core and registers are not those that are emulated."""
+    if named not in (None, chip):
+        got, expected = f"an image for the {named.chip}", f"one for the {chip.chip}, the chip that is emulated"
+        remedy = (
+            f"build it without --chip; `twinlaw verify --chip {named.chip.lower()}` runs the other's law on its core"
+        )
+        raise BadInput("firmware image", where, got, expected, remedy)
 
 
 def _flash_content(elf: ELFFile, where: str, chip: Board) -> bytes:

@@ -16,7 +16,7 @@ class BoardController:
     def __init__(self, client: BoardClient, stepped: Callable[[], None] = lambda: None) -> None:
         self._client = client
         self._stepped = stepped
-        self._session = LoopSession(client, 0.0, 0.0)
+        self._session = LoopSession(client, *[0.0] * len(client.loops))
         self.law_cycles = 0
 
     def reset(self, *angles_rad: float) -> None:
@@ -28,4 +28,4 @@ class BoardController:
         answer = self._session.step(given_rad)
         self.law_cycles = answer.law_cycles
         self._stepped()
-        return answer.u_M_V, answer.u_T_V
+        return answer.voltages_V

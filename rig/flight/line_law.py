@@ -12,7 +12,7 @@ Bits = NDArray[np.uint32]
 
 
 class LineLaw:
-    """As verification.stateless.Stateless: angles [lanes, 2] stand for the state. `cycles_max` are by the board's own counter.
+    """As verification.stateless.Stateless: angles [lanes, loops] stand for the state. `cycles_max` are by the board's own counter.
 
     `stepped` is called after each step: they take their time on a slow line.
     """
@@ -30,7 +30,7 @@ class LineLaw:
         return angles
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """Lane after lane from rest: inputs [steps, lanes, 4] give outputs [steps, lanes, 2], one frame a step each way."""
+        """Lane after lane from rest: inputs [steps, lanes, 2 loops] give outputs [steps, lanes, loops], one frame a step each way."""
         lanes = [self._lane(angles, inputs[:, lane]) for lane, angles in enumerate(states)]
         return states, np.stack(lanes, axis=1)
 
@@ -43,7 +43,7 @@ class LineLaw:
         self.cycles_max = max(self.cycles_max, answer.law_cycles)
         self._stepped()
         to_word = self._client.numbers.to_word
-        return np.array([to_word(answer.u_M_V, "V"), to_word(answer.u_T_V, "V")], np.uint32)
+        return np.array([to_word(voltage, "V") for voltage in answer.voltages_V], np.uint32)
 
     def _values(self, words: Bits) -> list[float]:
         return [self._client.numbers.from_word(int(word), "rad") for word in words]

@@ -13,8 +13,9 @@ from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.link.client import BoardClient
 from rig.link.replies import Health
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import Wiring
 
-Angles = tuple[float, float]
+Angles = tuple[float, ...]
 
 
 class LiveFlight(Protocol):
@@ -40,7 +41,7 @@ class LiveFlight(Protocol):
         ...
 
     def sample(self, reference: Angles) -> LiveRow | None:
-        """`ticks` sample periods; None where the board tells nothing while it is disarmed."""
+        """`ticks` sample periods towards references, one a loop; None where the board tells nothing while it is disarmed."""
         ...
 
     def health(self) -> Health:
@@ -73,20 +74,22 @@ class LoopFlight:
     ticks = 1
     own_pace = False
 
-    def __init__(self, client: BoardClient, plant: SteppedPlant, board: BoardTime, period_s: float) -> None:
+    def __init__(
+        self, client: BoardClient, plant: SteppedPlant, wires: Wiring, board: BoardTime, period_s: float
+    ) -> None:
         self.armed = False
         self.round_trip_s: float | None = None
         self.law_cycles: int | None = None
-        self._client, self._plant, self._board, self._period_s = client, plant, board, period_s
+        self._client, self._plant, self._wires, self._board, self._period_s = client, plant, wires, board, period_s
         self._samples = 0
 
     def arm(self) -> Angles:
         """Arm and start the law at rest where the simulated rig stands."""
-        psi_rad, phi_rad = self._plant.measured()
+        angles_rad = self._wires.angles(self._plant.measured())
         self._client.arm("LOOP")
-        self._client.reset_law(psi_rad, phi_rad)
+        self._client.reset_law(*angles_rad)
         self.armed = True
-        return psi_rad, phi_rad
+        return angles_rad
 
     def disarm(self) -> None:
         """Power stage off; the simulated rig loses its inputs."""
@@ -96,21 +99,22 @@ class LoopFlight:
     def sample(self, reference: Angles) -> LiveRow:
         """Measure, ask the board, and move the rig by one period."""
         began_s, t_s = self._board.now_s(), self._samples * self._period_s
-        psi_rad, phi_rad = self._plant.measured()
-        u = self._answer(reference, psi_rad, phi_rad) if self.armed else (0.0, 0.0)
+        y = self._plant.measured()
+        voltages_V = self._answer(reference, self._wires.angles(y)) if self.armed else (0.0,) * len(self._client.loops)
+        u = self._wires.command_V(voltages_V)
         self._samples += 1
         self._plant.advance(u, self._samples * self._period_s)
         self._board.passed(max(0.0, self._period_s - (self._board.now_s() - began_s)))
-        return LiveRow(t_s, u, (psi_rad, phi_rad), reference)
+        return LiveRow(t_s, u, y, self._wires.columns(reference))
 
     def health(self) -> Health:
         """The board's state and counters, and the host's side of the line."""
         return self._client.health()
 
-    def _answer(self, reference: Angles, psi_rad: float, phi_rad: float) -> Angles:
+    def _answer(self, reference: Angles, angles_rad: Angles) -> Angles:
         asked_s = self._board.now_s()
         self.armed = False  # until the answer is there
-        answer = self._client.sample(*reference, psi_rad, phi_rad)
+        answer = self._client.sample(*reference, *angles_rad)
         self.armed = True
         self.round_trip_s, self.law_cycles = self._board.now_s() - asked_s, answer.law_cycles
-        return answer.u_M_V, answer.u_T_V
+        return answer.voltages_V

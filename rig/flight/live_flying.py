@@ -6,6 +6,7 @@ from typing import Protocol
 from codegen.twin import FULL_SCALE_V
 from records.errors import BadInput
 from records.live import LiveRow
+from records.loops import LOOPS, Loop, Pins
 from records.protocol import PROTOCOL
 from rig.emulator.board import EmulatedBoard
 from rig.emulator.ports.serial_port import EmulatedSerial
@@ -13,6 +14,7 @@ from rig.flight.live import Angles, BoardTime
 from rig.link.client import BoardClient
 from rig.link.replies import Health, Telemetry, state_name
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import Wiring
 
 UNKNOWN = (math.nan, math.nan)
 OLD_FRAMES = 1000  # telemetry from before an ARM, at most
@@ -42,18 +44,25 @@ class EmulatedRig:
 
     real = False
 
-    def __init__(self, port: EmulatedSerial, plant: SteppedPlant, resolution_rad: Angles) -> None:
-        self._port, self._plant, self._resolution_rad = port, plant, resolution_rad
+    def __init__(
+        self,
+        port: EmulatedSerial,
+        plant: SteppedPlant,
+        wires: Wiring,
+        resolution_rad: Angles,
+        loops: tuple[Loop, ...] = LOOPS,
+    ) -> None:
+        self._port, self._plant, self._wires, self._resolution_rad = port, plant, wires, resolution_rad
+        self._pins = tuple(loop.pins for loop in loops if loop.pins is not None)
         self._origin = self._counts()
 
     def move(self, period_s: float) -> None:
         """Advance the plant with the voltages that the pins give now."""
-        self._plant.advance(self._voltages(self._board), self._plant.t_s + period_s)
-        counts = self._counts()
-        chip = self._board.config.chip
-        for encoder, now, first in zip(
-            (chip.elevation_encoder, chip.azimuth_encoder), counts, self._origin, strict=True
-        ):
+        voltages_V = [self._voltage(pins) for pins in self._pins]
+        self._plant.advance(self._wires.command_V(voltages_V), self._plant.t_s + period_s)
+        for pins, now, first in zip(self._pins, self._counts(), self._origin, strict=True):
+            encoder = self._board.config.chip.encoder_of(pins)
+            assert encoder is not None
             self._board.set_encoder(encoder.timer, now - first)
 
     @property
@@ -61,18 +70,19 @@ class EmulatedRig:
         assert self._port.board is not None
         return self._port.board
 
-    def _counts(self) -> tuple[int, int]:
-        psi, phi = (round(y / step) for y, step in zip(self._plant.measured(), self._resolution_rad, strict=True))
-        return psi, phi
+    def _counts(self) -> list[int]:
+        angles_rad = self._wires.angles(self._plant.measured())
+        return [round(angle / step) for angle, step in zip(angles_rad, self._resolution_rad, strict=True)]
 
-    def _voltages(self, board: EmulatedBoard) -> Angles:
-        pwm, chip = board.pwm(), board.config.chip
+    def _voltage(self, pins: Pins) -> float:
+        """What the driver on these pins gives [V]."""
+        pwm, motor = self._board.pwm(), self._board.config.chip.motor_of(pins)
+        assert motor is not None
         if not pwm.enabled:
-            return 0.0, 0.0
-        pins = (chip.main_motor.direction, chip.tail_motor.direction)
-        signs = [-1.0 if board.gpio(pin.port).drives(pin.number) else 1.0 for pin in pins]
-        scale = FULL_SCALE_V / pwm.period_ticks
-        return signs[0] * pwm.main_ticks * scale, signs[1] * pwm.tail_ticks * scale
+            return 0.0
+        turned = pins.direction is not None and self._board.gpio(motor.direction.port).drives(motor.direction.number)
+        ticks = (pwm.main_ticks, pwm.tail_ticks)[motor.channel - 1]
+        return (-ticks if turned else ticks) * FULL_SCALE_V / pwm.period_ticks
 
 
 def ticks_of_telemetry(period_s: float) -> int:
@@ -85,12 +95,12 @@ class FlyingFlight:
 
     mode = "FLYING"
 
-    def __init__(self, client: BoardClient, rig: Rig, board: BoardTime, period_s: float) -> None:
+    def __init__(self, client: BoardClient, rig: Rig, wires: Wiring, board: BoardTime, period_s: float) -> None:
         self.ticks = ticks_of_telemetry(period_s)
         self.armed = False
         self.round_trip_s: float | None = None
         self.law_cycles: int | None = None
-        self._client, self._rig, self._board, self._period_s = client, rig, board, period_s
+        self._client, self._rig, self._wires, self._board, self._period_s = client, rig, wires, board, period_s
         self._first_tick: int | None = None
 
     @property
@@ -98,9 +108,9 @@ class FlyingFlight:
         """A real board's telemetry is the clock."""
         return self.armed and self._rig.real
 
-    def preset(self, psi_counts: int, phi_counts: int) -> None:
+    def preset(self, *counts: int) -> None:
         """Declare where the plant stands."""
-        self._client.preset(psi_counts, phi_counts)
+        self._client.preset(*counts)
 
     def arm(self) -> Angles:
         """Arm; the board holds the place where it stands, which its first telemetry names."""
@@ -109,7 +119,7 @@ class FlyingFlight:
             told = self._next()
             if state_name(told.state) == "FLYING":
                 self.armed = True
-                return told.psi_rad, told.phi_rad
+                return told.angles_rad
         raise self._silent("telemetry of an earlier flight alone")
 
     def disarm(self) -> None:
@@ -141,8 +151,9 @@ class FlyingFlight:
         if self._first_tick is None:
             self._first_tick = told.tick
         t_s = (told.tick - self._first_tick) * self._period_s
-        flown = (told.u_M_V, told.u_T_V)
-        return LiveRow(t_s, flown, (told.psi_rad, told.phi_rad), (told.psi_ref_rad, told.phi_ref_rad))
+        columns = self._wires.columns
+        u = self._wires.command_V(told.voltages_V)
+        return LiveRow(t_s, u, columns(told.angles_rad), columns(told.references_rad))
 
     def _next(self) -> Telemetry:
         told = self._client.telemetry()

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from codegen.law_equations import axis_state
 from codegen.law_frame import state_size
-from records.loops import LOOPS
+from records.loops import LOOPS, Loop
 from rig.emulator.answers import CallsResult
 from rig.emulator.bench import Speed, measure
 from rig.emulator.board import EmulatedBoard
@@ -13,9 +13,7 @@ from rig.link.numbers import Numbers
 
 Bits = NDArray[np.uint32]
 
-# The image's law is one of the helicopter's loops.
-_INPUT_BYTES, _OUTPUT_BYTES = 8 * len(LOOPS), 4 * len(LOOPS)
-STATE_WORDS = state_size(axis_state(3), len(LOOPS))  # of the scheduled law
+STATE_WORDS = state_size(axis_state(3), len(LOOPS))  # of the scheduled law of the helicopter
 
 
 class TargetLaw:
@@ -26,8 +24,15 @@ class TargetLaw:
 
     name = "target"
 
-    def __init__(self, board: EmulatedBoard, arithmetic: str = "float32", state_words: int = STATE_WORDS) -> None:
+    def __init__(
+        self,
+        board: EmulatedBoard,
+        arithmetic: str = "float32",
+        state_words: int = STATE_WORDS,
+        loops: tuple[Loop, ...] = LOOPS,
+    ) -> None:
         self.arithmetic = arithmetic
+        self._output_bytes = 4 * len(loops)
         self._state_bytes = 4 * state_words
         self.cycles_max = 0
         self.cycles_min = 2**63
@@ -35,14 +40,14 @@ class TargetLaw:
         self._board = board
         self._state = board.scratch_address()
         self._input = self._state + self._state_bytes
-        self._output = self._input + _INPUT_BYTES
+        self._output = self._input + 8 * len(loops)
 
     def start(self, angles: Bits) -> Bits:
-        """States at rest [lanes, words] for angles psi, phi as bits [lanes, 2]."""
-        return np.array([self._start_lane(int(psi), int(phi)) for psi, phi in angles], dtype=np.uint32)
+        """States at rest [lanes, words] for angles as bits [lanes, loops]."""
+        return np.array([self._start_lane(*lane) for lane in angles.tolist()], dtype=np.uint32)
 
     def run(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
-        """All lanes through all steps: inputs [steps, lanes, 4] as bits give final states and outputs [steps, lanes, 2]."""
+        """All lanes through all steps: inputs [steps, lanes, 2 loops] as bits give final states and outputs [steps, lanes, loops]."""
         if len(inputs) == 1:
             return self._one_step(states, inputs)
         lanes = [self._run_lane(state, inputs[:, lane]) for lane, state in enumerate(states)]
@@ -64,21 +69,21 @@ class TargetLaw:
         address, size = self._board.symbol("LAW_TABLE_DIGEST")
         return self._board.read_memory(address, size).hex()
 
-    def _start_lane(self, psi_bits: int, phi_bits: int) -> Bits:
+    def _start_lane(self, *angles: int) -> Bits:
         self._board.write_memory(self._state, bytes(self._state_bytes))
-        self._board.call("law_reset", self._state, psi_bits, phi_bits)
+        self._board.call("law_reset", self._state, *angles)
         return self._read_state()
 
     def _run_lane(self, state: Bits, inputs: Bits) -> tuple[Bits, Bits]:
         """One lane: the state stays in the board's memory from step to step."""
         self._board.write_memory(self._state, np.ascontiguousarray(state).tobytes())
-        done = self._call([(self._input, inputs)], [(self._output, _OUTPUT_BYTES)], len(inputs))
+        done = self._call([(self._input, inputs)], [(self._output, self._output_bytes)], len(inputs))
         return self._read_state(), done.outputs[0].view(np.uint32)
 
     def _one_step(self, states: Bits, inputs: Bits) -> tuple[Bits, Bits]:
         """All lanes in one batch, each with its own state."""
         rows = [(self._state, states), (self._input, inputs[0])]
-        wells = [(self._state, self._state_bytes), (self._output, _OUTPUT_BYTES)]
+        wells = [(self._state, self._state_bytes), (self._output, self._output_bytes)]
         done = self._call(rows, wells, len(states))
         return done.outputs[0].view(np.uint32), done.outputs[1].view(np.uint32)[np.newaxis]
 

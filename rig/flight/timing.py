@@ -9,7 +9,6 @@ from rig.link.client import BoardClient
 
 SAMPLES = 200
 ROUNDS = 5
-_AT_REST = (0.0, 0.0, 0.0, 0.0)
 
 
 def line_timing(client: BoardClient, sample_period_s: float) -> LineTiming:
@@ -34,12 +33,13 @@ def line_timing(client: BoardClient, sample_period_s: float) -> LineTiming:
 
 
 def _round_trips(client: BoardClient, count: int) -> list[float]:
-    session = LoopSession(client, 0.0, 0.0)
-    session.step(_AT_REST)
+    angles_rad = (0.0,) * len(client.loops)
+    session = LoopSession(client, *angles_rad)
+    session.step(angles_rad + angles_rad)
     trips_s = []
     for _ in range(count):
         before_s = client.clock_s()
-        session.step(_AT_REST)
+        session.step(angles_rad + angles_rad)
         trips_s.append(client.clock_s() - before_s)
     return trips_s
 

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from records.errors import BadInput
+from records.loops import Loop, has_pins
 from records.protocol import PROTOCOL
+from records.wire import Protocol
 from rig.link import replies
 from rig.link.frames import Frame, FrameReceiver, Value
 from rig.link.line import Line
@@ -37,24 +39,27 @@ class BoardClient:
         *,
         table_digest: str | None = None,
         numbers: Numbers | None = None,
+        protocol: Protocol = PROTOCOL,
         timeout_s: float = DEFAULT_TIMEOUT_S,
         lines: ModemLines = LEFT_ALONE,
     ) -> Self:
-        """Open the port `url` and ask for the identity before anything else.
+        """Open the port `url` and ask for the identity before anything else; `protocol` is that of the table's loops.
 
         Raises BadInput when the port is not there, is silent or noisy, speaks another protocol, or when the board's table is not
         `table_digest` (64 hexadecimal digits; None accepts any table).
         """
         port = open_port(url, timeout_s=timeout_s, lines=lines)
-        return cls.over(port, url, table_digest=table_digest, numbers=numbers or Float32Numbers())
+        return cls.over(port, url, table_digest=table_digest, numbers=numbers or Float32Numbers(), protocol=protocol)
 
     @classmethod
-    def over(cls, port: Any, where: str, *, table_digest: str | None, numbers: Numbers) -> Self:
+    def over(
+        cls, port: Any, where: str, *, table_digest: str | None, numbers: Numbers, protocol: Protocol = PROTOCOL
+    ) -> Self:
         """As `connect`, over a port that is open; it is closed again when the board is refused."""
-        line = Line(port, where, FrameReceiver(PROTOCOL))
+        line = Line(port, where, FrameReceiver(protocol))
         try:
             identity = _introduced(line)
-            check_identity(identity, where, table_digest, numbers.name)
+            check_identity(identity, where, table_digest, numbers.name, protocol)
         except BaseException:
             port.close()
             raise
@@ -65,8 +70,18 @@ class BoardClient:
         """How the board's law writes its numbers."""
         return self._numbers
 
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        """The loops that the board's law closes, in the order of every list of angles and voltages."""
+        return self._line.protocol.loops
+
     def arm(self, mode: str) -> None:
-        """Arm in `mode` ("FLYING" or "LOOP"); the board refuses a host whose table is not its own."""
+        """Arm in `mode` ("FLYING" or "LOOP"); the board refuses a host whose table is not its own.
+
+        FLYING is on the board's own encoders: refused, before the board is asked, for loops without pins.
+        """
+        if mode == "FLYING":
+            demand_pins(self.loops, self._line.where)
         head = bytes.fromhex(self.identity.table_digest)[:DIGEST_HEAD_BYTES]
         self._command("ARM", {"mode": PROTOCOL.enumeration("mode").code(mode), "digest_head": head})
 
@@ -74,29 +89,27 @@ class BoardClient:
         """Power stage off."""
         self._command("DISARM", {})
 
-    def reset_law(self, psi_rad: float, phi_rad: float) -> None:
-        """Start the law anew at rest at these angles (host-in-the-loop mode)."""
-        self._command("RESET_LAW", self._words("RESET_LAW", psi_rad=psi_rad, phi_rad=phi_rad))
+    def reset_law(self, *angles_rad: float) -> None:
+        """Start the law anew at rest at these angles, one a loop (host-in-the-loop mode)."""
+        self._command("RESET_LAW", self._words("RESET_LAW", angles_rad))
 
-    def sample(self, psi_ref_rad: float, phi_ref_rad: float, psi_rad: float, phi_rad: float) -> Answer:
-        """One step of the law on these references and angles (host-in-the-loop mode)."""
-        words = self._words(
-            "SAMPLE", psi_ref_rad=psi_ref_rad, phi_ref_rad=phi_ref_rad, psi_rad=psi_rad, phi_rad=phi_rad
-        )
-        return replies.answer(self._request("SAMPLE", words, "ANSWER"), self._numbers)
+    def sample(self, *given_rad: float) -> Answer:
+        """One step of the law on the references, then the angles, of all loops (host-in-the-loop mode)."""
+        frame = self._request("SAMPLE", self._words("SAMPLE", given_rad), "ANSWER")
+        return replies.answer(frame, self._numbers, self.loops)
 
-    def reference(self, psi_ref_rad: float, phi_ref_rad: float) -> int:
-        """Send references while flying, unacknowledged; returns the number that telemetry will echo."""
-        return self._line.send("REFERENCE", self._words("REFERENCE", psi_ref_rad=psi_ref_rad, phi_ref_rad=phi_ref_rad))
+    def reference(self, *references_rad: float) -> int:
+        """Send references, one a loop, while flying, unacknowledged; returns the number that telemetry will echo."""
+        return self._line.send("REFERENCE", self._words("REFERENCE", references_rad))
 
     def telemetry(self) -> Telemetry | None:
         """The next telemetry of a flight, or None when the time-out passes without one."""
         frame = self._line.next_frame("TELEMETRY")
-        return None if frame is None else replies.telemetry(frame, self._numbers)
+        return None if frame is None else replies.telemetry(frame, self._numbers, self.loops)
 
-    def preset(self, psi_counts: int, phi_counts: int) -> None:
-        """Declare what the encoders read at this moment."""
-        self._command("PRESET", {"psi_counts": psi_counts, "phi_counts": phi_counts})
+    def preset(self, *counts: int) -> None:
+        """Declare what the encoders, one a loop, read at this moment."""
+        self._command("PRESET", {loop.counts: count for loop, count in zip(self.loops, counts, strict=True)})
 
     def counters(self) -> Mapping[str, int]:
         """The board's counters by name."""
@@ -124,9 +137,12 @@ class BoardClient:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _words(self, name: str, **quantities: float) -> dict[str, Value]:
-        units = {part.name: part.unit for part in PROTOCOL.message(name).fields}
-        return {key: self._numbers.to_word(value, units[key]) for key, value in quantities.items()}
+    def _words(self, name: str, quantities: tuple[float, ...]) -> dict[str, Value]:
+        """The fields of a message, all of them numbers of the law, in their declared order."""
+        fields = self._line.protocol.message(name).fields
+        return {
+            part.name: self._numbers.to_word(value, part.unit) for part, value in zip(fields, quantities, strict=True)
+        }
 
     def _command(self, name: str, values: Mapping[str, Value]) -> None:
         self._request(name, values, "RESULT")
@@ -154,14 +170,16 @@ def _introduced(line: Line) -> Identity:
     return identity
 
 
-def check_identity(identity: Identity, where: str, table_digest: str | None, arithmetic: str) -> None:
+def check_identity(
+    identity: Identity, where: str, table_digest: str | None, arithmetic: str, protocol: Protocol = PROTOCOL
+) -> None:
     """Raise BadInput unless protocol, arithmetic and controller table are the expected ones."""
-    if identity.schema_hash != PROTOCOL.schema_hash.hex():
+    if identity.schema_hash != protocol.schema_hash.hex():
         raise BadInput(
             what="protocol",
             where=where,
             got=f"schema {identity.schema_hash}",
-            expected=f"schema {PROTOCOL.schema_hash.hex()}",
+            expected=f"schema {protocol.schema_hash.hex()}",
             remedy="make its image anew with `twinlaw build`, then `twinlaw flash` if it is a real board",
         )
     if identity.arithmetic != arithmetic:
@@ -180,6 +198,17 @@ def check_identity(identity: Identity, where: str, table_digest: str | None, ari
             expected=f"digest {table_digest[:16]}",
             remedy="flash the image of this table with `twinlaw flash`, or give the table that the board carries",
         )
+
+
+def demand_pins(loops: tuple[Loop, ...], where: str) -> None:
+    """Raise BadInput for loops that fly with the host in the loop alone, as the board has no pins for them."""
+    if not has_pins(loops):
+        names = ", ".join(loop.axis for loop in loops)
+        expected = (
+            "an encoder and an output on the board for every loop, as section [board] of a plant file names their pins"
+        )
+        remedy = "fly with the host in the loop: the host sends angles, the board answers voltages"
+        raise BadInput("flight on the board's own encoders", where, f"the loops {names}", expected, remedy)
 
 
 @dataclass(eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from records.errors import BadInput
-from records.protocol import PROTOCOL
+from records.wire import Protocol
 from rig.link.frames import DELIMITER, Frame, FrameReceiver, Received, Value, encode_frame, line_length
 
 # Three attempts in time for the board, which counts its host as lost after 100 ms; then with the port's own patience, for
@@ -33,10 +33,15 @@ class Line:
     def __post_init__(self) -> None:
         self.timeout_s = self.port.timeout
 
+    @property
+    def protocol(self) -> Protocol:
+        """What is spoken on the line."""
+        return self.receiver.protocol
+
     def send(self, name: str, values: Mapping[str, Value]) -> int:
         """Send message `name` once and return its sequence number."""
         sequence = self.sequence
-        self._write(encode_frame(PROTOCOL, name, sequence, values))
+        self._write(encode_frame(self.protocol, name, sequence, values))
         self.sequence = (sequence + 1) & 0xFFFF
         return sequence
 
@@ -46,9 +51,9 @@ class Line:
         A lost frame is sent again under the same number, which the board recognises. Raises BadInput when no reply comes.
         """
         sequence = self.sequence
-        line = encode_frame(PROTOCOL, name, sequence, values)
+        line = encode_frame(self.protocol, name, sequence, values)
         self.sequence = (sequence + 1) & 0xFFFF
-        expected_bytes = line_length(PROTOCOL.message(reply_name))
+        expected_bytes = line_length(self.protocol.message(reply_name))
         self._drain()
         before = self.receiver.received
         for attempt, (wait_s, patience_bytes) in enumerate(self._patience(expected_bytes)):
@@ -65,7 +70,7 @@ class Line:
 
     def next_frame(self, name: str) -> Frame | None:
         """The next frame called `name`, or None when the port's time-out passes without one."""
-        return self._await({name}, None, line_length(PROTOCOL.message(name)), PATIENCE_BYTES)
+        return self._await({name}, None, line_length(self.protocol.message(name)), PATIENCE_BYTES)
 
     def restart(self) -> None:
         """Forget what was received so far, and end whatever the board has received so far."""
@@ -76,7 +81,7 @@ class Line:
 
     def _patience(self, expected_bytes: int) -> list[tuple[float | None, int]]:
         """Time-out and most bytes of each attempt; telemetry comes every 10 ms, so that a stream of it never times out."""
-        quick_bytes = expected_bytes + 2 * line_length(PROTOCOL.message("TELEMETRY"))
+        quick_bytes = expected_bytes + 2 * line_length(self.protocol.message("TELEMETRY"))
         quick = [(wait_s, quick_bytes) for wait_s in QUICK_S if self.timeout_s is None or wait_s < self.timeout_s]
         return [*quick, *[(self.timeout_s, PATIENCE_BYTES)] * PATIENT_ATTEMPTS]
 

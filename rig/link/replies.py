@@ -1,8 +1,9 @@
 """What the board says, as records in SI units."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from records.loops import Loop
 from records.protocol import PROTOCOL
 from rig.link.frames import Frame, Received
 from rig.link.numbers import Numbers
@@ -25,34 +26,27 @@ class Identity:
 
 @dataclass(frozen=True)
 class Answer:
-    """The law's answer to one sample."""
+    """The law's answer to one sample, in the order of its loops."""
 
-    u_M_V: float
-    u_T_V: float
-    duty_main_ticks: int
-    duty_tail_ticks: int
+    voltages_V: tuple[float, ...]
+    duties_ticks: tuple[int, ...]
     law_cycles: int
     device_time_us: int
 
 
 @dataclass(frozen=True)
 class Telemetry:
-    """One control tick of a flight on the board's own encoders."""
+    """One control tick of a flight on the board's own encoders, in the order of the law's loops."""
 
     tick: int
     device_time_us: int
     state: int
     echo_sequence: int
-    psi_counts: int
-    phi_counts: int
-    psi_rad: float
-    phi_rad: float
-    psi_ref_rad: float
-    phi_ref_rad: float
-    u_M_V: float
-    u_T_V: float
-    duty_main_ticks: int
-    duty_tail_ticks: int
+    counts: tuple[int, ...]
+    angles_rad: tuple[float, ...]
+    references_rad: tuple[float, ...]
+    voltages_V: tuple[float, ...]
+    duties_ticks: tuple[int, ...]
     law_cycles: int
     frames_refused: int
     frames_lost: int
@@ -84,24 +78,42 @@ def identity(frame: Frame) -> Identity:
     )
 
 
-def answer(frame: Frame, numbers: Numbers) -> Answer:
-    """The record of an ANSWER frame."""
+def answer(frame: Frame, numbers: Numbers, loops: Sequence[Loop]) -> Answer:
+    """The record of an ANSWER frame of a law of `loops`."""
     return Answer(
-        u_M_V=numbers.from_word(frame.number("u_M_V"), "V"),
-        u_T_V=numbers.from_word(frame.number("u_T_V"), "V"),
-        duty_main_ticks=frame.number("duty_main_ticks"),
-        duty_tail_ticks=frame.number("duty_tail_ticks"),
+        voltages_V=_numbers(frame, numbers, (loop.input for loop in loops), "V"),
+        duties_ticks=tuple(frame.number(loop.duty) for loop in loops),
         law_cycles=frame.number("law_cycles"),
         device_time_us=frame.number("device_time_us"),
     )
 
 
-def telemetry(frame: Frame, numbers: Numbers) -> Telemetry:
-    """The record of a TELEMETRY frame."""
-    words = {part.name: part.unit for part in frame.message.fields if part.is_number}
-    values = {name: numbers.from_word(frame.number(name), unit) for name, unit in words.items()}
-    counts = {name: frame.number(name) for name in Telemetry.__dataclass_fields__ if name not in words}
-    return Telemetry(**values, **counts)  # type: ignore[arg-type]
+_PLAIN = (
+    "tick",
+    "device_time_us",
+    "state",
+    "echo_sequence",
+    "law_cycles",
+    "frames_refused",
+    "frames_lost",
+    "tick_overruns",
+)
+
+
+def telemetry(frame: Frame, numbers: Numbers, loops: Sequence[Loop]) -> Telemetry:
+    """The record of a TELEMETRY frame of a law of `loops`."""
+    return Telemetry(
+        counts=tuple(frame.number(loop.counts) for loop in loops),
+        angles_rad=_numbers(frame, numbers, (loop.output for loop in loops), "rad"),
+        references_rad=_numbers(frame, numbers, (loop.reference for loop in loops), "rad"),
+        voltages_V=_numbers(frame, numbers, (loop.input for loop in loops), "V"),
+        duties_ticks=tuple(frame.number(loop.duty) for loop in loops),
+        **{name: frame.number(name) for name in _PLAIN},
+    )
+
+
+def _numbers(frame: Frame, numbers: Numbers, names: Iterable[str], unit: str) -> tuple[float, ...]:
+    return tuple(numbers.from_word(frame.number(name), unit) for name in names)
 
 
 def health(frame: Frame, received: Received) -> Health:

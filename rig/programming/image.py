@@ -5,13 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from codegen.pins_source import pins_source
 from codegen.protocol_source import protocol_source
 from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.files import write_atomic
-from records.protocol import PROTOCOL
+from records.loops import LOOPS, Loop, has_pins
+from records.protocol import protocol_of
 from toolchain.calls import callers_of
-from toolchain.elf import ImageSizes, Symbol, flash_content, image_sizes, image_symbols
+from toolchain.elf import ImageSizes, Symbol, flash_content, image_board, image_sizes, image_symbols
 from toolchain.host import CText, Source
 from toolchain.target import build_image
 
@@ -25,26 +27,31 @@ SOFT_ARITHMETIC = re.compile(
 
 @dataclass(frozen=True)
 class FirmwareImage:
-    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash."""
+    """An image with what is known of it: `elf` for the emulated board and a debugger, `binary` for the flash of `board`."""
 
     elf: bytes
     binary: bytes
     sizes: ImageSizes
     symbols: Mapping[str, Symbol]
+    board: Board
 
 
 def build_firmware(
-    generated: Mapping[str, str], out_dir: Path | None = None, *, board: Board = STM32G071
+    generated: Mapping[str, str],
+    out_dir: Path | None = None,
+    *,
+    board: Board = STM32G071,
+    loops: tuple[Loop, ...] = LOOPS,
 ) -> FirmwareImage:
-    """Build the firmware of `board` around the `generated` law (file name -> text: law.h, law.c and what they include).
+    """Build the firmware of `board` around the `generated` law of `loops` (file name -> text: law.h, law.c and what they include).
 
     With `out_dir` it leaves firmware.elf and firmware.bin there. The same texts give the same bytes. Raises BadInput with file
     and line when the compiler refuses, or when flash, RAM or the stack's reserve are exceeded.
     """
-    texts = {**generated, **protocol_source(PROTOCOL)}
+    texts = {**generated, **protocol_source(protocol_of(loops)), **pins_source(loops, board)}
     sources: list[Source] = [
         *control_sources(),
-        *board_sources(board),
+        *board_sources(board, has_pins(loops)),
         *(CText(name, text) for name, text in sorted(texts.items())),
     ]
     folders = [FIRMWARE_DIR / "control", *board_folders(board)]
@@ -74,7 +81,8 @@ def refuse_soft_arithmetic(image: FirmwareImage) -> None:
 
 def describe_image(elf: bytes, where: str) -> FirmwareImage:
     """The record of an ELF image; raises BadInput when it is none."""
-    return FirmwareImage(elf, flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where))
+    content, sizes, symbols = flash_content(elf, where), image_sizes(elf, where), image_symbols(elf, where)
+    return FirmwareImage(elf, content, sizes, symbols, image_board(elf) or STM32G071)
 
 
 def control_sources() -> list[Path]:
@@ -82,16 +90,21 @@ def control_sources() -> list[Path]:
     return sorted((FIRMWARE_DIR / "control").glob("*.c"))
 
 
-def board_sources(board: Board) -> list[Path]:
-    """`main` and the layer of the chip below it, in a fixed order."""
-    return sorted((path for folder in board_folders(board) for path in folder.glob("*.c")), key=lambda path: path.name)
+def board_sources(board: Board, pins: bool = True) -> list[Path]:
+    """`main` and the layer of the chip below it, in a fixed order; without `pins` nothing hangs on the chip but the line."""
+    files = {path.name: path for folder in board_folders(board) for path in folder.glob("*.c")}
+    if not pins:
+        files |= {path.name: path for path in (FIRMWARE_DIR / "board" / "no_pins").glob("*.c")}
+    return [files[name] for name in sorted(files)]
 
 
 def board_folders(board: Board) -> list[Path]:
-    """Where the C is that any board has, and that of this chip."""
-    return [FIRMWARE_DIR / "board", FIRMWARE_DIR / "board" / board.folder]
+    """Where the C is that any board has, that of the chip's family, and that of this chip."""
+    return [FIRMWARE_DIR / "board" / folder for folder in ("", board.family, board.folder)]
 
 
-def linker_script(board: Board) -> Path:
-    """The chip's memories as the linker knows them."""
-    return FIRMWARE_DIR / "board" / board.folder / "link.ld"
+def linker_script(board: Board) -> CText:
+    """The chip's memories as the linker knows them, and what goes where in them."""
+    _, family, chip = board_folders(board)
+    parts = (chip / "link.ld", family / "sections.ld")
+    return CText("link.ld", "\n".join(part.read_text(encoding="utf-8") for part in parts))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from records.table import ControllerTable
 from sim.bench.compiled_peers import PEERS as COMPILED_PEERS
+from sim.bench.peak import ProcessorShare, share
 from sim.bench.peers import PEERS, Peer, Task
 from sim.bind import BoundPlant
 from sim.halving import step_error
@@ -54,8 +55,12 @@ class StepAccuracy:
     true_rad: tuple[float, ...]
 
 
-def run(bound: BoundPlant, table: ControllerTable, controller: Callable[[], Controller]) -> tuple[BenchRow, ...]:
+def run(
+    bound: BoundPlant, table: ControllerTable, controller: Callable[[], Controller]
+) -> tuple[tuple[BenchRow, ...], ProcessorShare]:
     """Fly the project's flight with the law of `table` by every tool; `controller` makes that law for the tools that call Python.
+
+    Returns a row for each, and what of the processor's peak the kernel reaches.
 
     The kernel runs with dry friction, stops and quantisation; peers have neither sticking nor stops: their friction is
     b_c tanh(v / 0.005 rad/s), and they fly the piece of the flight after take-off.
@@ -73,7 +78,8 @@ def run(bound: BoundPlant, table: ControllerTable, controller: Callable[[], Cont
         BenchRow(f"twinlaw kernel, {BATCH} sets", batch, None, 1.0, 0.0, "the same, parameter sets side by side"),
     ]
     peers = {**PEERS, **COMPILED_PEERS}
-    return (*rows, *(_row(name, peer, task, single, batch) for name, peer in peers.items()))
+    others = (_row(name, peer, task, single, batch) for name, peer in peers.items())
+    return (*rows, *others), share(task, single, batch)
 
 
 def _fly(bound: BoundPlant, table: ControllerTable, manoeuvre: Manoeuvre, p: Array, keep: str) -> Runs:

@@ -22,7 +22,7 @@ def _moved(x: Any, k: Any, h_s: float) -> list[Any]:
     return [x[i] + h_s * k[i] for i in range(len(k))]
 
 
-def _sample(task: Task, ops: Any, rates: Callable[..., Any]) -> Callable[..., Any]:
+def sample_step(task: Task, ops: Any, rates: Callable[..., Any]) -> Callable[..., Any]:
     """One sample, quantise, law, RK4: (x, law state, reference) -> (x, law state) on any tool's scalars."""
     h_s = task.period_s
 
@@ -52,7 +52,7 @@ def _casadi(task: Task) -> Work | None:
     both, reference = casadi.SX.sym("both", size + 2 * LAW_STATES), casadi.SX.sym("r", 2)
     arguments = [*model.states, *model.inputs]
     rates = sympy.lambdify(arguments, tuple(smooth_rates(task.bound)), modules=[names], cse=True)
-    step = _sample(task, Ops, rates)
+    step = sample_step(task, Ops, rates)
     x, state = step(casadi.vertsplit(both[:size]), casadi.vertsplit(both[size:]), casadi.vertsplit(reference))
     loop = casadi.Function("sample", [both, reference], [casadi.vertcat(*x, *state)]).mapaccum("loop", samples)
     generated = casadi.CodeGenerator("loop.c")

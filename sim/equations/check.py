@@ -21,7 +21,7 @@ SIGNS = ("positive", "non-negative", "any")
 # Names that the kernel's C has for something else (sim/kernel/c, sim/kernel/generate.py, sim/symbolic/assignments.py), and C's own words.
 _TAKEN = re.compile(
     r"t_s|seq|x|u|c|p|y|dx|sign|move|torque|up|down|level|left|[ABDEHI]|num|mask|select|any|all|splat|lane_.*|is_.*|model_.*|v\d+"
-    r"|(sin|cos)_v\d+|(friction|inverse_inertia)_\d+|sign_.*|[NM]_[A-Z0-9_]+|(AXIS|INPUT|KINK|STATE)_[A-Z]+|[A-Z]_HAS|NUM|LANES|UNROLLED|ALWAYS_INLINE|MODEL_CODE|EQUATIONS_ONCE|NAN|INFINITY|auto|bool|case|char|const|default|do|double|enum|extern|false"
+    r"|(sin|cos)_v\d+|(friction|inverse_inertia)_\d+|sign_.*|[NM]_[A-Z0-9_]+|(AXIS|INPUT|KINK|STATE)_[A-Z]+|[A-Z]_HAS|NUM|LANES|UNROLLED|ALWAYS_INLINE|MODEL_CODE|EQUATIONS_ONCE|MANY_RUNS|SEEN_NUMBERS|NAN|INFINITY|auto|bool|case|char|const|default|do|double|enum|extern|false"
     r"|float|goto|inline|int|long|register|restrict|short|signed|sizeof|static|struct|switch|true|typedef|typeof|union|unsigned|void|volatile"
 )
 

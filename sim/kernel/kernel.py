@@ -20,6 +20,7 @@ SENSITIVITY = ("sensitivity.c", "events.c")
 BATCH = ("batch.c", "events.c")
 # One run has nothing to lay side by side: a compiler that looks for that and more takes twice as long, and what it makes is no faster.
 ONE_RUN_FLAGS = ("-O1", "-fno-vectorize", "-fno-slp-vectorize")
+MANY_RUNS_FLAGS = ("-DMANY_RUNS",)
 HEADERS = ("request.h", "law_table.h", "sensitivity.h", "exports.h")
 BATCH_LANES = 8
 Array = NDArray[np.float64]
@@ -74,7 +75,8 @@ def _built(model: Model, name: str, files: tuple[str, ...]) -> Path:
         CText("sincos_coefficients.h", sincos_header()),
         *(C_DIR / file for file in files),
     ]
-    flags = (*FAST_FLAGS, *(() if files is BATCH else ONE_RUN_FLAGS), f"-DBATCH_LANES={BATCH_LANES}")
+    own = MANY_RUNS_FLAGS if files is BATCH else ONE_RUN_FLAGS
+    flags = (*FAST_FLAGS, *own, f"-DBATCH_LANES={BATCH_LANES}")
     return build_shared(name, sources, include_dirs=[C_DIR], flags=flags)
 
 

@@ -53,7 +53,7 @@ EXAMPLES = {
     "plant": Example("pamh_aeropendulum", {"NAME": "pamh_aeropendulum"}, beside="recordings/"),
     "controller": Example("lqg", {"NAME": "lqg"}, beside="controllers/lqg_gains.py"),
     "verb": Example("doctor", {"NAME": "doctor"}, beside="Makefile"),
-    "board": Example("", {"CHIP": "stm32g071"}),
+    "chip": Example("stm32g431", {"CHIP": "stm32g431"}),
     "threshold of the diagnosis": Example("SURELY = ", searched=("diagnosis",)),
     "probability of a first name": Example(""),
     "threshold of the log check": Example("MOST_READINGS = ", searched=("logcheck",)),

@@ -16,6 +16,7 @@ MADE |= {
     "real_rigs.json",
     "protocol.h",
     "protocol.c",
+    "pins.h",
     "Example/flight.c",
     "CMakeLists.txt",
 }

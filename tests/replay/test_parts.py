@@ -37,7 +37,7 @@ def answers(found: ReplayedLog) -> np.ndarray:
 
 
 def test_the_law_that_flew_is_found_again_to_the_last_bit_in_its_arithmetic() -> None:
-    assert has_replayable_columns(healthy())
+    assert has_replayable_columns(healthy(), ce150_table())
     found = replayed(flight(), ce150_table())
     assert (found.arithmetic, found.agreeing) == ("float32", 1.0)
     assert replayed_in_fixed(flight(), ce150_table()).agreeing < 0.5
@@ -84,7 +84,9 @@ def test_inputs_that_stand_and_columns_that_may_be_taken_for_others_are_variants
     )
     assert len(list(constant_inputs(flight(still), ("u_M_V", "u_T_V")))) == 1
     assert list(constant_inputs(flight(), ("u_M_V", "u_T_V"))) == []
-    assert len({(found.name, found.sentence) for found in given_columns()}) == len(list(given_columns()))
+    assert len({(found.name, found.sentence) for found in given_columns(ce150_table())}) == len(
+        list(given_columns(ce150_table()))
+    )
 
 
 def test_every_variant_changes_the_setup_and_says_so() -> None:

@@ -52,7 +52,8 @@ def quick(monkeypatch):
 
 def test_every_tool_has_a_row_and_those_not_installed_say_so(bound, table, monkeypatch):
     quick(monkeypatch)
-    rows = comparison.run(bound, table, lambda: FloatLaw(table))
+    rows, share = comparison.run(bound, table, lambda: FloatLaw(table))
+    assert 0.0 < share.single < 1.0
     tools = [row.tool for row in rows]
     assert tools[0] == "twinlaw kernel"
     assert set(peers.PEERS) | set(compiled_peers.PEERS) < set(tools)

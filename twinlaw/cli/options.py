@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from records.board import BOARDS
 from records.errors import BadInput
 
 if TYPE_CHECKING:
@@ -102,6 +103,12 @@ def _arithmetics() -> tuple[str, ...]:
     from codegen.law import ARITHMETIC_CODES  # with NumPy and the laws behind it, which most verbs do without
 
     return tuple(ARITHMETIC_CODES)
+
+
+def chip(parser: argparse.ArgumentParser) -> None:
+    """--chip NAME, of the image; its name in any case."""
+    names = tuple(BOARDS)
+    parser.add_argument("--chip", choices=names, type=str.upper, default=names[0], help="default: %(default)s")
 
 
 def seed(parser: argparse.ArgumentParser, of: str, default: int = 1) -> None:

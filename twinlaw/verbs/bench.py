@@ -24,6 +24,7 @@ from rig.link.numbers import numbers_of
 from rig.programming.image import build_firmware
 from sim.bench import comparison
 from sim.bench.comparison import BenchRow, StepAccuracy
+from sim.bench.peak import ProcessorShare
 from twinlaw.cli import console, options
 from twinlaw.workflows.chain.designing import design_controller
 
@@ -44,7 +45,7 @@ def run(chosen: argparse.Namespace) -> int:
     """Measure and print."""
     designed = design_controller(chosen.plant)
     with console.stage("flying by every tool"):
-        rows = comparison.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
+        rows, share = comparison.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
     with console.stage("flying with finer steps"):
         accuracy = comparison.step_accuracy(designed.bound, designed.table)
     with console.stage("stepping the law on the emulated board"):
@@ -52,11 +53,11 @@ def run(chosen: argparse.Namespace) -> int:
     with console.stage("fitting by every tool"):
         fits = fit_bench.run(designed.bound)
     if chosen.json:
-        print(json.dumps(_facts(rows, accuracy, board) | {"fits": [asdict(row) for row in fits]}))
+        print(json.dumps(_facts(rows, share, accuracy, board) | {"fits": [asdict(row) for row in fits]}))
     else:
         print(console.table([_shown(row) for row in rows], HEADING))
         print("\n" + console.table([_fit_shown(row) for row in fits], FIT_HEADING))
-        print("\n" + "\n".join(_told(rows, accuracy, board)))
+        print("\n" + "\n".join(_told(rows, share, accuracy, board)))
     return 0
 
 
@@ -79,9 +80,11 @@ def _fit_shown(row: FitRow) -> tuple[str, ...]:
     return row.tool, f"{row.cpu_s:.2f}", f"{row.ratio:,.1f}", f"{100.0 * row.worst_error:.2g} %", row.note
 
 
-def _told(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> list[str]:
+def _told(rows: Sequence[BenchRow], share: ProcessorShare, accuracy: StepAccuracy, board: Speed) -> list[str]:
     halving, true = (max(error) for error in (accuracy.halving_rad, accuracy.true_rad))
     lines = [
+        f"of the processor's peak, {share.peak_per_s / 1e9:.0f} billion sums and products / CPU s: {100 * share.single:.0f} % one run, "
+        f"{100 * share.side_by_side:.0f} % side by side, with {share.operations} of them a sample",
         f"error of one RK4 step a sample over the whole flight: {halving:.1e} rad by step halving, "
         f"{true:.1e} rad against {comparison.FINE_SUBSTEPS} times finer steps",
         f"emulated board: {board.instructions_per_s / 1e6:.0f} million instructions / CPU s, all counted; "
@@ -95,9 +98,10 @@ def _absent(rows: Sequence[BenchRow]) -> list[str]:
     return [row.tool for row in rows if row.simulated_s_per_cpu_s is None]
 
 
-def _facts(rows: Sequence[BenchRow], accuracy: StepAccuracy, board: Speed) -> dict[str, Any]:
+def _facts(rows: Sequence[BenchRow], share: ProcessorShare, accuracy: StepAccuracy, board: Speed) -> dict[str, Any]:
     return {
         "closed_loop": [asdict(row) for row in rows],
+        "processor": asdict(share),
         "step_accuracy": asdict(accuracy),
         "emulated_board": {**asdict(board), "instructions_per_s": board.instructions_per_s},
         "not_installed": _absent(rows),

@@ -34,6 +34,7 @@ EXTRAS: Mapping[str, str] = {
     "parquet": "import: Parquet files",
     "ros": "import: MCAP and ROS bags",
     "cluster": "--cluster: sweeps on Dask",
+    "cores": "verify --chip: the core of a chip that is not emulated",
     "proofs": "verify --proofs",
 }
 PROGRAMS: Mapping[str, tuple[str, str]] = {

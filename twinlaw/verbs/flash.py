@@ -14,7 +14,7 @@ from records.errors import BadInput
 from rig.link.client import asked_identity
 from rig.programming.emulated_flash import flash_emulated
 from rig.programming.flash import flash_through_boot_loader, flash_through_st_link
-from toolchain.elf import flash_content
+from toolchain.elf import flash_content, image_board
 from twinlaw.cli import console, options
 from twinlaw.workflows.chain.boards import board_url, demand_image
 
@@ -43,6 +43,7 @@ def run(chosen: argparse.Namespace) -> int:
         raise BadInput("--sequence", "flash", got, "the serial port whose lines it moves", remedy)
     image = chosen.out / ("firmware.bin" if chosen.port else "firmware.elf")
     demand_image(image)
+    _demand_chip(chosen.out / "firmware.elf")
     if chosen.arithmetic is not None:
         _demand_arithmetic(image, chosen.arithmetic)
     if chosen.port == "emulated":
@@ -61,6 +62,16 @@ def run(chosen: argparse.Namespace) -> int:
         answer = {}
     print(json.dumps({"image": str(image), "port": chosen.port, "written": True, **answer}) if chosen.json else told)
     return 0
+
+
+def _demand_chip(elf: Path) -> None:
+    """Raise BadInput for an image of a chip whose ways into the flash have not been tried on an emulated one."""
+    board = image_board(elf.read_bytes()) if elf.is_file() else None
+    if board is not None and not board.is_emulated:
+        remedy = (
+            f"nothing was written; `openocd -f {board.openocd_config}` has `program {elf} verify reset exit` for it"
+        )
+        raise BadInput("firmware image", str(elf), f"one for the {board.chip}", "a chip that is emulated", remedy)
 
 
 def _demand_arithmetic(image: Path, arithmetic: str) -> None:

@@ -1,7 +1,7 @@
 """The whole chain: design, generate, build, verify, and fly the firmware image on the emulated board.
 
 Leaves in DIR: controller.json, generated/, firmware.elf, firmware.bin, run.csv + run.toml, verification.json, report.html.
-The firmware takes a helicopter's loops; of a plant with others there is no image, and its generated C flies on this computer.
+The loops of a plant other than the helicopter have no pins on the board: all of it flies with the host in the loop.
 """
 
 import argparse
@@ -11,7 +11,6 @@ from records.files import remove_all, write_atomic
 from records.log import save_log
 from records.table import table_text
 from records.verification import verification_text
-from rig.programming.image import FirmwareImage
 from twinlaw.cli import console, options
 from twinlaw.pages.page import page_text
 from twinlaw.pages.run.checks import size_rows, verification_rows
@@ -19,9 +18,9 @@ from twinlaw.pages.run.design import design_heading, design_rows
 from twinlaw.pages.run.report import run_page
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
 from twinlaw.workflows.chain.boards import board_url, connected, fly_board
-from twinlaw.workflows.chain.building import build_image, generate_sources, has_image
+from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import Designed, design_controller, poles_of, roll_off_trade
-from twinlaw.workflows.chain.flying import ChainFlight, fly_host
+from twinlaw.workflows.chain.flying import ChainFlight
 from twinlaw.workflows.chain.verifying import demand, verify_table
 
 
@@ -36,10 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 _LATER = ("verification.json", "run.csv", "run.toml", "report.html", "firmware.elf", "firmware.bin")
 
 
-def _flown(designed: Designed, image: FirmwareImage | None, chosen: argparse.Namespace) -> ChainFlight:
-    """The flight of the image on the emulated board; without one, of the generated C on this computer."""
-    if image is None:
-        return fly_host(designed.bound, designed.table, chosen.arithmetic)
+def _flown(designed: Designed, chosen: argparse.Namespace) -> ChainFlight:
+    """The flight of the image on the emulated board."""
     with connected(designed.table, board_url("emulated", chosen.out / "firmware.elf"), chosen.arithmetic) as client:
         return fly_board(designed.bound, designed.table, client)
 
@@ -52,19 +49,19 @@ def run(chosen: argparse.Namespace) -> int:
     remove_all(out / name for name in _LATER)
     write_atomic(out / "controller.json", table_text(designed.table))
     law = generate_sources(designed.table, chosen.arithmetic, out / "generated")
-    image = build_image(law, out) if has_image(designed.table) else None
+    image = build_image(designed.table, law, out)
     verification = verify_table(
         designed.bound, designed.table, poles_of(designed.report), law, image, arithmetic=chosen.arithmetic
     )
     write_atomic(out / "verification.json", verification_text(verification))
     demand(verification)
-    flight = _flown(designed, image, chosen)
+    flight = _flown(designed, chosen)
     save_log(out / "run.csv", flight.log)
     page = run_page(
         chosen.plant.stem,
         designed.report,
         verification,
-        None if image is None else image.sizes,
+        image.sizes,
         flight.log,
         flight.tracking,
         flight.counters,
@@ -80,11 +77,6 @@ def run(chosen: argparse.Namespace) -> int:
     print()
     print(console.table(tracking_rows(flight.tracking), TRACKING_HEADING))
     print()
-    if image is None:
-        print(
-            "no image: firmware, board and line are of the helicopter's two loops; the generated C has flown on this computer"
-        )
-    else:
-        print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
+    print(console.table(size_rows(image.sizes), ("memory", "bytes", "of")))
     print(f"\n{out / 'report.html'}  table {designed.table.digest[:16]}")
     return 0

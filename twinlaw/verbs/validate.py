@@ -8,11 +8,11 @@ Exit status 1 when a check does not hold.
 import argparse
 
 from controllers import loading
-from design.structure import demand_helicopter
 from records.errors import VerificationFailed
 from records.files import write_atomic
 from records.log import save_log
 from records.validation import validation_text
+from sim.wiring import wiring
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import validation_rows
 from twinlaw.pages.run.tracking import TRACKING_HEADING, tracking_rows
@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Ask, replay, fly, write, and fail where a check does not hold."""
     bound, table = load_bound(chosen.plant), loading.load(chosen.table)[1]
-    demand_helicopter(bound)  # now, and not after the steps that come before the flight
+    wiring(bound, table.loops)  # now, and not after the steps that come before the flight
     url = board_url(chosen.port, chosen.out / "firmware.elf")
     with connected(table, url, chosen.arithmetic, options.modem_lines(chosen)) as client:
         validation = validate_board(client, table, chosen.port, chosen.steps)

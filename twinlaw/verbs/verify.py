@@ -1,5 +1,5 @@
 """Verify a controller table: twin, compiled C and firmware image step by step, bit by bit; bounds; cost on the target.
-The firmware takes a helicopter's table; of any other, twin and compiled C are compared, and there is no cost.
+--chip runs the law on the core of that chip; of one that is not emulated as a whole there is no cost, and no proof of it.
 
 Writes DIR/verification.json, with the generated C and the image that were verified. --log replays what a run log recorded through
 all three as well; a log that another table flew is refused. --proofs adds what the tools of docs/proofs.md prove; one that is
@@ -11,12 +11,14 @@ from pathlib import Path
 
 from codegen.protocol_source import protocol_source
 from controllers.loading import load_scheduled
+from records.board import BOARDS
+from records.errors import BadInput
 from records.files import write_atomic
 from records.protocol import PROTOCOL
 from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import verification_rows
-from twinlaw.workflows.chain.building import build_image, demand_image, generate_sources, has_image
+from twinlaw.workflows.chain.building import build_image, demand_helicopter_loops, generate_sources
 from twinlaw.workflows.chain.designing import table_poles
 from twinlaw.workflows.chain.proving import with_proofs
 from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
@@ -25,10 +27,11 @@ from verification.proofs import Subject
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --table, --arithmetic, --log, --steps, --proofs, --all, --out, --json."""
+    """--plant, --table, --arithmetic, --chip, --log, --steps, --proofs, --all, --out, --json."""
     options.plant(parser)
     options.table(parser)
     options.arithmetic(parser)
+    options.chip(parser)
     parser.add_argument(
         "--log", type=Path, action="append", default=[], metavar="LOG.csv", help="replay it too; may be repeated"
     )
@@ -41,18 +44,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Check, write, tell, and fail where a check does not hold."""
+    board = BOARDS[chosen.chip]
+    if chosen.proofs and not board.is_emulated:
+        remedy = "leave --chip out: all other proofs are of the C, which is the same for every chip"
+        raise BadInput("--proofs", "verify", board.chip, "an emulated chip, whose cycles are counted", remedy)
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
+    if chosen.proofs:
+        demand_helicopter_loops(table, "the proofs' drivers")
     bound = load_bound(chosen.plant)
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
     law = generate_sources(table, chosen.arithmetic, chosen.out / "generated")
-    image = build_image(law, chosen.out) if has_image(table) else None
+    image = build_image(table, law, chosen.out, board)
     verification = verify_table(
         bound, table, poles, law, image, [replay for replay, _ in recorded], chosen.steps, chosen.arithmetic
     )
     if chosen.proofs:
-        demand_image(table, "proofs' image")
-        assert image is not None
         motion = motion_of(bound, table)
         generated = {**law, **protocol_source(PROTOCOL)}
         subject = Subject(table, generated, image.elf, motion, chosen.arithmetic, chosen.all)
@@ -60,6 +67,8 @@ def run(chosen: argparse.Namespace) -> int:
     text = verification_text(verification)
     write_atomic(chosen.out / "verification.json", text)
     print(text if chosen.json else console.table(verification_rows(verification)))
+    if image is not None and not board.is_emulated and not chosen.json:
+        print(f"- {board.chip}: its law ran on the core alone; cycles, peripherals and line are not emulated")
     for _, lacks in recorded:
         if lacks is not None and not chosen.json:
             print(f"- {lacks}")

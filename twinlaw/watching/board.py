@@ -17,7 +17,6 @@ from rig.link.replies import Health
 from twinlaw.watching.source import DEG, Step
 
 HEALTH_EVERY = 100  # samples
-UNASKED = (math.nan, math.nan)
 
 
 class BoardSource:
@@ -36,7 +35,7 @@ class BoardSource:
         self.rows: list[LiveRow] = []
         self._flight, self._table, self._manoeuvre, self._facts = flight, table, manoeuvre_rad, facts
         self._close = close
-        self._reference = UNASKED
+        self._reference = self._unasked
         self._place: int | None = None
         self._samples = 0
         self._health: Health | None = None
@@ -89,7 +88,7 @@ class BoardSource:
         """One sample; a board that is lost is disarmed as far as it still hears."""
         was_armed = self.armed
         if self._place is not None:
-            self._reference = _pair(self._manoeuvre[self._place])
+            self._reference = tuple(self._manoeuvre[self._place].tolist())
             self._place = self._place + 1 if self._place + 1 < len(self._manoeuvre) else None
         try:
             row = self._flight.sample(self._reference)
@@ -129,7 +128,8 @@ class BoardSource:
         self._demand_armed()
         axes = self._table.axes
         if not isinstance(angles_deg, list) or len(angles_deg) != len(axes):
-            raise _refused(repr(angles_deg)[:40], "two angles in deg", "give elevation and azimuth")
+            names = " and ".join(loop.axis for loop in self._table.loops)
+            raise _refused(repr(angles_deg)[:40], f"{len(axes)} angles in deg", f"give {names}")
         wanted = []
         for angle, axis in zip(angles_deg, axes, strict=True):
             low, high = DEG * axis.reference_min_rad, DEG * axis.reference_max_rad
@@ -138,7 +138,7 @@ class BoardSource:
                 raise _refused(f"a reference of {angle!r:.20} deg", f"{low:.0f} to {high:.0f} deg", "stay inside")
             # Between two encoder steps an integrating loop would hunt from one to the other.
             wanted.append(axis.resolution_rad * round(angle / DEG / axis.resolution_rad))
-        self._place, self._reference = None, (wanted[0], wanted[1])
+        self._place, self._reference = None, tuple(wanted)
 
     def _demand_armed(self) -> None:
         if not self.armed:
@@ -156,13 +156,12 @@ class BoardSource:
         with contextlib.suppress(BadInput):
             self.disarm()
 
+    @property
+    def _unasked(self) -> tuple[float, ...]:
+        return (math.nan,) * len(self._table.axes)
+
     def _rest(self) -> None:
-        self._reference, self._place = UNASKED, None
-
-
-def _pair(row: NDArray[Any]) -> tuple[float, float]:
-    psi_rad, phi_rad = row.tolist()
-    return psi_rad, phi_rad
+        self._reference, self._place = self._unasked, None
 
 
 def _refused(got: str, expected: str, remedy: str) -> BadInput:

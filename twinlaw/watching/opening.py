@@ -9,21 +9,24 @@ from logcheck.integrity import as_read, examine
 from records.errors import BadInput
 from records.law_table import FlownTable
 from records.log import load_log, plant_of_log
+from records.protocol import protocol_of
 from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.flight.live import LiveFlight, LoopFlight, time_of
 from rig.flight.live_flying import EmulatedRig, FlyingFlight, RealRig
-from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient
+from rig.link.client import DEFAULT_TIMEOUT_S, BoardClient, demand_pins
 from rig.link.numbers import numbers_of
 from rig.link.port import LEFT_ALONE, ModemLines, open_port
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.manoeuvres import at_rest, flight
+from sim.manoeuvres import at_rest
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import Wiring, wiring
 from twinlaw.watching.board import BoardSource
 from twinlaw.watching.replay import LogSource
 from twinlaw.watching.source import Source, signals
 from twinlaw.workflows.chain.boards import board_url
+from twinlaw.workflows.chain.flying import flight_of
 from twinlaw.workflows.reading import load_bound
 
 
@@ -68,30 +71,35 @@ def _open_board(asked: Watched, bound: BoundPlant) -> BoardSource:
         got = f"a table for {table.plant!r}"
         raise BadInput("controller table", str(asked.table), got, f"one for {bound.plant.name!r}", "give its --plant")
     rig = bound if asked.rig is None else _rig(asked.rig, bound)
-    manoeuvre = flight(bound, table.sample_period_s)
+    wires = wiring(bound, table.loops)
+    manoeuvre_rad = flight_of(bound, table).reference_rad[:, wires.outputs]
+    if asked.fly:
+        demand_pins(table.loops, str(asked.table))
     url = board_url(asked.port, asked.out / "firmware.elf")
     port = open_port(url, timeout_s=DEFAULT_TIMEOUT_S, lines=asked.lines)
-    numbers = numbers_of(table, asked.arithmetic)
-    client = BoardClient.over(port, asked.port, table_digest=table.digest, numbers=numbers)
+    numbers, protocol = numbers_of(table, asked.arithmetic), protocol_of(table.loops)
+    client = BoardClient.over(port, asked.port, table_digest=table.digest, numbers=numbers, protocol=protocol)
     try:
         client.disarm()  # whatever an earlier host has left
-        flying = _flight(asked.fly, client, port, SteppedPlant(rig, at_rest(rig)), table)
+        flying = _flight(asked.fly, client, port, SteppedPlant(rig, at_rest(rig)), table, wires)
     except BaseException:
         client.close()
         raise
     title = "emulated board" if asked.port == "emulated" else f"board at {asked.port}"
     told = {"title": title, "who": _who(asked, client), **signals(bound)}
-    return BoardSource(flying, table, manoeuvre.reference_rad[:: flying.ticks], told, client.close)
+    return BoardSource(flying, table, manoeuvre_rad[:: flying.ticks], told, client.close)
 
 
-def _flight(fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: FlownTable) -> LiveFlight:
+def _flight(
+    fly: bool, client: BoardClient, port: Any, plant: SteppedPlant, table: FlownTable, wires: Wiring
+) -> LiveFlight:
     if not fly:
-        return LoopFlight(client, plant, time_of(port), table.sample_period_s)
-    steps = (table.axes[0].resolution_rad, table.axes[1].resolution_rad)
-    psi, phi = (round(y / step) for y, step in zip(plant.measured(), steps, strict=True))
-    rig = EmulatedRig(port, plant, steps) if isinstance(port, EmulatedSerial) else RealRig()
-    flying = FlyingFlight(client, rig, time_of(port), table.sample_period_s)
-    flying.preset(psi, phi)
+        return LoopFlight(client, plant, wires, time_of(port), table.sample_period_s)
+    steps = tuple(axis.resolution_rad for axis in table.axes)
+    counts = [round(y / step) for y, step in zip(wires.angles(plant.measured()), steps, strict=True)]
+    rig = EmulatedRig(port, plant, wires, steps, table.loops) if isinstance(port, EmulatedSerial) else RealRig()
+    flying = FlyingFlight(client, rig, wires, time_of(port), table.sample_period_s)
+    flying.preset(*counts)
     return flying
 
 

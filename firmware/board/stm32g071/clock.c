@@ -1,5 +1,5 @@
 #include "board.h"
-#include "stm32g071.h"
+#include "chip.h"
 
 /* The serial boot loader hands the chip over with the PLL in use; a PLL that runs cannot be set (RM0444 5.4.4). */
 static void clock_from_hsi(void)
@@ -30,22 +30,4 @@ void clock_start(void)
     RCC->CFGR = RCC_CFGR_SW_PLLRCLK;
     while ((RCC->CFGR & RCC_CFGR_SWS_MASK) != RCC_CFGR_SWS_PLLRCLK) {
     }
-}
-
-/* A Cortex-M0+ has no cycle counter of its own; the system timer runs freely, without its interrupt. */
-void cycle_counter_start(void)
-{
-    SYSTICK->RVR = SYSTICK_MASK;
-    SYSTICK->CVR = 0;
-    SYSTICK->CSR = SYSTICK_CSR_ENABLE | SYSTICK_CSR_CORE_CLOCK;
-}
-
-uint32_t cycle_counter(void)
-{
-    return SYSTICK_MASK - SYSTICK->CVR;
-}
-
-uint32_t cycles_between(uint32_t start, uint32_t end)
-{
-    return (end - start) & SYSTICK_MASK;
 }

@@ -34,7 +34,8 @@ void emulator_execution_counts(machine *m, uint64_t *flash, uint64_t *sram);
 void emulator_exception_counts(machine *m, uint64_t *out);
 uint32_t emulator_resets(machine *m, uint32_t *causes, uint64_t *times_ps);
 
-void emulator_call(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles, call_report *out);
+/* `arguments` are eight words, of which `stacked` go behind the four in registers. */
+void emulator_call(machine *m, uint32_t address, const uint32_t *arguments, uint32_t stacked, uint64_t max_cycles, call_report *out);
 uint32_t emulator_call_many(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles, uint32_t steps,
                             const call_block *inputs, uint32_t input_count, const call_block *outputs, uint32_t output_count,
                             uint32_t *results, uint64_t *cycles, call_report *last);

@@ -27,21 +27,22 @@ static void end(machine *m, const put_aside *kept) {
     attention(m);
 }
 
-static void enter(machine *m, uint32_t address, const uint32_t *arguments) {
+static void enter(machine *m, uint32_t address, const uint32_t *arguments, uint32_t stacked) {
     set_mode(m, 0, 0);
     m->core.primask = 1;
     m->core.active = m->core.pending = 0;
     m->core.sleeping = 0;
     memcpy(m->core.r, arguments, 4 * sizeof(uint32_t));
-    m->core.r[13] &= ~7u;
+    m->core.r[13] = (m->core.r[13] - 4u * stacked) & ~7u;
+    for (uint32_t i = 0; i < stacked; i++) emulator_write(m, m->core.r[13] + 4u * i, (const uint8_t *)&arguments[4u + i], 4u);
     m->core.r[14] = CALL_RETURN | 1u;
     go_to(m, address | 1u);
 }
 
-static call_report call_once(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles) {
+static call_report call_once(machine *m, uint32_t address, const uint32_t *arguments, uint32_t stacked, uint64_t max_cycles) {
     uint32_t mark = m->count.lowest_sp[MAIN_STACK];
     m->stop = (stop_record){0};
-    enter(m, address, arguments);
+    enter(m, address, arguments, stacked);
     uint32_t sp = m->core.r[13];
     counters before = m->count;
     uint64_t start = m->core.now;
@@ -56,9 +57,9 @@ static call_report call_once(machine *m, uint32_t address, const uint32_t *argum
     return report;
 }
 
-void emulator_call(machine *m, uint32_t address, const uint32_t *arguments, uint64_t max_cycles, call_report *out) {
+void emulator_call(machine *m, uint32_t address, const uint32_t *arguments, uint32_t stacked, uint64_t max_cycles, call_report *out) {
     put_aside kept = begin(m);
-    *out = call_once(m, address, arguments, max_cycles);
+    *out = call_once(m, address, arguments, stacked, max_cycles);
     end(m, &kept);
 }
 
@@ -82,7 +83,7 @@ uint32_t emulator_call_many(machine *m, uint32_t address, const uint32_t *argume
     uint32_t step = 0, stack_bytes = 0;
     uint64_t instructions = 0, flash_stalls = 0;
     for (; step < steps && copy_in(m, inputs, input_count, step); step++) {
-        *last = call_once(m, address, arguments, max_cycles);
+        *last = call_once(m, address, arguments, 0, max_cycles);
         if (last->stop_kind != STOP_RETURNED || !copy_out(m, outputs, output_count, step)) break;
         results[step] = last->result, cycles[step] = last->cycles;
         if (last->stack_bytes > stack_bytes) stack_bytes = last->stack_bytes;

@@ -15,9 +15,10 @@ typedef struct {
 } event_piece;
 
 /* Advance one run by h_s through all events, at most MAX_EVENTS of them, after which axes at rest stay so for the rest.
- * `pieces` takes up to MAX_EVENTS + 1 stretches and may be NULL; returns how many there were. */
+ * `known` is the step as if there were no event in it, where somebody has computed that: the state at its end, then all that its stages saw.
+ * `pieces` takes up to MAX_EVENTS + 1 stretches; returns how many there were. Both may be NULL. */
 int events_advance(double *x, double *sign, double *move, double t_s, double h_s, const double *u, const double *c,
-                   event_piece *pieces);
+                   const double *known, event_piece *pieces);
 
 /* What the event of `piece` does to the state and modes at its instant. */
 void events_apply(double *x, double *sign, double *move, double t_s, const double *u, const double *c, event_piece piece);

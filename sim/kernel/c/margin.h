@@ -12,7 +12,7 @@ typedef struct {
     const double *u, *c;
 } moment;
 
-static void torques(const moment *at, const double *x, double t_s, double *torque, double *up, double *down)
+static __attribute__((noinline)) void torques(const moment *at, const double *x, double t_s, double *torque, double *up, double *down)
 {
     double dx[N_STATES];
     model_rates(t_s, x, at->u, at->c, at->body.sign, at->body.move, dx, torque, up, down);
@@ -53,7 +53,7 @@ typedef struct {
     step_stages seen;
 } view;
 
-static void look(const moment *at, double h_s, view *then)
+static __attribute__((noinline)) void look(const moment *at, double h_s, view *then)
 {
     then->h_s = h_s;
     rk4_step(at->t_s, h_s, &at->body, at->u, at->c, then->x, &then->seen);

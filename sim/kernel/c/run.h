@@ -35,10 +35,16 @@ static inline void scatter(const lane_group *group, double *values, int64_t samp
     }
 }
 
-/* Steps of one lane with an event in them are computed alone, by the same code for single and batched runs. */
-static inline void one_lane_events(lane_group *group, int lane, num t_s, num h_s, const num *u, bool settle)
+/* A step that was computed as if there were no event in it. */
+typedef struct {
+    num x[N_STATES];
+    step_stages seen;
+} smooth_step;
+
+/* Steps of one lane with an event in them are computed alone, by the same code for single and batched runs; without a step it settles. */
+static inline void one_lane_events(lane_group *group, int lane, num t_s, num h_s, const num *u, const smooth_step *step)
 {
-    double x[N_STATES], sign[AXES], move[AXES], input[N_INPUTS], c[N_CONSTANTS];
+    double x[N_STATES], sign[AXES], move[AXES], input[N_INPUTS], c[N_CONSTANTS], known[N_STATES + SEEN_NUMBERS];
     plant_body *const body = &group->body;
     for (int i = 0; i < N_STATES; i++)
         x[i] = lane_get(body->x[i], lane);
@@ -50,10 +56,16 @@ static inline void one_lane_events(lane_group *group, int lane, num t_s, num h_s
         input[j] = lane_get(u[j], lane);
     for (int i = 0; i < N_CONSTANTS; i++)
         c[i] = lane_get(group->c[i], lane);
-    if (settle)
+    if (step) {
+        const num *const seen = &step->seen.torque[0][0];
+        for (int i = 0; i < N_STATES; i++)
+            known[i] = lane_get(step->x[i], lane);
+        for (int i = 0; i < SEEN_NUMBERS; i++)
+            known[N_STATES + i] = lane_get(seen[i], lane);
+        events_advance(x, sign, move, lane_get(t_s, lane), lane_get(h_s, lane), input, c, known, 0);
+    } else {
         events_settle(x, sign, move, lane_get(t_s, lane), input, c);
-    else
-        events_advance(x, sign, move, lane_get(t_s, lane), lane_get(h_s, lane), input, c, 0);
+    }
     for (int i = 0; i < N_STATES; i++)
         lane_set(&body->x[i], lane, x[i]);
     for (int a = 0; a < AXES; a++) {
@@ -64,14 +76,14 @@ static inline void one_lane_events(lane_group *group, int lane, num t_s, num h_s
 
 ALWAYS_INLINE void advance(lane_group *group, num t_s, num h_s, const num *u)
 {
-    num x[N_STATES];
-    step_stages seen;
-    rk4_step(t_s, h_s, &group->body, u, group->c, x, &seen);
-    const mask suspect = step_suspect(&group->body, x, h_s, group->c, &seen);
+    smooth_step step;
+    num *const x = step.x;
+    rk4_step(t_s, h_s, &group->body, u, group->c, x, &step.seen);
+    const mask suspect = step_suspect(&group->body, x, h_s, group->c, &step.seen);
     if (N_AXES + N_KINKS > 0 && __builtin_expect(any(suspect), 0)) {
         for (int lane = 0; lane < LANES; lane++)
             if (lane_is(suspect, lane)) {
-                one_lane_events(group, lane, t_s, h_s, u, false);
+                one_lane_events(group, lane, t_s, h_s, u, &step);
                 for (int i = 0; i < N_STATES; i++)
                     lane_set(&x[i], lane, lane_get(group->body.x[i], lane));
             }
@@ -191,7 +203,7 @@ static void run_group(const run_request *request, int64_t first)
             applied[j] = lane_clamp(u[j], group.c[INPUT_LOWER[j]], group.c[INPUT_UPPER[j]]);
         if (sample == 0)
             for (int lane = 0; lane < LANES; lane++)
-                one_lane_events(&group, lane, NUM(t_s), NUM(0.0), applied, true);
+                one_lane_events(&group, lane, NUM(t_s), NUM(0.0), applied, 0);
         if (sample + 1 < request->samples) {
             hold(&group, t_s, request->t_s[sample + 1], applied);
             disturb(&group, sample, request->t_s[sample + 1] - t_s);

@@ -178,7 +178,7 @@ static void advance_with(const context *at, plant_body *body, double t_s, double
     }
     events_settle(body->x, body->sign, body->move, t_s, at->u, at->c);
     next = *body;
-    const int count = events_advance(next.x, next.sign, next.move, t_s, h_s, at->u, at->c, pieces);
+    const int count = events_advance(next.x, next.sign, next.move, t_s, h_s, at->u, at->c, 0, pieces);
     for (int n = 0; n < count; n++) {
         rk4_sensitivity(at, body, pieces[n].t_s, pieces[n].h_s, S);
         if (pieces[n].event == EVENT_NONE)

@@ -18,6 +18,7 @@ typedef struct {
 typedef struct {
     num torque[4][AXES], up[4][AXES], down[4][AXES], start[AXES], end[AXES];
 } step_stages;
+#define SEEN_NUMBERS ((int)(sizeof(step_stages) / sizeof(num)))
 
 ALWAYS_INLINE void rk4_stage(num t_s, const plant_body *body, const num *x, const num *u, const num *c, int stage, num *dx,
                              step_stages *seen)

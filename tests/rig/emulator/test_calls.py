@@ -22,6 +22,9 @@ __attribute__((used, noinline)) uint32_t step(pair *state, const pair *in, pair 
     out->y = in->x - in->y;
     return 7;
 }
+__attribute__((used, noinline)) uint32_t joined(uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t e, uint32_t f) {
+    return ((((a * 10 + b) * 10 + c) * 10 + d) * 10 + e) * 10 + f;
+}
 __attribute__((used, noinline)) uint32_t deep(uint32_t n) {
     volatile uint32_t room[8];
     room[n & 7] = n;
@@ -123,11 +126,17 @@ def test_a_call_that_hangs_or_breaks_says_where(board: EmulatedBoard) -> None:
     assert board.call("divide", 9, 3).result == 3
 
 
+def test_arguments_beyond_the_fourth_go_on_the_stack(board: EmulatedBoard) -> None:
+    assert board.call("joined", 1, 2, 3, 4, 5, 6).result == 123456
+
+
 def test_wrong_symbols_arguments_and_addresses_are_refused(board: EmulatedBoard) -> None:
     with pytest.raises(BadInput, match="no `absent`"):
         board.call("absent")
+    with pytest.raises(BadInput, match="at most 8 words"):
+        board.call("divide", *range(9))
     with pytest.raises(BadInput, match="at most 4 words"):
-        board.call("divide", 1, 2, 3, 4, 5)
+        board.call_many("divide", (1, 2, 3, 4, 5), [], [], 1)
     with pytest.raises(BadInput, match="range inside flash or SRAM"):
         board.read_memory(0x20007FFF, 2)
     with pytest.raises(BadInput, match="5 rows"):

@@ -23,6 +23,7 @@ from sim.bind import BoundPlant, bind
 from sim.loop import fly, live_log
 from sim.manoeuvres import at_rest, hop
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import wiring
 from tests.law_tables import ce150_table
 from tests.soak import SOAK
 
@@ -42,12 +43,15 @@ class Desk:
 
     def loop(self, x0: Any = None) -> LoopFlight:
         plant = SteppedPlant(self.bound, at_rest(self.bound) if x0 is None else x0)
-        return LoopFlight(self.client, plant, time_of(self.port), PERIOD_S)
+        return LoopFlight(self.client, plant, wiring(self.bound, TABLE.loops), time_of(self.port), PERIOD_S)
 
     def flying(self) -> FlyingFlight:
         plant = SteppedPlant(self.bound, at_rest(self.bound))
+        wires = wiring(self.bound, TABLE.loops)
         psi, phi = (round(y / step) for y, step in zip(plant.measured(), STEPS, strict=True))
-        flight = FlyingFlight(self.client, EmulatedRig(self.port, plant, STEPS), time_of(self.port), PERIOD_S)
+        flight = FlyingFlight(
+            self.client, EmulatedRig(self.port, plant, wires, STEPS), wires, time_of(self.port), PERIOD_S
+        )
         flight.preset(psi, phi)
         return flight
 

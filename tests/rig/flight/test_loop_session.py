@@ -25,7 +25,7 @@ def test_a_host_that_stands_still_now_and_then_gets_every_step_once_and_in_order
     # The stand-in law counts its steps in u_T: a step that was left out, or made twice, shows.
     line = paused(0.05)
     session = LoopSession(connect(line), 0.0, 0.0)
-    assert [session.step((0.25, 0.0, 0.0, 0.0)).u_T_V for _ in range(30)] == counted_steps(30)
+    assert [session.step((0.25, 0.0, 0.0, 0.0)).voltages_V[1] for _ in range(30)] == counted_steps(30)
     assert session.losses > 0
 
 

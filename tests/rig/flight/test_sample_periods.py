@@ -17,6 +17,7 @@ from rig.programming.image import build_firmware
 from sim.bind import bind
 from sim.manoeuvres import at_rest
 from sim.runs.stepped import SteppedPlant
+from sim.wiring import wiring
 from tests.law_tables import ce150_table
 from tests.soak import sampled
 
@@ -41,10 +42,10 @@ def test_the_board_ticks_at_the_table_s_period_and_watches_its_host_by_the_clock
     port = open_port(url, timeout_s=0.25)
     with BoardClient.over(port, url, table_digest=table.digest, numbers=numbers_of(table, arithmetic)) as client:
         assert client.identity.sample_period_s == pytest.approx(period_s)
-        plant = SteppedPlant(BOUND, at_rest(BOUND))
+        plant, wires = SteppedPlant(BOUND, at_rest(BOUND)), wiring(BOUND, table.loops)
         steps = (table.axes[0].resolution_rad, table.axes[1].resolution_rad)
         psi, phi = (round(y / step) for y, step in zip(plant.measured(), steps, strict=True))
-        flight = FlyingFlight(client, EmulatedRig(port, plant, steps), time_of(port), period_s)
+        flight = FlyingFlight(client, EmulatedRig(port, plant, wires, steps), wires, time_of(port), period_s)
         flight.preset(psi, phi)
         reference = flight.arm()
         began_s = port.time_s

@@ -21,7 +21,7 @@ def session(port: Any, samples: int) -> list[float]:
     client = connect(port)
     client.arm("LOOP")
     client.reset_law(0.0, 0.0)
-    answers = [client.sample(0.25, 0.0, 0.0, 0.0).u_T_V for _ in range(samples)]
+    answers = [client.sample(0.25, 0.0, 0.0, 0.0).voltages_V[1] for _ in range(samples)]
     client.disarm()
     return answers
 

@@ -3,6 +3,7 @@
 import os
 import pty
 import random
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -89,7 +90,7 @@ def test_endless_noise_without_a_delimiter_ends_too():
 
 
 def test_a_port_that_speaks_another_protocol_says_so():
-    other = PROTOCOL.__class__(PROTOCOL.version + 1, PROTOCOL.constants, PROTOCOL.enumerations, PROTOCOL.messages)
+    other = replace(PROTOCOL, version=PROTOCOL.version + 1)
     line = encode_frame(other, "IDENTIFY", 0, {})
     assert "another protocol" in refusal(lambda: client_over(BoxPort(to_host=lambda _: line))).got
 
@@ -209,8 +210,8 @@ def test_a_flight_streams_references_up_and_telemetry_down():
         seen = client.telemetry()
         assert seen is not None
         assert seen.echo_sequence == number
-        assert seen.psi_ref_rad == pytest.approx(0.01 * k, rel=1e-6)
-        assert seen.u_M_V == pytest.approx(0.1 * k, rel=1e-5)
+        assert seen.references_rad[0] == pytest.approx(0.01 * k, rel=1e-6)
+        assert seen.voltages_V[0] == pytest.approx(0.1 * k, rel=1e-5)
     client.disarm()
     port.tick()
     assert client.telemetry() is None

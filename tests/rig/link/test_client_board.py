@@ -90,13 +90,13 @@ def test_a_flight_on_its_own_encoders_gives_the_bits_of_the_compiled_law(url):
         seen.append(telemetry)
     client.disarm()
     assert port.board.pwm().enabled is False
-    host.reset(seen[0].psi_rad, seen[0].phi_rad)
-    expected = [host.step(t.psi_ref_rad, t.phi_ref_rad, t.psi_rad, t.phi_rad) for t in seen]
-    assert [bits((t.u_M_V, t.u_T_V)) for t in seen] == [bits(answer) for answer in expected]
+    host.reset(*seen[0].angles_rad)
+    expected = [host.step(*t.references_rad, *t.angles_rad) for t in seen]
+    assert [bits(t.voltages_V) for t in seen] == [bits(answer) for answer in expected]
     assert [t.tick - seen[0].tick for t in seen] == list(range(len(seen)))
-    assert np.allclose([t.psi_rad for t in seen], [t.psi_counts * STEP_RAD for t in seen], rtol=1e-6, atol=0.0)
-    assert seen[-1].duty_main_ticks == round(seen[-1].u_M_V * 320)
-    assert len({t.psi_counts for t in seen}) > 10
+    assert np.allclose([t.angles_rad[0] for t in seen], [t.counts[0] * STEP_RAD for t in seen], rtol=1e-6, atol=0.0)
+    assert seen[-1].duties_ticks[0] == round(seen[-1].voltages_V[0] * 320)
+    assert len({t.counts[0] for t in seen}) > 10
 
 
 def test_a_host_that_goes_away_leaves_the_rotors_off(url):

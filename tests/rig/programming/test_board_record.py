@@ -13,9 +13,12 @@ from rig.programming.image import FIRMWARE_DIR, board_folders, linker_script
 
 ROOT = FIRMWARE_DIR.parent
 # Which of the public descriptions is the chip's.
-DESCRIPTIONS = {"STM32G071": ("stm32g0-71_81.xml", "stm32g071rbi6")}
+DESCRIPTIONS = {
+    "STM32G071": ("stm32g0-71_81.xml", "stm32g071rbi6"),
+    "STM32G431": ("stm32g4-31_41.xml", "stm32g431rbt6"),
+}
 # The public description names an interrupt by all that share it.
-SHARED_INTERRUPTS = {"TIM6": "TIM6_DAC_LPTIM1"}
+SHARED_INTERRUPTS = {"STM32G071": {"TIM6": "TIM6_DAC_LPTIM1"}, "STM32G431": {"TIM6": "TIM6_DAC"}}
 
 every_board = pytest.mark.parametrize("board", BOARDS.values(), ids=list(BOARDS))
 
@@ -41,7 +44,9 @@ def signals(board: Board) -> list[tuple[Pin, tuple[str, str, str]]]:
 
 
 def chip_text(board: Board, name: str) -> str:
-    return (board_folders(board)[1] / name).read_text(encoding="utf-8")
+    """A file of the chip's folder, or else of its family's."""
+    _, family, chip = (folder / name for folder in board_folders(board))
+    return (chip if chip.exists() else family).read_text(encoding="utf-8")
 
 
 def defines(text: str) -> dict[str, int]:
@@ -52,19 +57,19 @@ def defines(text: str) -> dict[str, int]:
 @every_board
 def test_the_record_is_that_of_the_public_device_description(board: Board) -> None:
     drivers = described(board)
-    memories = {memory["name"]: memory for memory in drivers["core"]["memory"]}
+    flash, *rams = sorted(drivers["core"]["memory"], key=lambda memory: memory["name"] != "flash")
     positions = {vector["name"]: int(vector["position"]) for vector in drivers["core"]["vector"]}
     assert (board.flash.start, board.flash.size_bytes) == (
-        int(memories["flash"]["start"], 16),
-        int(memories["flash"]["size"]),
+        int(flash["start"], 16),
+        int(flash["size"]),
     )
-    assert (board.ram.start, board.largest_ram_bytes) == (
-        int(memories["sram"]["start"], 16),
-        int(memories["sram"]["size"]),
-    )
+    assert hex(board.ram.start) in {ram["start"] for ram in rams}
+    assert board.largest_ram_bytes == sum(int(ram["size"]) for ram in rams)
     assert board.ram.size_bytes <= board.largest_ram_bytes
     assert board.flash.size_bytes % board.flash_page_bytes == 0
-    assert board.interrupts == {name: positions[SHARED_INTERRUPTS.get(name, name)] for name in board.interrupts}
+    assert board.interrupts == {
+        name: positions[SHARED_INTERRUPTS[board.chip].get(name, name)] for name in board.interrupts
+    }
     assert board.interrupt_count > max(positions.values())
 
 
@@ -126,9 +131,10 @@ def test_the_chips_sources_use_the_peripherals_of_the_record(board: Board) -> No
         assert f"encoder_timer_start(TIM{encoder.timer}, UINT{encoder.bits}_MAX)" in chip_text(board, "encoders.c")
 
 
-def test_registers_and_clock_of_the_STM32G071_are_set_as_its_record_says() -> None:
-    board = STM32G071
-    numbers = defines(chip_text(board, "stm32g071.h"))
+@every_board
+def test_registers_and_clock_are_set_as_the_record_says(board: Board) -> None:
+    numbers = defines(chip_text(board, "chip.h"))
+    numbers.pop("PRIORITY_BITS")
     interrupts = {name.removeprefix("IRQ_"): number for name, number in numbers.items() if name.startswith("IRQ_")}
     assert interrupts == {**board.interrupts, "COUNT": board.interrupt_count}
     clock = chip_text(board, "clock.c")
@@ -142,7 +148,7 @@ def test_registers_and_clock_of_the_STM32G071_are_set_as_its_record_says() -> No
 
 @every_board
 def test_the_linker_script_says_what_the_record_says(board: Board) -> None:
-    text = linker_script(board).read_text(encoding="utf-8")
+    text = linker_script(board).text
     flash, ram, stack = (
         f"{size // 1024}K" for size in (board.flash.size_bytes, board.ram.size_bytes, board.stack_reserve_bytes)
     )

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from identification.proof import bench as fit_bench
-from sim.bench import comparison, compiled_peers
+from sim.bench import comparison, compiled_peers, peak
 from tests.angles import few_angles
 from twinlaw.command import main
 from twinlaw.verbs import bench as verb
@@ -17,6 +17,7 @@ def quick(monkeypatch):
     for name, value in {"SECONDS_PER_TOOL": 0.0, "SHORTEST_S": 0.0, "SHORT_S": 0.2, "BATCH": 8}.items():
         monkeypatch.setattr(comparison, name, value)
     monkeypatch.setattr(verb, "BOARD_STEPS", 50)
+    monkeypatch.setattr(peak, "ROUNDS", 1000)
     monkeypatch.setattr(fit_bench, "DURATION_S", 6.0)
     monkeypatch.setattr(compiled_peers, "module", lambda name: None)  # as where no optional tool is installed
 
@@ -44,7 +45,13 @@ def test_it_tells_a_person_and_a_program_ratios_errors_speeds_and_how_to_install
         monkeypatch.setattr(module, name, once(getattr(module, name)))
     assert main(["bench"]) == 0
     said = capsys.readouterr().out
-    for words in ("kernel is faster by", "SciPy solve_ivp", "rad by step halving", "million instructions / CPU s"):
+    for words in (
+        "kernel is faster by",
+        "SciPy solve_ivp",
+        "rad by step halving",
+        "million instructions / CPU s",
+        "of the processor's peak",
+    ):
         assert words in said
     assert "ten parameters from 60 s" in said
     assert "not installed: CasADi generated C, numba, diffrax, diffrax vmap" in said
@@ -54,6 +61,9 @@ def test_it_tells_a_person_and_a_program_ratios_errors_speeds_and_how_to_install
     said = json.loads(capsys.readouterr().out)
     assert said["not_installed"] == list(compiled_peers.PEERS)
     assert all(row["note"] for row in said["closed_loop"])
+    processor = said["processor"]
+    assert 500 < processor["operations"] < 1500
+    assert 0.0 < processor["single"] < processor["side_by_side"] * 8
     assert max(said["step_accuracy"]["true_rad"]) < 1e-7
     assert said["emulated_board"]["instructions"] > 50 * 1000
     assert {row["tool"] for row in said["fits"]} >= {

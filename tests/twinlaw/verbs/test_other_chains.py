@@ -1,4 +1,4 @@
-"""The forward chain on plants that are no helicopter, as far as this computer: design, generate, verify, simulate."""
+"""The forward chain on plants that are no helicopter: design, generate, verify, simulate, and `run` all the way to the board."""
 
 import json
 from pathlib import Path
@@ -32,12 +32,14 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert main(["simulate", "--plant", plant, "--table", table, *chosen]) == 0
     found: dict[str, Any] = json.loads((tmp_path / "verification.json").read_text())
     assert found["passed"]
-    assert found["target"] == []
-    assert [row["mismatches"] for row in found["equality"]] == [0, 0]
+    assert [row["mismatches"] for row in found["equality"]] == [0, 0, 0, 0]
+    assert [row["cycles_max"] <= row["cycles_bound"] for row in found["target"]] == [True, True]
     assert {row["axis"] for row in found["poles"]} == {
         key for key, entry in WISHES[name].items() if isinstance(entry, dict)
     }
-    assert sorted(path.name for path in (tmp_path / "generated").iterdir()) == ["law.c", "law.h", "law_self_test.c"]
+    assert sorted(path.name for path in (tmp_path / "generated").iterdir()) == [
+        "law.c", "law.h", "law_self_test.c", "protocol.c", "protocol.h",
+    ]  # fmt: skip
     flown = json.loads(capsys.readouterr().out.splitlines()[-1])
     assert flown["left"] == []
     assert flown["quality"]["colour"] == "green"
@@ -46,12 +48,32 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert log.table_digest == found["table_digest"]
 
 
-def test_a_table_of_other_loops_has_no_image_and_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_table_of_other_loops_has_an_image_and_a_library_but_none_of_the_helicopter_s_proofs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plant, table = str(plant_file("aeroshield", tmp_path)), str(tmp_path / "controller.json")
     assert main(["design", "--plant", plant, "--out", str(tmp_path)]) == 0
+    assert main(["build", "--table", table, "--out", str(tmp_path / "image")]) == 0
+    assert "MEASUREMENT input.theta_rad" in (tmp_path / "image" / "firmware.a2l").read_text()
+    assert main(["generate", "--as", "arduino", "--table", table, "--out", str(tmp_path)]) == 0
+    example = next((tmp_path / "arduino" / "examples").rglob("*.ino")).read_text()
+    assert "law_reset(&law, 0);" in example
+    assert "law_duty_arm(output.u_V)" in example
     capsys.readouterr()
-    for asked in (["build"], ["generate", "--as", "arduino"]):
-        assert main([*asked, "--table", table, "--out", str(tmp_path / "image")]) == 2
-        assert "are of the helicopter's two loops" in capsys.readouterr().err
+    assert main(["verify", "--proofs", "--plant", plant, "--table", table, "--out", str(tmp_path)]) == 2
+    assert "are of the helicopter's two loops" in capsys.readouterr().err
     assert main(["simulate", "--plant", "plants/emps.toml", "--table", table, "--out", str(tmp_path)]) == 2
     assert "a plant without the output theta_rad" in capsys.readouterr().err
+
+
+@pytest.mark.soak
+def test_the_plant_that_new_plant_writes_is_flown_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Truth: 100 000 steps, no bit differs; the image has flown, a frame a sample and one to begin with."""
+    assert main(["new-plant", "my_arm", "--out", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert main(["run", "--plant", str(tmp_path / "plant.toml"), "--out", str(tmp_path / "b"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["passed"]
+    found = json.loads((tmp_path / "b" / "verification.json").read_text())
+    assert all(row["steps"] >= 100_000 and row["mismatches"] == 0 for row in found["equality"])
+    assert len(found["equality"]) == 4
+    assert (tmp_path / "b" / "firmware.bin").is_file()

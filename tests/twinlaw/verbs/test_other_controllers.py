@@ -18,7 +18,7 @@ def test_its_image_starts_on_the_board_names_its_table_and_answers_bit_for_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Truth: the host's own C over 750 steps; of all rows the fuzzy law takes longest, near half a second for its self-test alone.
-    monkeypatch.setattr(boards, "flight", hop)
+    monkeypatch.setattr(boards, "flight_of", lambda bound, table: hop(bound, table.sample_period_s))
     out, table = _built(tmp_path)
     assert main(["validate", "--plant", PLANT, "--steps", "300", *table, *out]) == 0
     validation = json.loads((tmp_path / "validation.json").read_text())

@@ -239,7 +239,9 @@ def test_the_same_plant_gives_the_same_bytes_again(out: Path, unfinished: Path, 
 def test_validate_checks_the_emulated_board(
     out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(boards, "flight", hop)  # `make run` has flown the whole flight through the same line
+    monkeypatch.setattr(
+        boards, "flight_of", lambda bound, table: hop(bound, table.sample_period_s)
+    )  # `make run` has flown the whole flight through the same line
     arguments = ["validate", "--plant", str(PLANT), "--table", str(out / "controller.json"), "--out", str(out)]
     assert main([*arguments, "--steps", "300", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)

@@ -34,25 +34,24 @@ def run_page(
     plant: str,
     report: DesignReport,
     verification: Verification,
-    sizes: ImageSizes | None,
+    sizes: ImageSizes,
     log: RunLog,
     tracking: Sequence[Tracking],
     counters: Mapping[str, int],
     trade: Sequence[TradePoint],
 ) -> Page:
-    """The whole page; without an image's `sizes` it was the generated C on this computer that flew."""
+    """The whole page: the flight of the image, its verification, and the design."""
     failures = verification.failures
     quality = flight_quality(tracking, [flag(text, Colour.RED) for text in failures])
-    flown = "generated C" if sizes is None else "firmware image"
-    verdict = f"Every check holds, and the {flown} has flown." if not failures else "; ".join(failures)
+    verdict = "Every check holds, and the firmware image has flown." if not failures else "; ".join(failures)
     return Page(
-        title=f"{plant}: from its equations to a flight of the {'law' if sizes is None else 'firmware'}",
+        title=f"{plant}: from its equations to a flight of the firmware",
         verdict=verdict,
         colour=quality.colour,
         why=quality_sentence(quality),
         facts=(("Controller table", verification.table_digest),),
         sections=(
-            _flight(log, tracking, None if sizes is None else counters),
+            _flight(log, tracking, counters),
             _verified(verification, sizes),
             *design_sections(report),
             *roll_off_section(trade),
@@ -87,39 +86,23 @@ def _told(column: str) -> str:
     return _NAMES.get(column, column.rsplit("_", 1)[0])
 
 
-def _in_loop(counters: Mapping[str, int] | None) -> tuple[str, str]:
-    """What flew, and what the board's line counted."""
-    plant = "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the"
-    if counters is None:
-        return (
-            f"{plant} generated C, compiled for this computer.",
-            "There is no image: firmware and line are of the helicopter's two loops.",
-        )
+def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int]) -> Section:
     faults = [f"{name} {count}" for name, count in counters.items() if count and name != "frames_accepted"]
-    return (
-        f"{plant} unmodified firmware image on the emulated STM32G071: angles go to the board through its serial line, voltages come "
-        "back, one frame each per sample.",
-        f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
-    )
-
-
-def _flight(log: RunLog, tracking: Sequence[Tracking], counters: Mapping[str, int] | None) -> Section:
-    flown, counted = _in_loop(counters)
     return Section(
         "Flight",
         (
-            flown,
+            "The nonlinear plant, with encoder steps, dry friction and stops, in the loop with the unmodified firmware image on the "
+            "emulated STM32G071: angles go to the board through its serial line, voltages come back, one frame each per sample.",
             "Overshoot and steady error are of an axis' own steps, as its encoder shows them, while the other axis rests; beside "
             "them how far the other axis' steps push it out of rest, how far its input travels, and how often that turns round.",
-            counted,
+            f"The board accepted {counters['frames_accepted']} frames and counted {', '.join(faults) or 'no fault of any kind'}.",
         ),
         (Table(tracking_rows(tracking), TRACKING_HEADING),),
         (flight_plot(log),),
     )
 
 
-def _verified(verification: Verification, sizes: ImageSizes | None) -> Section:
-    memory = () if sizes is None else (Table(size_rows(sizes), ("memory", "bytes", "of")),)
+def _verified(verification: Verification, sizes: ImageSizes) -> Section:
     return Section(
         "Verification",
         (
@@ -128,6 +111,6 @@ def _verified(verification: Verification, sizes: ImageSizes | None) -> Section:
         ),
         (
             Table(verification_rows(verification), ("check", "figures", "")),
-            *memory,
+            Table(size_rows(sizes), ("memory", "bytes", "of")),
         ),
     )

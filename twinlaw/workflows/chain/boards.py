@@ -4,9 +4,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from controllers import loading
-from design.structure import demand_helicopter
 from records.errors import BadInput
 from records.law_table import FlownTable
+from records.protocol import protocol_of
 from records.validation import Validation
 from rig.flight.controller import BoardController
 from rig.flight.line_law import LineLaw
@@ -16,11 +16,11 @@ from rig.link.client import BoardClient
 from rig.link.numbers import numbers_of
 from rig.link.port import LEFT_ALONE, ModemLines
 from sim.bind import BoundPlant
-from sim.loop import fly
-from sim.manoeuvres import flight
+from sim.loop import Wired, fly
+from sim.wiring import wiring
 from twinlaw.cli.console import stage, tally
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
-from twinlaw.workflows.chain.flying import ChainFlight, tracked
+from twinlaw.workflows.chain.flying import ChainFlight, flight_of, tracked
 from verification.equality import compare
 from verification.host_law import HostLaw
 from verification.stateless import Stateless
@@ -43,18 +43,24 @@ def demand_image(image: Path) -> None:
 
 def connected(table: FlownTable, url: str, arithmetic: str = "float32", lines: ModemLines = LEFT_ALONE) -> BoardClient:
     """The board at `url`, which nobody else can take until it is closed; raises BadInput for another table or arithmetic."""
-    return BoardClient.connect(url, table_digest=table.digest, numbers=numbers_of(table, arithmetic), lines=lines)
+    return BoardClient.connect(
+        url,
+        table_digest=table.digest,
+        numbers=numbers_of(table, arithmetic),
+        protocol=protocol_of(table.loops),
+        lines=lines,
+    )
 
 
 def validate_board(client: BoardClient, table: FlownTable, port: str, steps: int) -> Validation:
     """Identity, self-test and `steps` replayed steps of a board against the host's C."""
     arithmetic = client.numbers.name
-    host = HostLaw(loading.generate(table, arithmetic), arithmetic)
+    host = HostLaw(loading.generate(table, arithmetic), arithmetic, loops=table.loops)
     mismatches = client.self_test()
     stimuli = ARITHMETICS[arithmetic].sequences(table, steps)
     with tally("replaying steps on the board", sum(stimulus.steps for stimulus in stimuli)) as tell:
         law = LineLaw(client, lambda: tell(False, False))
-        equality = compare(Stateless(host), law, stimuli).equality
+        equality = compare(Stateless(host), law, stimuli, table.loops).equality
     counters = client.counters()  # before the host falls silent on purpose
     with stage("measuring round trips and ticks"):
         timing = line_timing(client, table.sample_period_s)
@@ -75,12 +81,11 @@ def validate_board(client: BoardClient, table: FlownTable, port: str, steps: int
 def fly_board(bound: BoundPlant, table: FlownTable, client: BoardClient) -> ChainFlight:
     """Fly the plant with the board in the loop, angles to the board and voltages back, one frame each per sample.
 
-    Raises BadInput for a plant without a helicopter's columns.
+    Raises BadInput for a plant without the columns of the table's loops.
     """
-    demand_helicopter(bound)
-    whole = flight(bound, table.sample_period_s)
+    wires, whole = wiring(bound, table.loops), flight_of(bound, table)
     with tally("flying the firmware through its serial line", whole.t_s.size) as tell:
-        controller = BoardController(client, lambda: tell(False, False))
+        controller = Wired(BoardController(client, lambda: tell(False, False)), wires)
         log = fly(bound, controller, whole, table_digest=table.digest)
     client.disarm()
     return ChainFlight(log, tracked(log), client.counters())

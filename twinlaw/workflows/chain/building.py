@@ -3,24 +3,25 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from codegen.law import demand_drivable
 from codegen.library import library
 from codegen.prefix import prefixed
 from codegen.protocol_source import protocol_source
 from codegen.traceability.a2l import ImageMap, a2l_text, under
 from controllers import loading
+from records.board import STM32G071, Board
 from records.errors import BadInput
 from records.files import write_atomic
 from records.law_table import FlownTable
 from records.loops import LOOPS
-from records.protocol import PROTOCOL
+from records.protocol import protocol_of
 from records.table import ControllerTable
 from rig.programming.image import FirmwareImage, build_firmware
 from toolchain.dwarf import variable_members
-from toolchain.elf import image_symbols
+from toolchain.elf import image_board, image_symbols
 from twinlaw.cli.console import stage
 
 _WHERE = "firmware.elf"
-_LIMITS = ("elevation_limits", "azimuth_limits")
 
 
 def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mapping[str, str]:
@@ -33,22 +34,17 @@ def generate_sources(table: FlownTable, arithmetic: str, folder: Path) -> Mappin
 
 
 def _protocol(table: FlownTable) -> Mapping[str, str]:
-    """The line's texts, which carry the helicopter's two loops; none for other loops."""
-    return protocol_source(PROTOCOL) if table.loops == LOOPS else {}
+    """The line's texts, which carry what the table's loops say."""
+    return protocol_source(protocol_of(table.loops))
 
 
-def has_image(table: FlownTable) -> bool:
-    """Whether the firmware takes a law: its path and its line are of the helicopter's two loops."""
-    return table.loops == LOOPS
-
-
-def demand_image(table: FlownTable, what: str = "image") -> None:
-    """Raise BadInput for a table whose law the firmware does not take; `what` is what was asked for."""
-    if not has_image(table):
+def demand_helicopter_loops(table: FlownTable, what: str) -> None:
+    """Raise BadInput for a table of other loops than the helicopter's; `what` is what was asked for."""
+    if table.loops != LOOPS:
         names = ", ".join(loop.axis for loop in table.loops)
-        expected = f"elevation and azimuth: {what}, board and line are of the helicopter's two loops"
-        remedy = "`generate`, `verify` and `simulate` take this table; its law is C for firmware of your own"
-        raise BadInput(f"loops of the {what}", f"controller table {table.digest[:16]}", names, expected, remedy)
+        expected = f"elevation and azimuth: {what} are of the helicopter's two loops"
+        remedy = "leave them out; all else of `verify` takes this table"
+        raise BadInput(f"loops of {what}", f"controller table {table.digest[:16]}", names, expected, remedy)
 
 
 def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix: str, kind: str | None) -> list[Path]:
@@ -57,19 +53,21 @@ def generate_elsewhere(table: FlownTable, arithmetic: str, folder: Path, prefix:
     Returns the files. Raises BadInput for a prefix that cannot begin a name in C.
     """
     with stage("generating C"):
-        if kind is not None:
-            demand_image(table, "library")  # its example reads two encoders and drives two motors
         texts = {**loading.generate(table, arithmetic), **_protocol(table)}
-        files = prefixed(texts, prefix) if kind is None else library(kind, texts, prefix)
+        files = prefixed(texts, prefix) if kind is None else library(kind, texts, prefix, table.loops)
         for name, text in files.items():
             write_atomic(folder / name, text)
     return [folder / name for name in sorted(files)]
 
 
-def build_image(law: Mapping[str, str], folder: Path) -> FirmwareImage:
-    """Compile and link the firmware around the law; leaves firmware.elf and firmware.bin in `folder`."""
-    with stage("building the firmware for the STM32G071"):
-        return build_firmware(law, folder)
+def build_image(table: FlownTable, law: Mapping[str, str], folder: Path, board: Board = STM32G071) -> FirmwareImage:
+    """Compile and link the firmware of `board` around the table's law; leaves firmware.elf and firmware.bin in `folder`.
+
+    Raises BadInput for voltages that the drivers on its pins cannot give.
+    """
+    demand_drivable(table)
+    with stage(f"building the firmware for the {board.chip}"):
+        return build_firmware(law, folder, board=board, loops=table.loops)
 
 
 def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
@@ -77,9 +75,11 @@ def image_a2l(table: ControllerTable, arithmetic: str, elf: bytes) -> str:
     symbols = image_symbols(elf, _WHERE)
     limits = [
         member
-        for name in _LIMITS
+        for name in (f"{loop.axis}_limits" for loop in table.loops)
         if name in symbols  # a law whose limits are part of the code has no place for them
         for member in under(name, variable_members(elf, _WHERE, name))
     ]
     signals = variable_members(elf, _WHERE, "main.path")
-    return a2l_text(table, arithmetic, ImageMap(signals, limits, symbols["LAW_TABLE_DIGEST"].address))
+    return a2l_text(
+        table, arithmetic, ImageMap(image_board(elf) or STM32G071, signals, limits, symbols["LAW_TABLE_DIGEST"].address)
+    )

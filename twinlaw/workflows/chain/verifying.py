@@ -18,11 +18,11 @@ from replay.firmware import CLEARED
 from replay.flight import has_replayable_columns
 from replay.stretches import replay_stretches
 from rig.emulator.board import EmulatedBoard
+from rig.flight.core_law import CoreLaw
 from rig.flight.target_law import TargetLaw
 from rig.programming.image import FirmwareImage, build_firmware
 from sim.bind import BoundPlant
 from sim.columns import log_columns
-from sim.kernel.law import is_kernel_s
 from twinlaw.cli.console import stage
 from twinlaw.workflows.chain.arithmetics import ARITHMETICS
 from twinlaw.workflows.reading import load_known_log
@@ -44,21 +44,18 @@ def verify_table(
     table: ControllerTable,
     poles: Sequence[PoleMigration],
     law: Mapping[str, str],
-    image: FirmwareImage | None,
+    image: FirmwareImage,
     recorded: Sequence[Replay] = (),
     steps: int = STEPS,
     arithmetic: str = "float32",
 ) -> Verification:
-    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`.
-
-    Without an image, which the firmware makes of a helicopter's table alone, those on this computer.
-    """
+    """All checks of one table in every arithmetic; `law`, `image` and the `recorded` logs are in `arithmetic`."""
     checks = {arithmetic: _check(bound, table, arithmetic, law, image, recorded, steps)}
     for other in ARITHMETICS:
         if other not in checks:
             texts = generate_law(table, other)
             with stage(f"building the firmware in {other} as well"):
-                built = None if image is None else build_firmware(texts)
+                built = build_firmware(texts, board=image.board, loops=table.loops)
             checks[other] = _check(bound, table, other, texts, built, (), steps)
     ordered = [checks[name] for name in ARITHMETICS]
     return Verification(
@@ -87,28 +84,36 @@ def _check(
     table: ControllerTable,
     arithmetic: str,
     law: Mapping[str, str],
-    image: FirmwareImage | None,
+    image: FirmwareImage,
     recorded: Sequence[Replay],
     steps: int,
 ) -> _Check:
     """Twin, host and target step by step over hostile and `recorded` inputs, bounds, cost."""
     chosen, loops = ARITHMETICS[arithmetic], table.loops
     twin, host = chosen.twin(table), HostLaw(law, arithmetic, loops=loops)
-    target = None if image is None else TargetLaw(EmulatedBoard(image.elf), arithmetic, state_words(table))
+    target = _on_target(image, arithmetic, table)
     stimuli = (*chosen.stimuli(table, steps), *(replay.stimulus for replay in recorded))
-    pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), *([(host, target)] if target else [])]
+    pairs: list[tuple[BatchStepper, BatchStepper]] = [(twin, host), (host, target)]
     equality = [equal_steps(one, other, stimuli, loops) for one, other in pairs]
     replayed = (replayed_equality(replay, host) for replay in recorded)
     equality += [row for row in replayed if row is not None]
     with stage(f"proving a bound on rounding in {arithmetic}"):
         rounding = chosen.bound(table, motion_of(bound, table))
-    tests = [("host", host.self_test()), *([("target", target.self_test())] if target else [])]
+    tests = [("host", host.self_test()), ("target", target.self_test())]
     return _Check(
         equality=tuple(equality),
         self_tests=tuple(SelfTest(place, arithmetic, mismatches) for place, mismatches in tests),
         rounding=rounding,
-        cost=None if image is None or target is None else _cost(table, arithmetic, image, target),
+        cost=_cost(table, arithmetic, image, target) if isinstance(target, TargetLaw) else None,
     )
+
+
+def _on_target(image: FirmwareImage, arithmetic: str, table: ControllerTable) -> TargetLaw | CoreLaw:
+    """The image's law on the emulated board, or on the core alone of a chip that is not emulated."""
+    words = state_words(table)
+    if image.board.is_emulated:
+        return TargetLaw(EmulatedBoard(image.elf), arithmetic, words, table.loops)
+    return CoreLaw(image, arithmetic, words, len(table.loops))
 
 
 def _cost(table: ControllerTable, arithmetic: str, image: FirmwareImage, target: TargetLaw) -> TargetCost:
@@ -160,7 +165,7 @@ def recorded_replay(
     """
     log = load_known_log(path, bound)
     replay = replay_of(log, table, path, arithmetic)
-    if replay.sent is None or not has_replayable_columns(log) or not is_kernel_s(table):
+    if replay.sent is None or not has_replayable_columns(log, table):
         return replay, None
     begins = None
     if log.columns == log_columns(bound.model):

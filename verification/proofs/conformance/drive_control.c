@@ -202,6 +202,18 @@ static void stand_still(bench *self, uint32_t psi_word, uint32_t phi_word, bool 
     }
 }
 
+/* What ticks of another sample period bring: none of the watch's periods, one begun before, a line that is still busy. */
+static void odd_ticks(bench *self)
+{
+    start(self);
+    arm(self, PROTOCOL_MODE_FLYING, 0u);
+    tick(self, 0, 0, 1u);
+    tick(self, 0, 0, 0u);
+    self->path.watched_us = PROTOCOL_WATCH_PERIOD_US;
+    path_seal(&self->path);
+    tick(self, 0, 0, 1u);
+}
+
 /* Motors at full drive either way, which not every table's law asks for. */
 static void watch_alone(int32_t main_ticks, int32_t tail_ticks)
 {
@@ -320,6 +332,7 @@ int main(void)
     stand_still(&self, low, low, false, true);
     stand_still(&self, low, low, true, false);
     stand_still(&self, 0u, low, true, true);
+    odd_ticks(&self);
     watch_alone((int32_t)LAW_PWM_TICKS, 0);
     watch_alone(-(int32_t)LAW_PWM_TICKS, 0);
     watch_alone(0, (int32_t)LAW_PWM_TICKS);

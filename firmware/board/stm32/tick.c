@@ -1,6 +1,6 @@
 #include "board.h"
 #include "interrupts.h"
-#include "stm32g071.h"
+#include "chip.h"
 #include "wiring.h"
 
 #define COUNTS_PER_US (BOARD_CLOCK_HZ / 1000000u)
@@ -14,7 +14,7 @@ void TIM6_Handler(void);
 void tick_start(uint32_t period_us)
 {
     tick_period_us = period_us;
-    RCC->APBENR1 |= RCC_APBENR1_TIM6;
+    clock_to_tick();
     TIM6->PSC = COUNTS_PER_US - 1u;
     TIM6->ARR = period_us - 1u;
     TIM6->EGR = TIM_EGR_UG;

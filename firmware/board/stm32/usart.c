@@ -1,7 +1,7 @@
 #include "board.h"
 #include "interrupts.h"
 #include "protocol.h"
-#include "stm32g071.h"
+#include "chip.h"
 #include "wiring.h"
 
 #define RX_ROOM 512u /* bytes; the law's step lasts 30 bytes of line time */
@@ -27,7 +27,7 @@ void USART2_Handler(void);
 
 void usart_start(void)
 {
-    RCC->APBENR1 |= RCC_APBENR1_USART2;
+    clock_to_line();
     pin_alternate(PORT_A, TRANSMIT_PIN, LINE_FUNCTION, false);
     pin_alternate(PORT_A, RECEIVE_PIN, LINE_FUNCTION, true); /* an open line reads as idle */
     USART2->BRR = (BOARD_CLOCK_HZ + PROTOCOL_BAUD_RATE / 2u) / PROTOCOL_BAUD_RATE;

@@ -1,5 +1,5 @@
 #include "board.h"
-#include "stm32g071.h"
+#include "chip.h"
 
 /* 32 kHz / 16 = 2 kHz. */
 #define START_RELOAD 4095u /* 2 s: an oscillator that never gets ready, or a self-test without end, starts the board anew */

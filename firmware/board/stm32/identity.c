@@ -1,6 +1,6 @@
 #include "board.h"
 #include "protocol.h"
-#include "stm32g071.h"
+#include "chip.h"
 
 /* Kept over a reset; the section is not cleared at start-up. */
 __attribute__((section(".noinit"))) static uint32_t resets_since_power_on;

@@ -1,5 +1,5 @@
 #include "board.h"
-#include "stm32g071.h"
+#include "chip.h"
 
 static gpio_registers *registers_of(pin_port port)
 {
@@ -15,8 +15,7 @@ static void set_field(volatile uint32_t *at, uint32_t index, uint32_t width, uin
 
 void pins_start(void)
 {
-    RCC->IOPENR |= RCC_IOPENR_GPIOA | RCC_IOPENR_GPIOB;
-    (void)RCC->IOPENR; /* two clocks until the port answers, RM0444 5.2.16 */
+    clock_to_pins();
 }
 
 void pin_alternate(pin_port port, uint32_t pin, uint32_t function, bool pull_up)

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "stm32g071.h"
+#include "chip.h"
 
 #define PRIORITY_USART 0u
 #define PRIORITY_TICK 3u
@@ -16,8 +16,8 @@ _Static_assert(PRIORITY_USART < PRIORITY_TICK, "the tick must not starve the ser
 static inline void interrupt_start(uint32_t number, uint32_t priority)
 {
     const uint32_t shift = 8u * (number & 3u);
-    NVIC_IPR[number >> 2] = (NVIC_IPR[number >> 2] & ~(0xffu << shift)) | (priority << (shift + 6u));
-    NVIC_ISER = BIT(number);
+    NVIC_IPR[number >> 2] = (NVIC_IPR[number >> 2] & ~(0xffu << shift)) | (priority << (shift + 8u - PRIORITY_BITS));
+    NVIC_ISER[number >> 5] = BIT(number & 31u);
 }
 
 static inline void interrupts_off(void)

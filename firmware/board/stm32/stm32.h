@@ -1,74 +1,23 @@
 /*
- * The registers of the STM32G071 that this firmware uses, and no others.
+ * The registers that the chips of this family have at the same place, and that this firmware uses; what differs is in chip.h.
  *
- * Sections are those of the reference manual RM0444 (STM32G0x1), of PM0223 for the core. Bit names are the manual's.
- * Interrupt numbers are compared with the public device description in the tests.
+ * Sections are those of the reference manual RM0444 (STM32G0x1), of PM0223 for the core; RM0440 (STM32G4) and PM0214 describe the
+ * same registers. Bit names are RM0444's.
  */
-#ifndef STM32G071_H
-#define STM32G071_H
+#ifndef STM32_H
+#define STM32_H
 
 #include <stddef.h>
 #include <stdint.h>
 
 #define BIT(n) (1u << (n))
 
-/* Interrupt numbers, RM0444 12.3, table of vectors. */
-#define IRQ_TIM6 17u
-#define IRQ_USART2 28u
-#define IRQ_COUNT 32u
-
-/* Reset and clock control, RM0444 5.4. */
-typedef struct {
-    volatile uint32_t CR;             /* 0x00, 5.4.1 */
-    volatile uint32_t ICSCR;          /* 0x04 */
-    volatile uint32_t CFGR;           /* 0x08, 5.4.3 */
-    volatile uint32_t PLLCFGR;        /* 0x0c, 5.4.4 */
-    uint32_t unused_10[9];
-    volatile uint32_t IOPENR;         /* 0x34, 5.4.13 */
-    volatile uint32_t AHBENR;         /* 0x38 */
-    volatile uint32_t APBENR1;        /* 0x3c, 5.4.15 */
-    volatile uint32_t APBENR2;        /* 0x40, 5.4.16 */
-    uint32_t unused_44[7];
-    volatile uint32_t CSR;            /* 0x60, 5.4.24 */
-} rcc_registers;
-_Static_assert(offsetof(rcc_registers, IOPENR) == 0x34, "RCC layout");
-_Static_assert(offsetof(rcc_registers, CSR) == 0x60, "RCC layout");
-#define RCC ((rcc_registers *)0x40021000u)
-
-#define RCC_CR_HSION BIT(8)
-#define RCC_CR_HSIRDY BIT(10)
-#define RCC_CR_HSIDIV_MASK (7u << 11)
-#define RCC_CR_PLLON BIT(24)
-#define RCC_CR_PLLRDY BIT(25)
-#define RCC_CFGR_SW_HSISYS 0u
-#define RCC_CFGR_SW_PLLRCLK 2u
-#define RCC_CFGR_SWS_MASK (7u << 3)
-#define RCC_CFGR_SWS_HSISYS (0u << 3)
-#define RCC_CFGR_SWS_PLLRCLK (2u << 3)
-#define RCC_PLLCFGR_PLLSRC_HSI16 2u
-#define RCC_PLLCFGR_PLLM_1 (0u << 4)
-#define RCC_PLLCFGR_PLLN(n) ((uint32_t)(n) << 8)
-#define RCC_PLLCFGR_PLLREN BIT(28)
-#define RCC_PLLCFGR_PLLR_2 (1u << 29)
-#define RCC_IOPENR_GPIOA BIT(0)
-#define RCC_IOPENR_GPIOB BIT(1)
-#define RCC_APBENR1_TIM2 BIT(0)
-#define RCC_APBENR1_TIM3 BIT(1)
-#define RCC_APBENR1_TIM6 BIT(4)
-#define RCC_APBENR1_USART2 BIT(17)
-#define RCC_APBENR2_TIM1 BIT(11)
+/* Causes of a reset, RM0444 5.4.24; bit 27 is BORRSTF in RM0440. */
 #define RCC_CSR_RMVF BIT(23)
 #define RCC_CSR_PINRSTF BIT(26)
 #define RCC_CSR_PWRRSTF BIT(27)
 #define RCC_CSR_SFTRSTF BIT(28)
 #define RCC_CSR_IWDGRSTF BIT(29)
-
-/* Flash access control, RM0444 3.7.1. */
-#define FLASH_ACR (*(volatile uint32_t *)0x40022000u)
-#define FLASH_ACR_LATENCY_MASK 7u
-#define FLASH_ACR_LATENCY_2 2u
-#define FLASH_ACR_PRFTEN BIT(8)
-#define FLASH_ACR_ICEN BIT(9)
 
 /* General purpose pins, RM0444 7.4. */
 typedef struct {
@@ -83,8 +32,6 @@ typedef struct {
     volatile uint32_t AFR[2];  /* 0x20, 7.4.9 */
 } gpio_registers;
 _Static_assert(offsetof(gpio_registers, AFR) == 0x20, "GPIO layout");
-#define GPIOA ((gpio_registers *)0x50000000u)
-#define GPIOB ((gpio_registers *)0x50000400u)
 
 #define GPIO_MODE_OUTPUT 1u
 #define GPIO_MODE_ALTERNATE 2u
@@ -200,7 +147,7 @@ typedef struct {
 #define SYSTICK_CSR_CORE_CLOCK BIT(2)
 #define SYSTICK_MASK 0x00ffffffu
 
-#define NVIC_ISER (*(volatile uint32_t *)0xe000e100u)
-#define NVIC_IPR ((volatile uint32_t *)0xe000e400u) /* four interrupts a word, two bits each, at the top of their byte */
+#define NVIC_ISER ((volatile uint32_t *)0xe000e100u) /* 32 interrupts a word */
+#define NVIC_IPR ((volatile uint32_t *)0xe000e400u)  /* four interrupts a word, PRIORITY_BITS each, at the top of their byte */
 
 #endif
