@@ -38,7 +38,7 @@ def tracking_rows(tracking: Sequence[Tracking]) -> list[Row]:
             settling_text(entry.settling_s),
             f"{math.degrees(entry.steady_error_rad):.3f} deg",
             f"{math.degrees(entry.mean_error_rad):.2f} deg",
-            f"{math.degrees(entry.push_rad):.2f} deg",
+            f"{math.degrees(entry.push_rad):.2f} deg" if len(tracking) > 1 else "no other axis",
             entry.input,
             f"{entry.activity.travel_V_s:.2f} V/s",
             f"{entry.activity.reversals_1_s:.1f} /s",
