@@ -393,7 +393,7 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
     rk4_step(t_s, h_s, &at->body, at->u, at->c, x, &seen);
     const bool suspect = N_AXES + N_KINKS > 0 && any(step_suspect(&at->body, x, h_s, at->c, &seen));
     if (suspect)
-        at->pieces += events_advance(at->body.x, at->body.sign, at->body.move, t_s, h_s, at->u, at->c, 0);
+        at->pieces += events_advance(at->body.x, at->body.sign, at->body.move, t_s, h_s, at->u, at->c, NULL, NULL);
     else
         for (int i = 0; i < N; i++)
             at->body.x[i] = x[i];
