@@ -39,6 +39,7 @@ class Holdout:
     decisions: tuple[Decision, ...] = ()
     read: dict[Hypothesis, list[NDArray[np.float64]]] = field(default_factory=dict)
     judged: dict[Hypothesis, Errors] = field(default_factory=dict)
+    ways: dict[Hypothesis, Hypothesis] = field(default_factory=dict)
 
     def predicted(self, chosen: FittedHypothesis) -> tuple[Predicted, ...]:
         """Predictions by the plant as stated, by `base`, and with what was `chosen`."""
@@ -53,18 +54,44 @@ class Holdout:
         return nominal.with_noise_of(self.base.fit.hypothesis)
 
     def foreseen(self, hypothesis: Hypothesis) -> Hypothesis:
-        """What a hypothesis says of these logs: an event that happened in another log counts only where it predicts these better."""
+        """What a hypothesis says of these logs: an event that happened in another log counts only where it surely predicts these better,
+        and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
+        if hypothesis not in self.ways:
+            usual, eventful = self._better_noise(self._without_events(hypothesis)), self._better_noise(hypothesis)
+            told = score(self._errors(eventful), self._errors(usual))
+            self.ways[hypothesis] = eventful if told.gain > decisions.SURELY * told.sd else usual
+        return self.ways[hypothesis]
+
+    def _better_noise(self, hypothesis: Hypothesis) -> Hypothesis:
+        noisy = self._as_noisy(hypothesis)
+        return noisy if score(self._errors(noisy), self._errors(hypothesis)).gain > 0.0 else hypothesis
+
+    def _without_events(self, hypothesis: Hypothesis) -> Hypothesis:
         effects = self.case.library.effects
         kept = {name: values for name, values in hypothesis.effects.items() if not happens(effects[name], values)}
-        if len(kept) == len(hypothesis.effects):
-            return hypothesis
-        without = hypothesis.with_effects(kept)
-        return hypothesis if score(self._errors(hypothesis), self._errors(without)).gain > 0.0 else without
+        return hypothesis if len(kept) == len(hypothesis.effects) else hypothesis.with_effects(kept)
 
-    def score(self, hypothesis: Hypothesis, other: Hypothesis | None = None) -> Score:
-        """By how much a hypothesis predicts these logs better than another, by default than `base`."""
-        base = self.base.fit.hypothesis if other is None else other
-        return score(self._errors(self.foreseen(hypothesis)), self._errors(base))
+    def _as_noisy(self, hypothesis: Hypothesis) -> Hypothesis:
+        """The hypothesis with all noise of `base`."""
+        base, effects = self.base.fit.hypothesis, self.case.library.effects
+        gusts = {name: values for name, values in base.effects.items() if effects[name].is_noise}
+        kept = {name: values for name, values in hypothesis.effects.items() if not effects[name].is_noise}
+        return hypothesis.with_effects({**kept, **gusts}).with_noise_of(base)
+
+    def score(self, hypothesis: Hypothesis) -> Score:
+        """By how much a hypothesis predicts these logs better than `base`; by nothing where all that it names happened in other logs."""
+        foreseen = self.foreseen(hypothesis)
+        if self._named(hypothesis) and not self._named(foreseen):
+            return Score(0.0, 0.0, 0.0)
+        return score(self._errors(foreseen), self._errors(self.base.fit.hypothesis))
+
+    def _named(self, hypothesis: Hypothesis) -> list[str]:
+        """The effects of a hypothesis that `base` lacks, noise apart."""
+        return [
+            name
+            for name in hypothesis.effects
+            if name not in self.base.fit.hypothesis.effects and not self.case.library.effects[name].is_noise
+        ]
 
     def shrinkage(self, predicted: Sequence[Predicted]) -> Shrinkage:
         """How far the gap shrinks in these predictions."""

@@ -134,6 +134,14 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
     assert added(holdout, supposing(push))[0].effects == tuple(push)
 
 
+def test_noise_is_not_what_is_judged() -> None:
+    # Truth: the same friction with a process noise a hundred thousand times too small, so that its filter follows nothing, says as much.
+    _, holdout = judged(arm_log(RUB, seed=33))
+    told = rubbing().fit.hypothesis
+    deaf = replace(told, process_noise=told.process_noise - 5.0)
+    assert holdout.score(deaf).gain > holdout.score(told).gain - 0.05
+
+
 def test_steps_that_the_readings_lie_on_are_likelier_by_their_log() -> None:
     (step,), coarse = arm().plant.sensors.values(), 0.02
     _, holdout = judged(arm_log({"theta_sensor.quantization": {"q": coarse}}, seed=37))
