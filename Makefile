@@ -5,7 +5,8 @@ BIN := $(VENV)/bin
 PLANT ?= plants/ce150.toml
 OUT ?= build
 # What is imported is compiled then, once; most of what is installed never is imported, and a suite is hundreds of processes.
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+INSTALL := install --quiet --disable-pip-version-check --no-compile
+PIP := $(BIN)/python -m pip $(INSTALL)
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help run test docs soak check lint types layers bench clean
@@ -44,11 +45,13 @@ clean:  ## remove what can be made again; the virtual environment stays
 	rm -rf $(OUT) .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # A stamp is written last, so that a broken download is tried again; nothing is fetched while pyproject.toml stays as it is.
-# The pip that comes with an old Python takes twice as long to choose among releases.
+# The pip that comes with an old Python takes twice as long to choose among releases: it fetches the new one from within its wheel, and
+# is installed, for as long as that takes, only where Python brings none.
+BUNDLED := import ensurepip, pathlib; print(next(pathlib.Path(ensurepip.__file__).parent.glob("_bundled/pip-*.whl")))
 $(VENV)/.pip:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "twinlaw needs Python 3.11 or newer, this is " + sys.version.split()[0] + "; set PYTHON=/path/to/python3")'
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(PIP) --upgrade pip
+	test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
+	wheel="$$($(BIN)/python -c '$(BUNDLED)' 2>/dev/null)" && $(BIN)/python "$$wheel/pip" $(INSTALL) pip || { $(BIN)/python -m ensurepip && $(PIP) --upgrade pip; }
 	touch $@
 
 $(VENV)/.run: pyproject.toml | $(VENV)/.pip

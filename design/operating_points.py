@@ -10,8 +10,7 @@ from design.direct_form import DeltaForm, to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import PlantPolynomials, plant_polynomials
-from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z
-from design.refine import refined
+from design.pole_placement import FREE_DEGREES, Placement, characteristic, place, poles_z, refined
 from design.settings import AxisSettings, DesignSettings
 from design.structure import measured_axis
 from design.transfer import TransferFunction, transfer_function

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from logcheck import thresholds
 from logcheck.finding import EXCLUDE, NOTE, REFUSE, Array, Finding, Found, Rows, in_words
 from records.log import RunLog
-from records.restarts import LEAST_ROWS, restart_rows
+from records.logs.restarts import LEAST_ROWS, restart_rows
 
 
 @dataclass(frozen=True)

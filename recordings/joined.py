@@ -7,7 +7,7 @@ import numpy as np
 
 from recordings.channels import Array, Channel, Span, taken
 from records.log import LogColumns
-from records.restarts import pause_s, restart_rows
+from records.logs.restarts import pause_s, restart_rows
 
 
 def on_one_clock(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel], list[str]]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
-from records.restarts import Restart, counted_on, on_one_clock, restart_rows
-from records.source import Source, parse_source, source_table
+from records.logs.restarts import Restart, counted_on, on_one_clock, restart_rows
+from records.logs.source import Source, parse_source, source_table
 from records.text import checks
 from records.text.log_csv import read_rows, rows_text
 from records.text.reading import read_toml

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from records.errors import VerificationFailed
-from records.live import LiveRow
 from records.log import RunLog
+from records.logs.live import LiveRow
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.columns import log_columns, reference_name

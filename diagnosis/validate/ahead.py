@@ -14,8 +14,8 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.prediction import SETTLE_S, WINDOW_S, Span, predictions
-from records.live import LiveRow
 from records.log import RunLog
+from records.logs.live import LiveRow
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from sim.columns import log_columns

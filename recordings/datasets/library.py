@@ -21,7 +21,7 @@ from recordings.datasets.recording import Importer, Recording
 from recordings.datasets.registry import Dataset, dataset
 from records.errors import BadInput
 from records.log import RunLog
-from records.source import Source
+from records.logs.source import Source
 from sim.columns import log_columns
 from sim.plants import MODELS
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from recordings.formats.clocks import with_clocks
-from recordings.formats.headings import name_and_unit
 from recordings.formats.optional import package
+from recordings.formats.text.headings import name_and_unit
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 from records.errors import BadInput

@@ -36,7 +36,7 @@ class Format:
 
 
 FORMATS: Mapping[tuple[str, ...], Format] = {
-    (".csv", ".tsv", ".txt", ".dat", ".log"): Format("delimited", "table of text"),
+    (".csv", ".tsv", ".txt", ".dat", ".log"): Format("text.delimited", "table of text"),
     (".mat",): Format("matlab", "MATLAB file", apart=True),  # version 7.3 as HDF5
     (".h5", ".hdf5"): Format("hdf5", "HDF5 file", "h5py", "hdf5", apart=True),
     (".mf4", ".mdf"): Format("mdf", "MDF file", "asammdf", "mdf4", apart=True),
@@ -70,7 +70,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
             "export it as one of these, or call a table of text .csv",
         )
     entry = _BY_SUFFIX[suffix]
-    if asked != TextLayout() and entry.module != "delimited":
+    if asked != TextLayout() and entry.module != "text.delimited":
         got = f"--separator, --decimal or --skip for a {entry.called}"
         raise BadInput("option", str(path), got, "these for tables of text alone", "leave them out")
     if entry.package and not is_installed(entry.package):

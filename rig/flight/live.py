@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from rig.emulator.ports.serial_port import EmulatedSerial
 from rig.link.client import BoardClient
 from rig.link.replies import Health

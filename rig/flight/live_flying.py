@@ -5,7 +5,7 @@ from typing import Protocol
 
 from codegen.twin import FULL_SCALE_V
 from records.errors import BadInput
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from records.loops import LOOPS, Loop, Pins
 from records.protocol import PROTOCOL
 from rig.emulator.board import EmulatedBoard

@@ -13,12 +13,13 @@ from design.law import FloatLaw
 from records.errors import BadInput
 from records.loops import Loop
 from records.table import AxisLaw, ControllerTable, Schedule, load_table, table_text
+from tests.soak import SOAK
 from verification.equality import compare
 from verification.fixed_stimuli import fixed_stimuli
 from verification.host_law import HostLaw, host_law
 from verification.stimuli import standard_stimuli
 
-STEPS = 4_000
+STEPS = 4_000 if SOAK else 1_500
 TWINS = {"float32": Float32Twin, "fixed": FixedTwin}
 STIMULI = {"float32": standard_stimuli, "fixed": fixed_stimuli}
 NAMES = ("arm", "yaw", "tilt", "wrist")

@@ -8,8 +8,7 @@ from design.direct_form import to_delta
 from design.discretise import sample
 from design.linearise import linearise, subsystem
 from design.loop import plant_polynomials
-from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z
-from design.refine import refined
+from design.pole_placement import FREE_DEGREES, characteristic, place, poles_z, refined
 from design.transfer import transfer_function
 from records.loops import LOOPS
 from records.table import AXES

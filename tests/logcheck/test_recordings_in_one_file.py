@@ -13,7 +13,7 @@ from recordings.datasets.files import datasets_folder
 from recordings.datasets.library import IMPORTERS, import_record, records
 from records.errors import BadInput
 from records.log import RunLog, load_log, save_log
-from records.restarts import restart_rows
+from records.logs.restarts import restart_rows
 from sim.columns import log_columns
 from sim.manoeuvres import stir
 from sim.simulate import simulate

@@ -7,7 +7,7 @@ import pytest
 
 from records.errors import BadInput
 from records.log import LogColumns, RunLog, load_log, save_log
-from records.source import Source
+from records.logs.source import Source
 from records.text.units import unit_suffix
 
 COLUMNS = LogColumns("pendulum", ("u_V",), ("theta_rad",), (), ("arm",))

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_a_fault_of_our_own_is_one_line_and_no_failed_verification(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    def broken(words: list[str]) -> int:
+    def broken(words: list[str], alone: bool) -> int:
         raise KeyError("Psi_m")
 
     monkeypatch.setattr(command, "_obey", broken)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.law_table import FlownTable
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from records.protocol import PROTOCOL
 from rig.flight.live import LiveFlight
 from rig.link.replies import Health

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnosis.validate.ahead import Ahead
-from records.live import LiveRow
+from records.logs.live import LiveRow
 
 KEPT = 1200  # events with rows, at 20 a second
 DRAWN_EVERY_S = 0.01  # of a log's time; what comes between is not drawn

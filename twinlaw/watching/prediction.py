@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from diagnosis.validate.ahead import AHEAD_MEMORY_S, EVERY_S, Lookahead
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from sim.bind import BoundPlant
 
 

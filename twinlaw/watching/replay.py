@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from diagnosis.validate.ahead import AHEAD_MEMORY_S
 from records.errors import BadInput
-from records.live import LiveRow
 from records.log import RunLog
+from records.logs.live import LiveRow
 from sim.columns import reference_name
 from twinlaw.watching.source import Step
 

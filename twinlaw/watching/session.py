@@ -14,7 +14,7 @@ from typing import Any
 
 from diagnosis.validate.ahead import Ahead, Lookahead
 from records.errors import BadInput
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from twinlaw.watching.events import Events, rows_content
 from twinlaw.watching.source import Source
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from records.live import LiveRow
+from records.logs.live import LiveRow
 from records.text.units import unit_suffix
 from sim.bind import BoundPlant
 

@@ -10,8 +10,8 @@ from diagnosis.hypothesis.hypothesis import nominal_hypothesis
 from diagnosis.library.effect_library import effect_library
 from diagnosis.validate.ahead import EVERY_S, LIVE_PROCESS_NOISE, Ahead, Lookahead
 from diagnosis.validate.prediction import Span, predictions
-from records.live import LiveRow
 from records.log import RunLog
+from records.logs.live import LiveRow
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly

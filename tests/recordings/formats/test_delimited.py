@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recordings.formats.delimited import read
+from recordings.formats.text.delimited import read
 from recordings.layout import TextLayout
 from records.errors import BadInput
 

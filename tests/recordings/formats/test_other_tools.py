@@ -195,7 +195,7 @@ def test_the_extras_of_the_table_are_declared_installed_for_the_tests_and_known_
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     extras = {entry.extra for _, entry in NEEDING}
     assert set(re.findall(r"\w+", declared["logs"][0])) == {"twinlaw", "matlab", *extras}
-    assert "twinlaw[logs]" in declared["test"]
+    assert "twinlaw[cores,logs]" in declared["test"]
     for _, entry in NEEDING:
         assert any(requirement.startswith(entry.package or "?") for requirement in declared[entry.extra])
     assert extras <= set(EXTRAS)

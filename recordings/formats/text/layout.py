@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median, mode
 
-from recordings.formats.text_cells import DECIMALS, is_missing, is_number
+from recordings.formats.text.cells import DECIMALS, is_missing, is_number
 from recordings.layout import TextLayout
 from recordings.units import known
 from records.errors import BadInput

@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recordings.formats.clocks import with_clocks
-from recordings.formats.decoding import decoded
-from recordings.formats.headings import name_and_unit
-from recordings.formats.text_cells import (
+from recordings.formats.text.cells import (
     from_the_first_s,
     is_missing,
     is_number,
@@ -21,7 +19,9 @@ from recordings.formats.text_cells import (
     number_and_unit,
     time_of_day_s,
 )
-from recordings.formats.text_layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
+from recordings.formats.text.decoding import decoded
+from recordings.formats.text.headings import name_and_unit
+from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
 
