@@ -284,5 +284,5 @@ def _check_numbers(data: Mapping[str, Array], kept: NDArray[np.bool_], where: st
             f"{where}, line {row + 2}",
             f"{data['t_s'][row]:g} after {data['t_s'][row - 1]:g}",
             "a time that increases",
-            "sort the rows and remove repeated ones",
+            "sort the rows and remove repeated ones, or let `twinlaw import` leave them out",
         )

@@ -67,7 +67,11 @@ def _number(cell: str, path: Path, line: int) -> float:
     except ValueError as error:
         where = f"{path}, line {line}"
         raise BadInput(
-            "number", where, repr(cell[:30]), "a number such as -0.125", "use decimal points, not commas"
+            "number",
+            where,
+            repr(cell[:30]),
+            "a number such as -0.125",
+            "use decimal points and nan, or `twinlaw import` it",
         ) from error
 
 

@@ -7,7 +7,7 @@ import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -34,6 +34,16 @@ def swept(on: str, friction: str) -> list[list[str]]:
     ]
 
 
+def real(rig: str, fitted: Sequence[str], told: Sequence[str], held_out: Sequence[str]) -> list[list[str]]:
+    """Parameters of a real rig out of published records, each with the words that cut it; others are held out."""
+    records = [*fitted, *held_out]
+    files = [f"{{out}}/{number}-{record.split()[0]}.csv" for number, record in enumerate(records)]
+    imports = [["import", rig, *record.split(), "--out", file] for record, file in zip(records, files, strict=True)]
+    check = ["--holdout", *files[len(fitted) :]]
+    return [*imports, ["identify", "--plant", f"plants/{rig}.toml", *told, *files[: len(fitted)], *check]]
+
+
+TWO_CLOCKS = "impulse_char_2026_01_24_"
 COMMANDS: dict[str, list[list[str]]] = {
     "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
     "designed": [["design"]],
@@ -42,6 +52,26 @@ COMMANDS: dict[str, list[list[str]]] = {
         ["experiments", "--seed", "1"],
         ["identify", "--truth", "{out}/truth.toml", "{out}"],
     ],
+    "real_aeroshield": real(
+        "aeroshield", ["Identification_Data2", "LQ_mega"], ["--offsets"], ["Validation_Data2", "EMPC_due"]
+    ),
+    "real_aeroshield_two_clocks": real(
+        "aeroshield_two_clocks",
+        [f"{TWO_CLOCKS}{time}" for time in ("22_48_45", "22_49_36", "22_50_18")],
+        [],
+        [f"{TWO_CLOCKS}{time}" for time in ("22_50_57", "22_51_43")],
+    ),
+    "real_antx_2dof_drone": real(
+        "antx_2dof_drone", ["Lab01_part2__log_0"], ["--offsets", "--trim", "188", "213.6"], ["Lab04__log_7"]
+    ),
+    "real_antx_2dof_drone_frequency": real(
+        "antx_2dof_drone",
+        ["Lab04__log_1 --from 127 --until 166", "Lab04__log_3 --from 17 --until 47"],
+        ["--method", "frequency", "--band-rad-s", "1", "60"],
+        ["Lab01_part1__log_1 --from 6.5 --until 16.5"],
+    ),
+    "real_emps": real("emps", ["DATA_EMPS"], ["--free", "M,F_v,F_c,offset"], ["DATA_EMPS_PULSES"]),
+    "real_pamh_aeropendulum": real("pamh_aeropendulum", ["PAMH_3set"], [], ["PAMH_REI", "PAMH_PID"]),
     "sweep_coverage": [["sweep", "--plant", "plants/raptor50.toml", "--repetitions", "60"]],
     "swept_references_free": swept("references", "free"),
     "swept_inputs_free": swept("inputs", "free"),
@@ -91,7 +121,8 @@ def made(name: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         for words in COMMANDS[name]:
             told = [word.format(out=folder, frictionless=_frictionless(Path(folder))) for word in words]
-            command = [sys.executable, "-m", "twinlaw.command", *told, "--out", folder, "--json"]
+            out = [] if "--out" in told else ["--out", folder]
+            command = [sys.executable, "-m", "twinlaw.command", *told, *out, "--json"]
             done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     return json.dumps(kept(json.loads(done.stdout)), indent=1) + "\n"
 

@@ -140,6 +140,15 @@ def test_a_log_that_cannot_be_one_of_this_rig_is_refused(flown, tmp_path, capsys
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.soak
+def test_a_turned_angle_is_refused_by_the_frequency_method_too(flown, tmp_path, capsys):
+    log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
+    save_log(tmp_path / "turned.csv", replace(log, y=log.y * [1.0, -1.0]))
+    told = ["--method", "frequency", *flown[:-1], "--out", str(tmp_path / "out"), str(tmp_path / "turned.csv")]
+    assert main(["identify", *told]) == 2
+    assert "phi_rad has the wrong sign" in capsys.readouterr().err
+
+
 def test_of_an_axis_that_was_never_read_what_shows_there_is_held_and_named_and_the_other_is_identified(
     flown, tmp_path, capsys
 ):

@@ -159,7 +159,8 @@ def equal_steps(
 def recorded_replay(
     path: Path, table: ControllerTable, bound: BoundPlant, arithmetic: str = "float32"
 ) -> tuple[Replay, str | None]:
-    """A run log of any known plant, to be replayed in an arithmetic, and what it lacks to be compared bit by bit; raises BadInput.
+    """A run log of any known plant, to be replayed in an arithmetic, and what it lacks to be compared bit by bit, or what explains that it
+    differs; raises BadInput.
 
     What the log lacks, or holds in too few digits, is not the law's failure: it is a stimulus, and its inputs are not compared.
     """
@@ -173,5 +174,5 @@ def recorded_replay(
         log, begins = as_read(log, looked), looked.begins
     found = replay_stretches(log, table, begins=begins)
     if found.cause not in CLEARED:
-        return replay, None
+        return replay, None if found.cause is None else f"{path.name}: {found.sentence}"
     return replace(replay, sent=None), f"{path.name}: {found.sentence}; its inputs are not compared bit by bit"

@@ -37,6 +37,7 @@ from twinlaw.pages.identify.frequency_tables import CHECK_HEADING, check_rows, p
 from twinlaw.pages.identify.summary import estimate_heading, estimate_rows
 from twinlaw.pages.page import page_text
 from twinlaw.pages.quality import quality_sentence
+from twinlaw.workflows.identify.columns import demand_columns
 from twinlaw.workflows.identify.inputs import Inputs, free_names, looked_at, read_limits
 from twinlaw.workflows.identify.progress import progress, save_result, told_files
 
@@ -139,6 +140,8 @@ def _operating_point(
             "identify from the plant without them",
         )  # fmt: skip
     inputs = looked_at(Inputs((), *_read(chosen, holdout, plant_columns(bound.model))), bound)
+    with console.stage("asking whether the columns are what they are called"):
+        demand_columns(bound, inputs.logs)
     outputs = tuple(bound.model.outputs)
     records, others = (
         [record_of(log, name, outputs) for name, log in some.items()] for some in (inputs.logs, inputs.holdout)
