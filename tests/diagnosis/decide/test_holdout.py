@@ -135,11 +135,14 @@ def test_a_log_that_says_nothing_of_a_name_speaks_neither_way_and_it_is_added() 
 
 
 def test_noise_is_not_what_is_judged() -> None:
-    # Truth: the same friction with a process noise a hundred thousand times too small, so that its filter follows nothing, says as much.
+    # Truth: the same friction with a process noise a hundred thousand times too small, so that its filter follows nothing, says as much
+    # within a standard error, as it is given that of the plant that it is held against.
     _, holdout = judged(arm_log(RUB, seed=33))
-    told = rubbing().fit.hypothesis
-    deaf = replace(told, process_noise=told.process_noise - 5.0)
-    assert holdout.score(deaf).gain > holdout.score(told).gain - 0.05
+    hypothesis = rubbing().fit.hypothesis
+    deaf = replace(hypothesis, process_noise=hypothesis.process_noise - 5.0)
+    told, as_deaf = holdout.score(hypothesis), holdout.score(deaf)
+    assert as_deaf.gain == pytest.approx(told.gain, abs=told.sd)
+    assert as_deaf == holdout.score(replace(hypothesis, process_noise=hypothesis.process_noise - 6.0))
 
 
 def test_steps_that_the_readings_lie_on_are_likelier_by_their_log() -> None:
