@@ -33,7 +33,7 @@ encoder_counts encoders_read(encoder_counts *self); /* within every 32 767 count
 
 /* pwm.c */
 void pwm_start(void);                              /* power stage off */
-void pwm_write(const duty_pair *duty, bool power); /* signed ticks; power = false opens the power stage at once */
+void pwm_write(const motor_duties *duty, bool power); /* signed ticks; power = false opens the power stage at once */
 void pwm_safe(void);                               /* power stage off, whatever has happened */
 
 /* tick.c */

@@ -16,7 +16,7 @@ static void run_law(path_state *path)
 /* Safety: what the supervisor does not allow does not reach the motors, and the power stage follows its state. */
 static void drive_outputs(path_state *path)
 {
-    const duty_pair *duty = path_limits(path);
+    const motor_duties *duty = path_limits(path);
     pwm_write(duty, supervisor_power_allowed(&path->supervisor));
 }
 

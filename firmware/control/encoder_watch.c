@@ -25,7 +25,7 @@ static uint32_t still_ticks(uint32_t before, uint32_t moved, int32_t duty, int32
 #define TURNING(angle, voltage, motor, VOLTAGE) self->still_##angle < PROTOCOL_ENCODER_STILL_PERIODS &&
 
 bool encoder_watch_believes(
-    encoder_watch *self, const encoder_counts *now, const duty_pair *applied, int32_t full_drive, uint32_t passed)
+    encoder_watch *self, const encoder_counts *now, const motor_duties *applied, int32_t full_drive, uint32_t passed)
 {
     PROTOCOL_LOOPS(MOVED)
     const uint32_t farthest = PROTOCOL_ENCODER_JUMP_COUNTS * passed;

@@ -28,6 +28,6 @@ void encoder_watch_start(encoder_watch *self, const encoder_counts *now);
 
 /* Whether `now`, `passed` ticks after the last call, can be true; `applied` drove the motors over that time. */
 bool encoder_watch_believes(
-    encoder_watch *self, const encoder_counts *now, const duty_pair *applied, int32_t full_drive, uint32_t passed);
+    encoder_watch *self, const encoder_counts *now, const motor_duties *applied, int32_t full_drive, uint32_t passed);
 
 #endif

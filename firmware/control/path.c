@@ -135,9 +135,9 @@ static int32_t clamped(int32_t ticks)
 }
 
 #define WANTED(angle, voltage, motor, VOLTAGE) .motor##_ticks = clamped(law_duty_##motor(self->output.voltage##_V)),
-const duty_pair *path_limits(path_state *self)
+const motor_duties *path_limits(path_state *self)
 {
-    const duty_pair wanted = {PROTOCOL_LOOPS(WANTED)};
+    const motor_duties wanted = {PROTOCOL_LOOPS(WANTED)};
     self->applied = supervisor_limit(&self->supervisor, &wanted);
     return &self->applied;
 }

@@ -44,7 +44,7 @@ typedef struct {
     law_input input;
     law_output output;
     bool law_reset_due; /* the next step starts the law at the angles of its input */
-    duty_pair applied;
+    motor_duties applied;
     uint32_t law_cycles; /* of the last step, measured by the board */
     uint32_t tick;
     uint32_t watched_us;   /* since the last watch period ended */
@@ -80,7 +80,7 @@ void path_seal(path_state *self);
 void path_law(path_state *self);
 
 /* The duties that may reach the motors now; they are remembered as applied. */
-const duty_pair *path_limits(path_state *self);
+const motor_duties *path_limits(path_state *self);
 
 /* Frame the reply to the last command into `line`; returns the bytes to send. */
 size_t path_reply(path_state *self, uint32_t now_us, uint8_t line[PROTOCOL_LINE_MAX]);

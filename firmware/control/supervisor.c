@@ -58,14 +58,14 @@ void supervisor_host_alive(supervisor_state *self)
     self->missed_samples = 0;
 }
 
-static void start_ramp(supervisor_state *self, const duty_pair *applied)
+static void start_ramp(supervisor_state *self, const motor_duties *applied)
 {
     self->state = PROTOCOL_STATE_RAMPING;
     self->ramp_left = PROTOCOL_RAMP_PERIODS;
     self->ramp_start = *applied;
 }
 
-void supervisor_encoder_fault(supervisor_state *self, const duty_pair *applied)
+void supervisor_encoder_fault(supervisor_state *self, const motor_duties *applied)
 {
     self->encoder_faults++;
     self->position_lost = true;
@@ -78,7 +78,7 @@ void supervisor_position_known(supervisor_state *self)
 }
 
 /* Ticks of the ramp that belong to this call: the one in which the host is found lost is the first of them. */
-static uint32_t ticks_of_ramp(supervisor_state *self, const duty_pair *applied, uint32_t passed)
+static uint32_t ticks_of_ramp(supervisor_state *self, const motor_duties *applied, uint32_t passed)
 {
     if (!supervisor_is_armed(self)) {
         return passed;
@@ -92,7 +92,7 @@ static uint32_t ticks_of_ramp(supervisor_state *self, const duty_pair *applied, 
     return self->missed_samples - PROTOCOL_HOST_LOSS_PERIODS + 1u;
 }
 
-void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t passed)
+void supervisor_tick(supervisor_state *self, const motor_duties *applied, uint32_t passed)
 {
     const uint32_t due = ticks_of_ramp(self, applied, passed);
     if (self->state != PROTOCOL_STATE_RAMPING) {
@@ -114,13 +114,13 @@ static int32_t ramped(int32_t start, uint32_t left)
 }
 
 #define RAMPED(angle, voltage, motor, VOLTAGE) .motor##_ticks = ramped(self->ramp_start.motor##_ticks, self->ramp_left),
-duty_pair supervisor_limit(const supervisor_state *self, const duty_pair *wanted)
+motor_duties supervisor_limit(const supervisor_state *self, const motor_duties *wanted)
 {
     if (supervisor_is_armed(self)) {
         return *wanted;
     }
     if (self->state == PROTOCOL_STATE_RAMPING) {
-        return (duty_pair){PROTOCOL_LOOPS(RAMPED)};
+        return (motor_duties){PROTOCOL_LOOPS(RAMPED)};
     }
-    return (duty_pair){0};
+    return (motor_duties){0};
 }

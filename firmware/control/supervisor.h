@@ -21,14 +21,14 @@
 #define SUPERVISOR_DUTY(angle, voltage, motor, VOLTAGE) int32_t motor##_ticks;
 typedef struct {
     PROTOCOL_LOOPS(SUPERVISOR_DUTY)
-} duty_pair;
+} motor_duties;
 
 typedef struct {
     uint8_t state;           /* PROTOCOL_STATE_... */
     uint8_t mode;            /* mode armed last, PROTOCOL_MODE_... */
     uint32_t missed_samples; /* ticks since the last setpoint of the host */
     uint32_t ramp_left;      /* ticks to the safe value */
-    duty_pair ramp_start;    /* duties at the moment of the loss */
+    motor_duties ramp_start;    /* duties at the moment of the loss */
     bool position_lost;      /* an encoder fault, and no PRESET since */
     uint32_t host_losses;
     uint32_t encoder_faults;
@@ -45,7 +45,7 @@ void supervisor_disarm(supervisor_state *self);
 void supervisor_host_alive(supervisor_state *self);
 
 /* An encoder is not believable: leave FLYING as for a lost host. `applied` as below. */
-void supervisor_encoder_fault(supervisor_state *self, const duty_pair *applied);
+void supervisor_encoder_fault(supervisor_state *self, const motor_duties *applied);
 
 /* The host has told where the encoders are. */
 void supervisor_position_known(supervisor_state *self);
@@ -54,10 +54,10 @@ void supervisor_position_known(supervisor_state *self);
  * `passed` control ticks (more than one when the main loop was late); `applied` are the duties that are on the motors
  * now, from which a ramp would start.
  */
-void supervisor_tick(supervisor_state *self, const duty_pair *applied, uint32_t passed);
+void supervisor_tick(supervisor_state *self, const motor_duties *applied, uint32_t passed);
 
 /* The duties that may reach the motors in this state: the law's, the ramp's, or zero. */
-duty_pair supervisor_limit(const supervisor_state *self, const duty_pair *wanted);
+motor_duties supervisor_limit(const supervisor_state *self, const motor_duties *wanted);
 
 bool supervisor_is_armed(const supervisor_state *self);
 

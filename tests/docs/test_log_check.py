@@ -13,8 +13,8 @@ PLAIN = {"reset", "float64"}
 FIELDS = {
     "reference_min_rad",
     "reference_max_rad",
-    "psi_min_rad",
-    "psi_max_rad",
+    "schedule_min_rad",
+    "schedule_max_rad",
     "prefilter_poles",
     "overflow_at",
     "u_ff",

@@ -50,7 +50,7 @@ static void finish(run *self, path_demand demand)
     if (demand == PATH_STEP) {
         path_law(&self->path);
     }
-    const duty_pair *duty = path_limits(&self->path);
+    const motor_duties *duty = path_limits(&self->path);
     const int32_t full = (int32_t)LAW_PWM_TICKS;
     must(duty->main_ticks <= full && duty->main_ticks >= -full && duty->tail_ticks <= full && duty->tail_ticks >= -full);
     must(self->path.supervisor.state <= PROTOCOL_STATE_LOST);

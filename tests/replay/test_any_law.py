@@ -14,6 +14,7 @@ from sim.loop import Wired, fly
 from sim.wiring import wiring
 from tests.codegen.test_any_loops import SHAPES, any_table
 from tests.other_plants import PLANTS
+from tests.soak import sampled
 from twinlaw.workflows.chain.designing import design_plant
 from twinlaw.workflows.chain.flying import flight_of
 from twinlaw.workflows.reading import load_bound
@@ -48,9 +49,10 @@ def flown(name: str, arithmetic: str = "float32") -> tuple[RunLog, ControllerTab
     return fly(bound, law, part, table_digest=table.digest), table
 
 
-@pytest.mark.parametrize(
-    ("name", "arithmetic"), [("aeroshield", "float32"), ("aeroshield", "fixed"), ("quanser_aero", "float32")]
-)
+FLOWN = [("aeroshield", "float32"), ("aeroshield", "fixed"), ("quanser_aero", "float32")]
+
+
+@pytest.mark.parametrize(("name", "arithmetic"), sampled(FLOWN, keep=FLOWN[:2]))
 def test_a_flight_of_the_table_s_own_law_is_cleared_to_the_bit(name: str, arithmetic: str) -> None:
     log, table = flown(name, arithmetic)
     found = replay_firmware(log, table)
@@ -69,6 +71,7 @@ def test_a_firmware_that_used_old_angles_is_named_by_its_own_loop() -> None:
     assert (found.cause, found.sentence) == ("stale_sample", "the firmware used the arm measured one sample before")
 
 
+@pytest.mark.soak
 def test_a_firmware_with_its_angles_exchanged_is_named() -> None:
     log, table = flown("quanser_aero")
     host = host_law(table)

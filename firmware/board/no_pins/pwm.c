@@ -5,7 +5,7 @@ void pwm_start(void)
 {
 }
 
-void pwm_write(const duty_pair *duty, bool power)
+void pwm_write(const motor_duties *duty, bool power)
 {
     (void)duty;
     (void)power;

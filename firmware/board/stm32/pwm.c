@@ -43,7 +43,7 @@ static uint32_t magnitude(int32_t ticks)
 #define DRIVE_1(angle, voltage, motor, VOLTAGE) TIM1->CCR1 = magnitude(duty->motor##_ticks);
 #define DRIVE_2(angle, voltage, motor, VOLTAGE) TIM1->CCR2 = magnitude(duty->motor##_ticks);
 
-void pwm_write(const duty_pair *duty, bool power)
+void pwm_write(const motor_duties *duty, bool power)
 {
     if (!power) {
         pwm_safe();

@@ -77,7 +77,7 @@ def test_the_law_inside_an_image_of_any_loops_is_the_host_s(
 
 
 @pytest.mark.parametrize(
-    ("name", "arithmetic"), sampled(EACH, keep=[("inverted_arm", "fixed"), ("quanser_aero", "float32")])
+    ("name", "arithmetic"), sampled(EACH, keep=[("inverted_arm", "fixed"), ("aeroshield", "float32")])
 )
 def test_a_flight_of_the_image_is_that_of_the_compiled_c_and_of_the_twin(
     name: str, arithmetic: str, tmp_path: Path

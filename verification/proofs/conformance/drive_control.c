@@ -218,7 +218,7 @@ static void odd_ticks(bench *self)
 static void watch_alone(int32_t main_ticks, int32_t tail_ticks)
 {
     const encoder_counts still = {.psi_counts = 1, .phi_counts = 1};
-    const duty_pair applied = {.main_ticks = main_ticks, .tail_ticks = tail_ticks};
+    const motor_duties applied = {.main_ticks = main_ticks, .tail_ticks = tail_ticks};
     encoder_watch watch;
     encoder_watch_start(&watch, &still);
     (void)encoder_watch_believes(&watch, &still, &applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_PERIODS);
