@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from codegen.law import generate_law
 from rig.emulator.board import EmulatedBoard
 from rig.flight.target_law import TargetLaw
-from rig.programming.image import FIRMWARE_DIR
+from rig.programming.image import FIRMWARE_DIR, build_firmware
 from tests.law_tables import ce150_table
 from tests.rig.emulator.programs import FOLDER
 from tests.soak import SOAK, sampled
 from tests.verification.cycles import nasty_floats, stimuli
+from tests.verification.dearest import dearest
 from tests.verification.static_bound.static_programs import program
 from toolchain.host import CText
 from toolchain.target import build_image
@@ -80,6 +81,14 @@ def alone(law: Mapping[str, str]) -> bytes:
     texts = [CText(name, text) for name, text in law.items() if name in ("law.h", "law.c")]
     sources = [*texts, KEEPING, FIRMWARE_DIR / "board" / "float_routines.c"]
     return build_image("law-alone", sources, FOLDER / "board.ld", include_dirs=[FIRMWARE_DIR / "board"]).read_bytes()
+
+
+@pytest.mark.soak
+def test_a_search_for_the_dearest_step_stays_below_the_bound() -> None:
+    """Of 100 000 steps, each a change of one that was dear."""
+    table = ce150_table()
+    elf = build_firmware(generate_law(table)).elf
+    assert dearest(stimuli(table, "float32", 4_000), elf, 100_000) <= static_bound(elf, "law_step").cycles_bound
 
 
 @pytest.mark.parametrize("degree", sampled([1, 3], keep=[1]))
