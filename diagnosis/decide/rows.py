@@ -102,7 +102,7 @@ def _furthest(
     slip: Misplaced, told: tuple[float, bool], followed: Callable[[Misplaced], tuple[float, bool]]
 ) -> tuple[Misplaced, tuple[float, bool]]:
     """A slip by as many rows more as each gains, with what it gains and whether the plant then follows."""
-    while told[0] > decisions.ROWS_GAIN and abs(slip.rows) < max(NUMBERS):
+    while told[0] > 0.0 and abs(slip.rows) < max(NUMBERS):
         further = replace(slip, rows=slip.rows + int(np.sign(slip.rows)))
         more = followed(further)
         if more[0] <= told[0]:
