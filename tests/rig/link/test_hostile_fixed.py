@@ -7,8 +7,9 @@ import pytest
 from rig.link.hostile_line import HostileLine
 from rig.link.hostile_line_faults import AtByte, Direction
 from rig.link.port import open_port
+from tests.docs.tables import line
 from tests.law_tables import ce150_table
-from tests.rig.link.image_campaign import built_url, connected, differing_steps, flown, told
+from tests.rig.link.image_campaign import built_url, connected, differing_steps, flown, rows
 from tests.soak import SOAK
 from verification.fixed_stimuli import fixed_sequences
 from verification.stimuli import Stimulus
@@ -54,4 +55,4 @@ def test_in_bad_weather_every_step_is_the_hosts_and_every_loss_has_its_counter(u
     assert counted["resets"] == 0
     if SOAK:
         page = Path(__file__).resolve().parents[3] / "docs" / "faults.md"
-        assert told(account) in page.read_text(encoding="utf-8"), "the documented account is that of a million frames"
+        assert "\n".join(map(line, rows(account))) in page.read_text(encoding="utf-8"), "the documented account is that of a million frames"
