@@ -55,4 +55,6 @@ def test_in_bad_weather_every_step_is_the_hosts_and_every_loss_has_its_counter(u
     assert counted["resets"] == 0
     if SOAK:
         page = Path(__file__).resolve().parents[3] / "docs" / "faults.md"
-        assert "\n".join(map(line, rows(account))) in page.read_text(encoding="utf-8"), "the documented account is that of a million frames"
+        assert "\n".join(map(line, rows(account))) in page.read_text(encoding="utf-8"), (
+            "the documented account is that of a million frames"
+        )
