@@ -58,8 +58,8 @@ class Holdout:
         and noise, which is not judged, is its own or that of `base`, whichever predicts better."""
         if hypothesis not in self.ways:
             usual, eventful = self._better_noise(self._without_events(hypothesis)), self._better_noise(hypothesis)
-            told = score(self._errors(eventful), self._errors(usual))
-            self.ways[hypothesis] = eventful if told.gain > decisions.SURELY * told.sd else usual
+            again = is_surely_better(score(self._errors(eventful), self._errors(usual)))
+            self.ways[hypothesis] = eventful if again else usual
         return self.ways[hypothesis]
 
     def _better_noise(self, hypothesis: Hypothesis) -> Hypothesis:
@@ -118,7 +118,7 @@ def holdout_of(
     """The logs of `case` with what judges them; `retuned` is the plant as the `training` logs have it."""
     trial = Holdout(case, names, tables, retuned)
     told = trial.score(trial.stated)
-    better = told.gain > decisions.SURELY * told.sd
+    better = is_surely_better(told)
     rule = held_against(
         "as_stated", "plant", told.gain, decisions.SURELY * told.sd, NATS, "as stated" if better else "re-tuned"
     )
@@ -185,12 +185,17 @@ def preferred(holdout: Holdout, weighed: Weighed) -> tuple[Weighed, tuple[Decisi
     return weighed.with_names(factors), rules
 
 
+def is_surely_better(told: Score) -> bool:
+    """Whether a difference of predictions is more than chance makes."""
+    return told.gain > decisions.SURELY * told.sd
+
+
 def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[bool, tuple[Decision, ...]]:
     """Whether the first of what was `tried` surely predicts these logs better than `base`, and the rule; no where nothing was."""
     if not tried:
         return False, ()
     told, of = holdout.score(tried[0].fit.hypothesis), " + ".join(tried[0].effects)
-    surely = told.gain > decisions.SURELY * told.sd
+    surely = is_surely_better(told)
     outcome = "matters there" if surely else "no gap: too small to matter"
     return surely, (held_against("matters_elsewhere", of, told.gain, decisions.SURELY * told.sd, NATS, outcome),)
 
@@ -198,9 +203,9 @@ def surely_better(holdout: Holdout, tried: Sequence[FittedHypothesis]) -> tuple[
 def asked(holdout: Holdout, first: FittedHypothesis) -> tuple[Score, tuple[Note, ...], tuple[Decision, ...]]:
     """What the logs say of a hypothesis, what is to be told of that, and its records."""
     told, of = holdout.score(first.fit.hypothesis), " + ".join(first.effects) or "parameters"
-    outcome = "surely better" if told.gain > decisions.SURELY * told.sd else "not surely better"
+    outcome = "surely better" if is_surely_better(told) else "not surely better"
     notes: tuple[Note, ...] = ()
-    if told.gain > decisions.SURELY * told.sd and favour(told) < decisions.NO_FAVOUR:
+    if is_surely_better(told) and favour(told) < decisions.NO_FAVOUR:
         shares = {"gain_nats": told.gain / _outputs(holdout.case), "left_nats": told.misfit / _outputs(holdout.case)}
         notes = (Note("something_else_missing", of, shares),)
     return (

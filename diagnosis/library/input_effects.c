@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdint.h>
 
-/* Two lags in a row of tau_s in all, `second` of it the latter's, below 1/2. What is away from the command fades with either. */
+/* Two lags in a row of tau_s in all, `second` of it the latter's, below 1/2. What is away from the command fades with either;
+ * of a lag that is none (1e-300 s: a quotient by it is still a number) nothing is left after any time. */
 void lag_means(int64_t steps, const double *h_s, const double *wanted, double tau_s, double second, double *mean)
 {
     const double first_s = tau_s * (1.0 - second), second_s = fmax(tau_s * second, 1e-300), ratio = first_s / (first_s - second_s);

@@ -86,7 +86,7 @@ def lost_with(ratios: Array, share: float) -> Array:
 
 
 def _behind(filter_input: FilterInput, column: int, stage: str, *values: float) -> FilterInput:
-    """The filter input with one input sent through a stage of c/inputs.c."""
+    """The filter input with one input sent through a stage of input_effects.c, `values` its numbers in their order there."""
     _, lib = _library()
     u, h = filter_input.u.copy(), np.append(np.diff(filter_input.t_s), filter_input.t_s[-1] - filter_input.t_s[-2])
     u[:, column] = _means(

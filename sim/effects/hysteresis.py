@@ -61,7 +61,7 @@ def effects(model: Model) -> Iterator[Effect]:
 
 
 def _bristles(length: float) -> Unlikely:
-    """What gives way no further than bristles do."""
+    """What gives way no further than bristles do: a fit that ended at that bound, or within a twentieth of it."""
     return Unlikely(NOTHING_NEW, "friction near rest, which a plant leaves open", below=1.05 * MOST_GIVEN * length)
 
 
