@@ -83,8 +83,8 @@ def refined(case: Case, fitted: FittedHypothesis) -> FittedHypothesis | None:
 def once_more(case: Case, fitted: FittedHypothesis) -> FittedHypothesis:
     """The same begun once more from the parameters as stated, where they have gone far and that ends better.
 
-    Once under the process noise that it has, and once under that of before any log was seen: a filter that expects any motion
-    leads back from further off.
+    Of a beginning under the process noise that it has, and one under that of before any log was seen, the likelier is fitted to its end:
+    a filter that expects any motion leads back from further off.
     """
     hypothesis = fitted.fit.hypothesis
     if not _is_astray(hypothesis, decisions.ASTRAY_REFINED):
