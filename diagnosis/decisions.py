@@ -52,14 +52,16 @@ TURNED = Limit(
     "at a turning point an edge is passed faster than on average over the count",
     "quiet development cases",
 )
-OCCUPIED_SHARE = Limit(
-    0.75, "share of counts", "a fine encoder visits so many of the counts between its extremes", DEVELOPMENT
-)
 COARSE_STEP = Limit(1.5, "encoder steps", "a coarser grid's step has at least so many", DEVELOPMENT)
 LEAST_VALUES = Count(8, "different readings", "fewer show no grid")
-ON_GRID_SHARE = Limit(0.98, "share of readings", "so many lie on a grid that is there", DEVELOPMENT)
-WITHIN_STEPS = Limit(
-    0.55, "encoder steps", "half is the encoder's rounding, the rest is what is not known of the grid's own step"
+GRID_NATS = Limit(
+    20.0, "nats", "a coarser grid's evidence: chance finds some ten among thousands of steps", DEVELOPMENT
+)
+GRID_SHARE = Limit(
+    0.5,
+    "share",
+    "so much of a grid's evidence without noise: 0.7 with noise of a fifth of a step, 0.1 where a conversion leaves out counts",
+    DEVELOPMENT,
 )
 
 # Where a log begins (hypothesis)

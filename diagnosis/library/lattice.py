@@ -1,63 +1,94 @@
-"""Readings that lie on a coarser grid than their encoder's: which grid, and how unlikely that is by chance."""
+"""Readings that lie on a coarser grid than their encoder's: which grid, and how unlikely that is by chance.
+
+(1)  c f - round(c f) of a count c, its phase on a grid of 1/f counts, is even where there is no grid. On one it is that of a grid's point
+     plus a noise of sd s, rounded to a count: p = (Phi((z + 1/2) / s) - Phi((z - 1/2) / s)) / f of z counts beside the point
+Grids of f and 1 - f have the same phases but for their signs: what a count rounds tells them apart.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from diagnosis import decisions
 
 Array = NDArray[np.float64]
-ROUNDED, NO_STEP = 0.51, 1e-3  # encoder steps that rounding leaves at most; grids of no more than a step have no twin
-GRID_ROUGHLY, GRID_FINELY, AROUND = 0.2, 2e-4, np.linspace(-1.0, 1.0, 4001)
+Counts = NDArray[np.int64]
+NOISES = np.geomspace(0.03, 1.0, 8)[:, None]  # of (1), in counts
+STRAY = 0.01  # share of readings that may lie anywhere: a row that was put together from two
+PADDED, PEAKS = 8, 6  # points of the spectrum a cycle over all counts; its highest peaks are asked
+LOWEST = 0.3  # of all counts in phase: those of a grid of 1.5 counts without noise are 0.41
+AROUND = np.linspace(-1.0, 1.0, 81)
+AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 
 def coarse_step(y: Array, step: float) -> float | None:
     """The step of the grid that the readings y (n,) lie on where it is coarser than `step`; None where it is not."""
-    values = np.unique(np.round(y[np.isfinite(y)] / step)) * step
-    if step <= 0.0 or len(values) < decisions.LEAST_VALUES:
+    counts, times = np.unique(_passed(_counts(y, step)), return_counts=True)
+    if len(counts) < decisions.LEAST_VALUES:
         return None
-    span = float(np.ptp(values))
-    if len(values) > decisions.OCCUPIED_SHARE * (span / step + 1.0):
-        return None
-    near = _nearest(values, float(np.median(np.diff(values))) * (1.0 + GRID_ROUGHLY * AROUND))[0]
-    twin = near / max(near / step - 1.0, NO_STEP)  # meets the same counts, but for rounding
-    fine = [
-        _nearest(values, grid * (1.0 + GRID_FINELY * AROUND))
-        for grid in (near, twin)
-        if grid > decisions.COARSE_STEP * step
-    ]
-    if not fine:
-        return None
-    best = max((grid for grid, miss in fine if miss <= ROUNDED * step), default=min(fine, key=lambda one: one[1])[0])
-    lies = (
-        on_grid(values, best, step) >= decisions.ON_GRID_SHARE
-        and on_grid(_counts(values, step), best, step) <= decisions.OCCUPIED_SHARE
-    )
-    return best if lies else None
-
-
-def _nearest(values: Array, grids: Array) -> tuple[float, float]:
-    """The one of the grids' steps from whose points the values stay least far, and how far."""
-    misses = np.abs(values[:, None] - grids * np.round(values[:, None] / grids)).max(axis=0)
-    return float(grids[np.argmin(misses)]), float(misses.min())
-
-
-def on_grid(values: Array, grid: float, step: float) -> float:
-    """Share of the values that lie on a grid's points, as an encoder rounds them."""
-    return float(np.mean(np.abs(values - grid * np.round(values / grid)) <= decisions.WITHIN_STEPS * step))
+    best = max((_finely(counts, times, f, width) for f, width in _peaks(counts, times)), default=(0.0, 0.0))
+    return step / best[1] if _lies(best[0], int(times.sum()), best[1]) else None
 
 
 def grid_evidence(y: Array, grid: float, step: float) -> float:
-    """Log likelihood that readings gain from lying on a grid instead of anywhere: for each change of the reading -ln of the share of the
-    encoder's counts that lie on it. That share is counted: a grid of 5/3 steps, say, is near every count, and tells nothing."""
-    values = y[np.isfinite(y)]
-    if grid <= decisions.COARSE_STEP * step or len(values) < 2:
+    """Log likelihood, by (1), that changes of the readings y (n,) gain from lying on a grid instead of anywhere; 0 where they do not."""
+    counts = _counts(y, step)
+    counts, times = np.unique(counts[1:][np.diff(counts) != 0], return_counts=True)
+    if len(counts) == 0 or grid <= decisions.COARSE_STEP * step:
         return 0.0
-    changes = values[1:][np.diff(values) != 0.0]
-    if len(changes) == 0 or on_grid(changes, grid, step) < decisions.ON_GRID_SHARE:
-        return 0.0
-    return float(-len(changes) * np.log(on_grid(_counts(changes, step), grid, step)))
+    found = _evidence(counts, times, step / grid)
+    return found if _lies(found, int(times.sum()), step / grid) else 0.0
 
 
-def _counts(values: Array, step: float) -> Array:
-    """All that an encoder of this step can read between the extremes of the values."""
-    return step * np.arange(np.round(values.min() / step), np.round(values.max() / step) + 1.0)
+def _counts(y: Array, step: float) -> Counts:
+    """The readings as counts of an encoder of this step; none of one without."""
+    seen = y[np.isfinite(y)] if step > 0.0 else y[:0]
+    return np.asarray(np.round(seen / step), np.int64)
+
+
+def _passed(counts: Counts) -> Counts:
+    """Counts that were passed: what an axis at rest reads in turns says of two counts only, however often."""
+    changes = counts[np.append(True, np.diff(counts) != 0)] if len(counts) else counts
+    way = np.sign(np.diff(changes))
+    return np.asarray(changes[1:-1][way[1:] == way[:-1]], np.int64)
+
+
+def _peaks(counts: Counts, times: Counts) -> list[tuple[float, float]]:
+    """Frequencies (1/counts) at which the counts' spectrum is highest, with their twins, and how far from it a peak may be."""
+    span = int(counts[-1] - counts[0]) + 1
+    passes = np.zeros(span)
+    passes[counts - counts[0]] = times
+    points = 1 << (PADDED * span - 1).bit_length()
+    height = np.abs(np.fft.rfft(passes, points))
+    height[: int(decisions.LEAST_VALUES * points / span)] = 0.0  # fewer points of a grid between the extremes show none
+    height[height < LOWEST * times.sum()] = 0.0
+    inner = np.flatnonzero(
+        (height >= np.append(0.0, height[:-1])) & (height >= np.append(height[1:], 0.0)) & (height > 0.0)
+    )
+    highest = inner[np.argsort(height[inner])[::-1][:PEAKS]] / points
+    both = [f for peak in highest for f in (peak, 1.0 - peak)]
+    return [(float(f), 1.0 / points) for f in both if f * decisions.COARSE_STEP < 1.0]
+
+
+def _finely(counts: Counts, times: Counts, f: float, width: float) -> tuple[float, float]:
+    """Evidence and frequency of the grid within `width` of f that the counts lie on best."""
+    near = f + width * AROUND
+    f = float(near[np.argmax(np.abs(np.exp(2j * np.pi * np.outer(near, counts)) @ times))])
+    near = f + width / 4 * AROUND
+    found = np.array([_evidence(counts, times, one) for one in near])
+    return float(found.max()), float(np.mean(near[found >= found.max() - AS_GOOD]))
+
+
+def _evidence(counts: Counts, times: Counts, f: float) -> float:
+    """(1) against even phases, each count that many times, the noise the likeliest one."""
+    beside = (counts * f - np.round(counts * f)) / f
+    p = (
+        sum(ndtr((z + 0.5) / NOISES) - ndtr((z - 0.5) / NOISES) for z in (beside - 1.0 / f, beside, beside + 1.0 / f))
+        / f
+    )
+    return float(np.max(np.log(STRAY + (1.0 - STRAY) * p) @ times))
+
+
+def _lies(evidence: float, readings: int, f: float) -> bool:
+    """Whether that evidence is a grid's: beyond chance, and a good part of what readings without noise would show."""
+    return evidence > max(decisions.GRID_NATS, decisions.GRID_SHARE * readings * -np.log(f) if f > 0.0 else np.inf)

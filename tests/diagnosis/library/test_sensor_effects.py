@@ -74,6 +74,21 @@ def test_a_grid_of_about_two_steps_is_not_taken_for_its_twin(steps: float) -> No
     assert coarse_step(STEP * np.round(coarse / STEP), STEP) == pytest.approx(steps * STEP, rel=1e-3)
 
 
+@pytest.mark.parametrize("steps", [1.7, 2.47, 4.3])
+def test_a_grid_whose_points_are_read_with_noise_is_found(steps: float) -> None:
+    # Noise of a fifth of an encoder's step between both roundings: counts beside the grid's points are read as well.
+    angle = 1.2 * np.sin(np.linspace(0.0, 30.0, 4000)) ** 3
+    noise = np.random.default_rng(2).normal(0.0, 0.2 * STEP, 4000)
+    read = STEP * np.round((steps * STEP * np.round(angle / (steps * STEP)) + noise) / STEP)
+    assert coarse_step(read, STEP) == pytest.approx(steps * STEP, rel=1e-3)
+
+
+def test_an_axis_that_rests_between_two_counts_has_no_grid() -> None:
+    places = np.repeat(np.random.default_rng(4).uniform(-0.5, 0.5, 30), 200)
+    noise = np.random.default_rng(5).normal(0.0, 0.5 * STEP, len(places))
+    assert coarse_step(STEP * np.round((places + noise) / STEP), STEP) is None
+
+
 @pytest.mark.parametrize("share", [3 / 4, 3 / 5])
 def test_counts_that_a_conversion_leaves_out_are_no_coarse_grid_of_five_thirds(share: float) -> None:
     # A board that turns counts of another sensor into its own leaves out one in four; and any count is within 2/3 of a step of such a grid.
