@@ -53,7 +53,9 @@ def shrinkage(case: Case, predicted: Sequence[Predicted], tables: Sequence[Contr
     """
     outputs = list(case.library.bound.model.outputs)
     squares = {variant: _squares(predicted, variant) for variant in MODEL_VARIANTS}
-    floor = np.sqrt([case.flights[0].filter_input.single[case.library.outputs.index(name)] for name in outputs])
+    noise = np.sqrt([case.flights[0].filter_input.single[case.library.outputs.index(name)] for name in outputs])
+    # What any model leaves is no floor's: readings on a coarse grid look as noisy as its steps, and a model of the grid predicts them.
+    floor = np.fmin(noise, np.sqrt(_means(squares["after"])))
     variants = {variant: _named(outputs, np.sqrt(_means(squares[variant]))) for variant in MODEL_VARIANTS}
     count = len(squares["after"])
     fraction = _fractions(squares, floor, np.ones((1, count)))
