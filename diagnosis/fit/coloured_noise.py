@@ -13,13 +13,13 @@ from diagnosis import decisions
 from diagnosis.fit.evidence import COLOUR_COST
 from diagnosis.fit.gauss_newton import Fit, likelihood_of
 from diagnosis.fit.process_noise import white_noise
-from diagnosis.fit.profile_likelihood import Number, along_each, likeliest, likelihoods
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
+from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from diagnosis.library.reading_noise import ReadingNoise
 from sim.effect import Effect, Role
 
-COLOUR_STEP = 0.2  # decades
 REACH = 1.2  # a factor of size and time over which the likelihood's bend is taken
 
 Numbers = tuple[float, float]  # standard deviation, correlation time in s
@@ -44,10 +44,10 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
     hypothesis, value, part = found.hypothesis, found.log_likelihood, beginning_of(case)
     for colour in _colours(case):
         starts = [colour.put(begun, numbers) for begun in colour.begun(hypothesis) for numbers in colour.starts]
-        start, there = _likeliest(part, *likeliest(part, starts), [colour])
+        start, there = _likeliest(part, likeliest(part, starts)[0], [colour])
         if colour.of(start) is None or there <= likelihood_of(part, hypothesis):
             continue
-        ended, there = _likeliest(case, start, likelihood_of(case, start), [colour])
+        ended, there = _likeliest(case, start, [colour])
         if colour.of(ended) is not None and there > value + COLOUR_COST:
             hypothesis, value = ended, there
     return hypothesis
@@ -56,8 +56,7 @@ def with_colours(case: Case, found: Fit) -> Hypothesis:
 def coloured_noise_of(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     """The hypothesis with the likeliest numbers of all noise that it has, white and with a memory."""
     chosen = [colour for colour in _colours(case) if colour.of(hypothesis) is not None]
-    found, _ = _likeliest(case, hypothesis, likelihood_of(case, hypothesis), chosen, white_noise(case, hypothesis))
-    return found
+    return _likeliest(case, hypothesis, chosen, white_noise(case, hypothesis))[0]
 
 
 def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, float]:
@@ -81,12 +80,12 @@ def colour_sd(case: Case, hypothesis: Hypothesis, gust: Effect) -> dict[str, flo
 
 
 def _likeliest(
-    case: Case, hypothesis: Hypothesis, value: float, colours: Sequence[Colour], white: Sequence[Number] = ()
+    case: Case, hypothesis: Hypothesis, colours: Sequence[Colour], white: Sequence[Number] = ()
 ) -> tuple[Hypothesis, float]:
-    """The likeliest numbers of `colours` and of the white noise, without those colours that are too small to tell; and the log likelihood,
-    `value` as it is."""
+    """The likeliest numbers of `colours` and of the white noise, without those colours that are too small to tell; and the log
+    likelihood."""
     own = [number for colour in colours for number in (_size(colour), _time(colour))]
-    found, value = along_each(case, hypothesis, value, [*white, *own])
+    found, value = likeliest_numbers(case, hypothesis, [*white, *own])
     kept = found
     for colour in colours:
         kept = kept if _numbers(colour, kept)[0] > colour.least else colour.without(kept)
@@ -97,14 +96,14 @@ def _size(colour: Colour) -> Number:
     def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
         return colour.put(hypothesis, (float(10.0**x), _numbers(colour, hypothesis)[1]))
 
-    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[0])), put, COLOUR_STEP)
+    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[0])), put)
 
 
 def _time(colour: Colour) -> Number:
     def put(hypothesis: Hypothesis, x: float) -> Hypothesis:
         return colour.put(hypothesis, (_numbers(colour, hypothesis)[0], float(np.clip(10.0**x, *colour.times_s))))
 
-    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[1])), put, COLOUR_STEP)
+    return Number(lambda hypothesis: float(np.log10(_numbers(colour, hypothesis)[1])), put)
 
 
 def _numbers(colour: Colour, hypothesis: Hypothesis) -> Numbers:

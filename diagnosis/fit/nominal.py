@@ -3,7 +3,7 @@
 from diagnosis import decisions
 from diagnosis.fit.coloured_noise import coloured_noise_of, with_colours
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import FIRST_STEP, process_noise_of, with_process_noise
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
 from jobs.thread_map import thread_map
@@ -11,7 +11,6 @@ from records.errors import BadInput
 
 NOMINAL_ROUNDS = 4
 NOISE_STARTS = tuple(float(decisions.FIRST_PROCESS_NOISE) + by for by in (-1.0, 0.0, 1.0))  # log10 rad/s per sqrt(s)
-FINE_STEP = 0.1  # decades
 SETTLING_ROUNDS, SETTLED_GAIN = 8, 1.0  # nats: parameters and noises give way to each other by little a round
 
 
@@ -33,7 +32,7 @@ def plain_fit(case: Case, first: float = float(decisions.FIRST_PROCESS_NOISE)) -
 def settled(case: Case, start: Hypothesis) -> Fit:
     """The same from where a search may begin nearer to its end. Raises BadInput where the plant cannot follow its logs."""
     found = fit(case, start, rounds=NOMINAL_ROUNDS)
-    for turn in range(SETTLING_ROUNDS):
+    for _ in range(SETTLING_ROUNDS):
         if found is None:
             raise BadInput(
                 "plant",
@@ -42,7 +41,7 @@ def settled(case: Case, start: Hypothesis) -> Fit:
                 "a plant that can follow these logs",
                 "check units",
             )
-        again = fit(case, process_noise_of(case, found, FIRST_STEP if turn < 2 else FINE_STEP), rounds=NOMINAL_ROUNDS)
+        again = fit(case, with_process_noise(case, found.hypothesis), rounds=NOMINAL_ROUNDS)
         if again is not None and again.log_posterior < found.log_posterior + SETTLED_GAIN:
             break
         found = again

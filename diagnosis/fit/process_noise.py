@@ -5,8 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from diagnosis.fit.gauss_newton import Fit, likelihood_of
-from diagnosis.fit.profile_likelihood import Number, along_each
+from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, scaled
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
@@ -14,27 +13,19 @@ from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
 # The most is where it starts: longer doubt would take the part of friction that gives before it slides.
 LEAST_DOUBT = -7.0  # log10 s
-FIRST_STEP = 0.3
-DOUBT_STEPS = 2.0  # of those of the process noise: a level of friction tells less of it
 
 
-def with_process_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> Hypothesis:
+def with_process_noise(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     """The same with the white noise that the innovations show."""
-    return along_each(case, hypothesis, likelihood_of(case, hypothesis), white_noise(case, hypothesis, first))[0]
+    return likeliest_numbers(case, hypothesis, white_noise(case, hypothesis))[0]
 
 
-def process_noise_of(case: Case, found: Fit, first: float = FIRST_STEP) -> Hypothesis:
-    """What was fitted with the white noise that the innovations then show."""
-    return along_each(case, found.hypothesis, found.log_likelihood, white_noise(case, found.hypothesis, first))[0]
-
-
-def white_noise(case: Case, hypothesis: Hypothesis, first: float = FIRST_STEP) -> list[Number]:
+def white_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """The numbers of white noise: one for each axis, and that of rest where any axis has dry friction."""
     found = [
-        Number(partial(_noise, axis), partial(_with_noise, case, axis), first)
-        for axis in range(len(hypothesis.process_noise))
+        Number(partial(_noise, axis), partial(_with_noise, case, axis)) for axis in range(len(hypothesis.process_noise))
     ]
-    return [*found, Number(_doubt, _with_doubt, DOUBT_STEPS * first)] if _rubs(case, hypothesis) else found
+    return [*found, Number(_doubt, _with_doubt)] if _rubs(case, hypothesis) else found
 
 
 def _rubs(case: Case, hypothesis: Hypothesis) -> bool:

@@ -12,7 +12,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import Fit, fit, from_zero
 from diagnosis.fit.jitter import scatters, with_jitter
-from diagnosis.fit.process_noise import process_noise_of, with_process_noise
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest
 from diagnosis.hypothesis.case import Case, beginning_of
 from diagnosis.hypothesis.hypothesis import Hypothesis
@@ -111,7 +111,7 @@ def _scattered(case: Case, found: Fit | None, effects: Sequence[str]) -> Fit | N
     """The fit, or a likelier one where readings come after a delay that scatters, with the process noise that the delay leaves."""
     if found is None or not any(scatters(case, name) for name in effects):
         return found
-    start = with_jitter(case, process_noise_of(case, found), effects)
+    start = with_jitter(case, with_process_noise(case, found.hypothesis), effects)
     if start.effects == found.hypothesis.effects:
         return found
     return _likelier(found, fit(case, with_process_noise(case, start), rounds=4))

@@ -11,7 +11,7 @@ from diagnosis import decisions
 from diagnosis.fit.evidence import FittedHypothesis, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.moved import moved_effects, moved_parameters
-from diagnosis.fit.process_noise import process_noise_of
+from diagnosis.fit.process_noise import with_process_noise
 from diagnosis.hypothesis.case import Case
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def retune(case: Case, nominal: Fit) -> Retune | None:
     found = fit(wider, start, rounds=6)
     if found is None:
         return None
-    found = fit(wider, process_noise_of(wider, found), rounds=6)
+    found = fit(wider, with_process_noise(wider, found.hypothesis), rounds=6)
     if found is None:
         return None
     stated = _as_stated(found, factor, own)
