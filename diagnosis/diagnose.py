@@ -211,12 +211,12 @@ def _yielding(seen: Seen, found: Sequence[FittedHypothesis], further: float = 0.
     """The same with the rules asked, and all anew with axes that yield near rest, where that explains the logs better beside one of those
     found; else None."""
     asked = list(found) if seen.retuned in found else [*found, seen.retuned]
-    case, rules = yielding(seen.case, asked, further)
-    seen = seen.because(*rules)
-    if case is seen.case:
+    found_there = yielding(seen.case, asked, further)
+    seen = seen.because(*found_there.decisions)
+    if found_there.case is seen.case:
         return seen, None
-    again = _beside_noise(_detected(case, seen.checked))
-    return seen, replace(again, decisions=(*seen.decisions, *again.decisions))
+    again = _beside_noise(_detected(found_there.case, seen.checked))
+    return seen, replace(again, beside=found_there.beside, decisions=(*seen.decisions, *again.decisions))
 
 
 def _searched(seen: Seen) -> Search | None:
@@ -227,7 +227,7 @@ def _searched(seen: Seen) -> Search | None:
 
 
 def _alone(seen: Seen) -> Alone:
-    return alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy)
+    return alone(seen.case, seen.retuned, seen.linearisation, seen.score_tests, seen.lossy, seen.beside)
 
 
 def _judged(seen: Seen, material: Material, found: Search, beyond: Retune | None) -> tuple[Seen, Judged]:

@@ -59,7 +59,8 @@ class Material:
 @dataclass(frozen=True, eq=False)
 class Seen:
     """What is seen before any cause is looked for: the plant re-tuned within its spread, the looks at the library beside it, the fit with
-    lost frames, and what all that says of a gap; `checked` are the logs to check on, `decisions` the rules that had a say so far."""
+    lost frames, and what all that says of a gap; `beside` is what was fitted already, `checked` are the logs to check on, `decisions` the
+    rules that had a say so far."""
 
     case: Case
     checked: Case | None
@@ -69,6 +70,7 @@ class Seen:
     lossy: Fit | None
     detection: Detection
     decisions: tuple[Decision, ...] = ()
+    beside: FittedHypothesis | None = None
 
     def because(self, *further: Decision) -> "Seen":
         """The same with further rules that had a say."""

@@ -63,9 +63,10 @@ def alone(
     linearisation: Linearisation,
     score_tests: Sequence[ScoreTest],
     lossy: Fit | None = None,
+    beside: FittedHypothesis | None = None,
 ) -> Alone:
     """Fit the nominal plant with single effects; `first` is that plant without any, `score_tests` those from there, `lossy` its
-    fit with lost frames."""
+    fit with lost frames, `beside` what was fitted already: a search begun anew may not lead there."""
     nominal = first.fit
     worth = _worth(score_tests)
     found: dict[frozenset[str], FittedHypothesis] = {}
@@ -73,6 +74,8 @@ def alone(
         found[frozenset((case.library.losses.name,))] = as_fitted(case, lossy)
     jobs = _promising(nominal, score_tests)[: decisions.SINGLES]
     _fit_all(case, jobs, found, first)
+    if beside is not None and len(beside.effects) == 1:
+        keep_better(found, [entry for entry in (beside, refined(case, beside)) if entry is not None])
     fit_twins(case, found)
     return Alone(found, first, frozenset(worth), linearisation, tuple(score_tests))
 

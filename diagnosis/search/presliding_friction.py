@@ -1,17 +1,18 @@
 """Friction near rest, which a plant's file leaves open: whether axes stick, or creep or give where they are pushed too little to slide."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decisions import held_against
-from diagnosis.fit.evidence import FittedHypothesis, evidence
+from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
 from diagnosis.fit.process_noise import white_noise, with_process_noise
-from diagnosis.fit.profile_likelihood import Number, along_each, likeliest, likelihoods
+from diagnosis.fit.profile_likelihood import likeliest, likelihoods
+from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis
 from records.reasons import Decision
@@ -20,10 +21,18 @@ from sim.effect import Effect, Values
 FOLD = 2.0  # from one size that is tried to the next
 
 
-def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> tuple[Case, tuple[Decision, ...]]:
-    """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best
-    first; else the same; with the rules that
-    were asked.
+@dataclass(frozen=True, eq=False)
+class Yielding:
+    """A case where axes creep or give, the hypothesis beside which they showed that, as it is fitted there, and the rules that were asked;
+    the case as it was and no hypothesis where none does."""
+
+    case: Case
+    beside: FittedHypothesis | None
+    decisions: tuple[Decision, ...]
+
+
+def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0) -> Yielding:
+    """The case where those axes creep or give that do so in its logs, beside one of the hypotheses `found`, best first.
 
     They must then be YIELDING_GAIN and `further` nats likelier than the best of those. It is asked beside them, as under a model that lacks
     something else an axis often seems to creep; and beside more than the best, as where the axes do creep the best is one that makes up
@@ -32,7 +41,8 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
     promised = [(_promised(case, fitted.fit), fitted) for fitted in found]
     promising = sorted((fitted.evidence + gain, place) for place, (gain, fitted) in enumerate(promised) if gain > 0.0)
     needed_nats = decisions.YIELDING_GAIN + further
-    best, yields, rules = found[0].evidence + needed_nats, dict[str, Values](), list[Decision]()
+    best, likeliest_fit, rules = found[0].evidence + needed_nats, None, list[Decision]()
+    yields = dict[str, Values]()
     for _, place in promising[: -decisions.YIELDING_FITTED - 1 : -1]:
         fitted = found[place]
         hypothesis = _yielded(case, fitted.fit)
@@ -42,13 +52,15 @@ def yielding(case: Case, found: Sequence[FittedHypothesis], further: float = 0.0
         explained = evidence(ended, case.library.effects)
         rules.append(_rule(fitted, explained - found[0].evidence, needed_nats))
         if explained > best:
-            best = explained
+            best, likeliest_fit = explained, ended
             beside = fitted.fit.hypothesis.effects
             yields = {name: values for name, values in ended.hypothesis.effects.items() if name not in beside}
-    if not yields:
-        return case, tuple(rules)
+    if likeliest_fit is None:
+        return Yielding(case, None, tuple(rules))
     exact = {name: dict.fromkeys(values, 0.0) for name, values in yields.items()}
-    return replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact}), tuple(rules)
+    known = replace(case, stated={**case.stated, **yields}, stated_sd={**case.stated_sd, **exact})
+    there = fit(known, likeliest_fit.hypothesis, rounds=0)
+    return Yielding(known, None if there is None else as_fitted(known, there), tuple(rules))
 
 
 def _rule(beside: FittedHypothesis, gain: float, limit: float) -> Decision:
@@ -112,10 +124,10 @@ def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value
     likelier = [start for start in begun if start is not None]
     if not likelier:
         return hypothesis, value
-    start, reached = likeliest(case, likelier)
+    start, _ = likeliest(case, likelier)
     effect = ways[begun.index(start)]
-    size = Number(partial(_log_size, effect), partial(_with_log_size, effect), float(np.log10(FOLD)))
-    return along_each(case, start, reached, [size, *white_noise(case, start)])
+    size = Number(partial(_log_size, effect), partial(_with_log_size, effect))
+    return likeliest_numbers(case, start, [size, *white_noise(case, start)])
 
 
 def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:

@@ -88,7 +88,8 @@ def test_without_a_speed_friction_is_dry(creeps: Model) -> None:
 def test_axes_that_creep_are_taken_to(plant: BoundPlant) -> None:
     # Truth: the plant as stated, the jump of its friction rounded off over 5 mrad/s.
     case, nominal = plain_fit(plant, default_flight(plant, CREEP, WHOLE_S))
-    creeping, rules = yielding(case, [nominal])
+    told = yielding(case, [nominal])
+    creeping, rules = told.case, told.decisions
     assert set(creeping.stated) == set(CREEP)
     for name in CREEP:
         assert creeping.stated[name]["v_c"] == pytest.approx(V_C_RAD_S, rel=0.2)
@@ -103,7 +104,7 @@ def test_a_rig_that_creeps_has_no_gap(plant: BoundPlant) -> None:
 
 def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, FittedHypothesis]) -> None:
     case, nominal = giving
-    hypothesis = yielding(case, [nominal])[0].stated
+    hypothesis = yielding(case, [nominal]).case.stated
     assert set(hypothesis) == set(GIVE)
     for name in GIVE:
         assert hypothesis[name]["z_0"] == pytest.approx(Z_0_RAD, rel=0.2)
@@ -121,7 +122,7 @@ def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request
 def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypothesis]) -> None:
     # Truth: no flight of half a minute is a million nats likelier for its friction.
     case, nominal = giving
-    assert yielding(case, [nominal], further=1e6)[0] is case
+    assert yielding(case, [nominal], further=1e6).case is case
 
 
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
@@ -130,7 +131,7 @@ def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: Bound
     log = default_flight(plant, {**GIVE, DRAG: {"c": 4e-3}}, LONG_S)
     case, nominal = plain_fit(without_effects(stated), log, stated=stated)
     assert nominal.fit.hypothesis.effects[DRAG]["c"] != pytest.approx(2e-3, rel=0.01)
-    found, _ = yielding(case, [nominal])
+    found = yielding(case, [nominal]).case
     assert set(found.stated) == {DRAG, *GIVE}
     assert found.stated[DRAG] == {"c": 2e-3}
     assert found.stated_sd[DRAG] == {"c": 1e-4}
@@ -153,7 +154,7 @@ def test_dry_friction_that_gives_keeps_its_name(plant: BoundPlant) -> None:
 
 def test_axes_that_stick_are_not_taken_to_yield(sticking: tuple[Case, FittedHypothesis]) -> None:
     case, nominal = sticking
-    assert yielding(case, [nominal])[0] is case
+    assert yielding(case, [nominal]).case is case
 
 
 def test_a_speed_in_whole_counts_is_known_to_a_count(plant: BoundPlant, fly: Fly) -> None:
