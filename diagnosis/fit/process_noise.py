@@ -17,15 +17,25 @@ LEAST_DOUBT = -7.0  # log10 s
 
 def with_process_noise(case: Case, hypothesis: Hypothesis) -> Hypothesis:
     """The same with the white noise that the innovations show."""
-    return likeliest_numbers(case, hypothesis, white_noise(case, hypothesis))[0]
+    return likeliest_numbers(case, hypothesis, axis_noise(case, hypothesis))[0]
+
+
+def axis_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
+    """One number for all noise of each axis, so that what comes and goes grows with what is white, and that of rest where any axis has dry
+    friction."""
+    axes = range(len(hypothesis.process_noise))
+    found = [Number(partial(_noise, axis), partial(_with_all, case, axis)) for axis in axes]
+    return found + _rest(case, hypothesis)
 
 
 def white_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
-    """The numbers of white noise: one for each axis, and that of rest where any axis has dry friction."""
-    found = [
-        Number(partial(_noise, axis), partial(_with_noise, case, axis)) for axis in range(len(hypothesis.process_noise))
-    ]
-    return [*found, Number(_doubt, _with_doubt)] if _rubs(case, hypothesis) else found
+    """The same for white noise alone, where what comes and goes has numbers of its own."""
+    axes = range(len(hypothesis.process_noise))
+    return [Number(partial(_noise, axis), partial(_with_white, axis)) for axis in axes] + _rest(case, hypothesis)
+
+
+def _rest(case: Case, hypothesis: Hypothesis) -> list[Number]:
+    return [Number(_doubt, _with_doubt)] if _rubs(case, hypothesis) else []
 
 
 def _rubs(case: Case, hypothesis: Hypothesis) -> bool:
@@ -39,8 +49,13 @@ def _noise(axis: int, hypothesis: Hypothesis) -> float:
     return float(hypothesis.process_noise[axis])
 
 
-def _with_noise(case: Case, axis: int, hypothesis: Hypothesis, x: float) -> Hypothesis:
-    """All noise of an axis: what comes and goes grows with what is white."""
+def _with_white(axis: int, hypothesis: Hypothesis, x: float) -> Hypothesis:
+    process_noise = hypothesis.process_noise.copy()
+    process_noise[axis] = np.clip(x, LEAST_NOISE, MOST_NOISE)
+    return replace(hypothesis, process_noise=process_noise)
+
+
+def _with_all(case: Case, axis: int, hypothesis: Hypothesis, x: float) -> Hypothesis:
     return scaled(case, hypothesis, axis, float(np.clip(x, LEAST_NOISE, MOST_NOISE)))
 
 

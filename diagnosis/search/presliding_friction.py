@@ -10,7 +10,7 @@ from diagnosis import decisions
 from diagnosis.decisions import held_against
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted, evidence
 from diagnosis.fit.gauss_newton import Fit, fit
-from diagnosis.fit.process_noise import white_noise, with_process_noise
+from diagnosis.fit.process_noise import axis_noise, with_process_noise
 from diagnosis.fit.profile_likelihood import likeliest, likelihoods
 from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case
@@ -127,7 +127,7 @@ def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value
     start, _ = likeliest(case, likelier)
     effect = ways[begun.index(start)]
     size = Number(partial(_log_size, effect), partial(_with_log_size, effect))
-    return likeliest_numbers(case, start, [size, *white_noise(case, start)])
+    return likeliest_numbers(case, start, [size, *axis_noise(case, start)])
 
 
 def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:

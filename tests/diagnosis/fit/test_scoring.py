@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.gauss_newton import likelihood_of
-from diagnosis.fit.process_noise import white_noise
+from diagnosis.fit.process_noise import axis_noise
 from diagnosis.fit.scoring import likeliest_numbers
 from tests.diagnosis.arm import plain_linearisation
 
@@ -17,8 +17,8 @@ def test_the_likeliest_noise_is_found_from_decades_away(away: float) -> None:
     linearisation = plain_linearisation()
     case, fitted = linearisation.case, linearisation.fit.hypothesis
     begun = replace(fitted, process_noise=fitted.process_noise + away)
-    found, value = likeliest_numbers(case, begun, white_noise(case, begun))
-    noise = white_noise(case, found)[0]
+    found, value = likeliest_numbers(case, begun, axis_noise(case, begun))
+    noise = axis_noise(case, found)[0]
     grid = [likelihood_of(case, noise.put(found, noise.of(found) + by)) for by in np.linspace(-1.0, 1.0, 41)]
     assert value == likelihood_of(case, found)
     assert max(grid) < value + 0.3
@@ -27,7 +27,7 @@ def test_the_likeliest_noise_is_found_from_decades_away(away: float) -> None:
 def test_a_hypothesis_that_is_likeliest_stays() -> None:
     linearisation = plain_linearisation()
     case, fitted = linearisation.case, linearisation.fit.hypothesis
-    found, value = likeliest_numbers(case, fitted, white_noise(case, fitted))
-    again, same = likeliest_numbers(case, found, white_noise(case, found))
+    found, value = likeliest_numbers(case, fitted, axis_noise(case, fitted))
+    again, same = likeliest_numbers(case, found, axis_noise(case, found))
     assert again is found
     assert same == value

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from diagnosis.diagnose import Material, diagnose
@@ -15,10 +16,23 @@ from diagnosis.search.draughts import draught
 from records.log import RunLog
 from sim.added_effects import with_effects
 from sim.bind import BoundPlant, bind
+from sim.effects.gust import SINES, TURN
 from tests.diagnosis.conftest import LONG_S, Fly
 
-# Truth: 1 mN m, a fortieth of what such an axis can be pushed with, forgotten in 0.7 s.
-GUST = {"elevation.gust": {"sigma": 1e-3, "T": 0.7}}
+# Truth: 1.5 mN m, 0.04 of what such an axis can be pushed with and twice what is told as a gust, forgotten in 0.7 s. Every flight has
+# the same draw of it (sim/effects/gust.py eq (1)), whose own size and time in so few seconds are what a flight can tell.
+GUST = {"elevation.gust": {"sigma": 1.5e-3, "T": 0.7}}
+
+
+def drawn() -> dict[str, float]:
+    """Standard deviation and correlation time of the draw in LONG_S, as those of the first-order process that it looks like."""
+    sigma, T = GUST["elevation.gust"].values()
+    t_s = np.arange(0.0, LONG_S, 0.01)
+    i = np.arange(SINES)
+    omega = np.tan(np.pi / 2 * (i + 0.5) / SINES) / T
+    g = sigma * np.sqrt(2.0 / SINES) * np.cos(np.outer(t_s, omega) + i * float(TURN)).sum(axis=1)
+    kept = float(g[1:] @ g[:-1] / (g[:-1] @ g[:-1]))
+    return {"sigma": float(np.sqrt(np.mean(g**2))), "T": -0.01 / float(np.log(kept))}
 
 
 def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis]:
@@ -27,7 +41,8 @@ def alone(plant: BoundPlant, logs: list[RunLog]) -> tuple[Case, FittedHypothesis
 
 
 def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fly) -> None:
-    # 60 s hold 86 times 0.7 s: the size is known to some 10 %, the time to some 30 %; three such deviations.
+    # The draw's own size within three deviations of what is known of it, its time to a factor of two: sines are a process of first order
+    # only in the mean of many draws.
     case, nominal = alone(plant, [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)])
     assert nominal.effects == ()
     found, _ = draught(case, nominal)
@@ -36,8 +51,9 @@ def test_a_gust_is_noise_of_its_axis_with_its_numbers(plant: BoundPlant, fly: Fl
     assert found.gusty.evidence > found.quiet.evidence + 100.0
     values = nominal.fit.hypothesis.effects["elevation.gust"]
     sd = colour_sd(case, nominal.fit.hypothesis, case.library.effects["elevation.gust"])
-    for symbol, truth in GUST["elevation.gust"].items():
-        assert abs(values[symbol] - truth) < 3.0 * sd[symbol]
+    truth = drawn()
+    assert abs(values["sigma"] - truth["sigma"]) < 3.0 * sd["sigma"]
+    assert 0.5 < values["T"] / truth["T"] < 2.0
     assert 0.02 < sd["sigma"] / values["sigma"] < 0.2
     assert 0.05 < sd["T"] / values["T"] < 0.6
 
@@ -78,10 +94,10 @@ def test_a_gust_that_the_plant_file_states_is_carried_along_and_not_flown_with(p
 def test_a_gust_that_is_found_replaces_the_one_that_the_plant_file_states(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the air is four times as restless as the plant file has it, on the same axis; three deviations.
     stated = with_effects(
-        plant, {"elevation.gust": {"sigma": 2.5e-4, "T": 0.7}}, sd={"elevation.gust": {"sigma": 1e-4}}
+        plant, {"elevation.gust": {"sigma": 3.75e-4, "T": 0.7}}, sd={"elevation.gust": {"sigma": 1.5e-4}}
     )
     case = make_case(effect_library(plant), [fly(seed, GUST, LONG_S, rig_seed=90) for seed in (91, 92)], stated=stated)
     found, _ = draught(case, as_fitted(case, nominal_fit(case)))
     assert found is not None
     sigma = bind(improved_plant(case, found.gusty)).effects["elevation.gust"]["sigma"]
-    assert abs(sigma.values[0] - GUST["elevation.gust"]["sigma"]) < 3.0 * sigma.sds[0] < 6e-4
+    assert abs(sigma.values[0] - drawn()["sigma"]) < 3.0 * sigma.sds[0] < 9e-4
