@@ -14,15 +14,18 @@ from blind.scoring.judge import means
 from blind.scoring.results import names_of
 from records.errors import BadInput
 
-RECORD = "calibration_"  # what the rules that recorded the features begin with
+RECORD = "calibration_"  # what the rules that recorded the features begin with,
+SHARE = RECORD + "share"  # and the rule that recorded which share of all names the first had
 STATED = "comes_true"  # the rule that recorded the probability
 
 
 @dataclass(frozen=True)
 class Example:
-    """One answer: its features, whether the name that they speak of is right, the probability stated of it (None: not on record)."""
+    """One answer: its features, the share that its first name had of all names, whether that name is right, the probability stated of it
+    (None: not on record)."""
 
     features: tuple[float, ...]
+    share: float
     right: bool
     stated: float | None
 
@@ -47,8 +50,8 @@ def family(name: str, folders: Sequence[tuple[Path, Path]], features: Sequence[s
         for case, truth in truths.items():
             told = _told(answers / case / "diagnosis.json", features)
             if told is not None:
-                of, values, stated = told
-                found.append(Example(values, means(names_of(of), truth), stated))
+                of, values, share, stated = told
+                found.append(Example(values, share, means(names_of(of), truth), stated))
     if not found:
         where = ", ".join(str(answers) for _, answers in folders)
         got = f"none in the answers to {cases} cases"
@@ -57,14 +60,15 @@ def family(name: str, folders: Sequence[tuple[Path, Path]], features: Sequence[s
     return Family(name, tuple(sorted(seeds)), cases, tuple(found))
 
 
-def _told(path: Path, features: Sequence[str]) -> tuple[str, tuple[float, ...], float | None] | None:
-    """The name that an answer's last features speak of, these, and what was stated; None where it has none or cannot be read."""
+def _told(path: Path, features: Sequence[str]) -> tuple[str, tuple[float, ...], float, float | None] | None:
+    """The name that an answer's last features speak of, these, its share, and what was stated; None where it has none or cannot be read."""
     try:
         records = json.loads(path.read_text(encoding="utf-8")).get("decisions") or []
         last = {entry["rule"]: entry for entry in records}
         named = [last[RECORD + name] for name in features]
         values = tuple(float(entry["value"]) for entry in named)
-        return (str(named[-1]["of"]), values, _stated(last)) if all(map(math.isfinite, values)) else None
+        share = float(last[SHARE]["value"])
+        return (str(named[-1]["of"]), values, share, _stated(last)) if all(map(math.isfinite, values)) else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 

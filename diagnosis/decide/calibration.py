@@ -18,8 +18,8 @@ FEATURES = ("sure", "favour", "silent", "further")  # in the order of the law's 
 
 @dataclass(frozen=True)
 class Features:
-    """What the law is told of the first name: the logit of its weight, what the hold-out says for it (-1 to 1), whether there is none,
-    and how many effects it has beyond one."""
+    """What the law is told: the logit of the weight of all names together, what the hold-out says for the first (-1 to 1), whether there is
+    none, and how many effects the first has beyond one."""
 
     sure: float
     favour: float
@@ -34,13 +34,13 @@ class Features:
 
 @dataclass(frozen=True)
 class Law:
-    """log odds that the first name is right = intercept + coefficients . features."""
+    """log odds that one of the names is right = intercept + coefficients . features."""
 
     intercept: float
     coefficients: tuple[float, ...]
 
     def probability(self, features: Features) -> float:
-        """The chance that the first name is right."""
+        """The chance that one of the names is right."""
         return float(1.0 / (1.0 + np.exp(-self.intercept - np.dot(self.coefficients, features.vector))))
 
 
@@ -53,7 +53,7 @@ def learned() -> Law:
 
 def features_of(weighed: Weighed, favour: float | None) -> Features:
     """What the law is told; `favour` is None without a hold-out."""
-    p = weighed.probabilities[0]
+    p = sum(weighed.probabilities)
     sure = float(
         np.clip(
             np.log(max(p, 1e-12)) - np.log(max(1.0 - p, 1e-12)), -decisions.FARTHEST_LOGIT, decisions.FARTHEST_LOGIT
@@ -63,25 +63,25 @@ def features_of(weighed: Weighed, favour: float | None) -> Features:
 
 
 def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -> tuple[Weighed, tuple[Decision, ...]]:
-    """The first name as probable as such names came true, all else in its old proportions, but no other name above the first: what is over
-    counts as unknown. The records are the law's features."""
-    if not weighed.fitted or weighed.probabilities[0] >= 1.0:
+    """The names together as probable as such names came true, each with its share of that, and all else with its share of the rest. The
+    records are the law's features and the first name's share."""
+    names = sum(weighed.probabilities)
+    if not weighed.fitted or names >= 1.0:
         return weighed, ()
     told, of = features_of(weighed, favour), named(weighed)
-    first = (learned() if law is None else law).probability(told)
-    factor = (1.0 - first) / (1.0 - weighed.probabilities[0])
-    others = [factor * value for value in weighed.probabilities[1:]]
-    capped = [min(value, first) for value in others]
+    known = (learned() if law is None else law).probability(told)
+    rest = (1.0 - known) / (1.0 - names)
     found = replace(
         weighed,
-        probabilities=(first, *capped),
-        unknown=factor * weighed.unknown + sum(others) - sum(capped),
-        retune=factor * weighed.retune,
+        probabilities=tuple(known * value / names for value in weighed.probabilities),
+        unknown=rest * weighed.unknown,
+        retune=rest * weighed.retune,
     )
-    values = dict(zip(FEATURES, told.vector, strict=True))
+    share = weighed.probabilities[0] / names
+    values = {**dict(zip(FEATURES, told.vector, strict=True)), "share": share}
     return found, (
         *_records(of, values),
-        held_against("comes_true", of, first, found.unknown, "probability", _outcome(found)),
+        held_against("comes_true", of, known * share, found.unknown, "probability", _outcome(found)),
     )
 
 

@@ -29,8 +29,10 @@ def examples(rng: np.random.Generator, count: int) -> tuple[Example, ...]:
     sure, favour = rng.normal(1.0, 2.0, count), rng.uniform(-1.0, 1.0, count)
     silent = (rng.random(count) < 0.3).astype(float)
     told = np.column_stack([sure, np.where(silent == 1.0, 0.0, favour), silent, np.zeros(count)])
-    right = rng.random(count) < expit(INTERCEPT + told @ TRUE)
-    return tuple(Example(tuple(row), bool(is_right), None) for row, is_right in zip(told, right, strict=True))
+    shares = rng.choice([1.0, 0.6], count)
+    right = rng.random(count) < shares * expit(INTERCEPT + told @ TRUE)
+    found = zip(told, shares.tolist(), right, strict=True)
+    return tuple(Example(tuple(row), share, bool(is_right), None) for row, share, is_right in found)
 
 
 def families(count: int) -> list[Family]:
@@ -39,11 +41,13 @@ def families(count: int) -> list[Family]:
 
 
 def test_a_known_law_is_found_again_within_four_standard_errors() -> None:
-    """6000 answers; standard errors from the curvature of the log loss at the truth; what does not vary has no coefficient."""
+    """6000 answers; standard errors from what answers tell of p = share q at the truth, p'^2 / p (1 - p); what does not vary has no
+    coefficient."""
     found = calibrate(families(2000))
     told = np.array([[1.0, *entry.features[:3]] for one in found.families for entry in one.examples])
-    p = expit(told @ [INTERCEPT, *TRUE[:3]])
-    errors = np.sqrt(np.diag(np.linalg.inv((told.T * (p * (1.0 - p))) @ told)))
+    shares = np.array([entry.share for one in found.families for entry in one.examples])
+    q = expit(told @ [INTERCEPT, *TRUE[:3]])
+    errors = np.sqrt(np.diag(np.linalg.inv((told.T * (shares * q * (1.0 - q) ** 2 / (1.0 - shares * q))) @ told)))
     misses = np.abs(np.array([found.law.intercept, *found.law.coefficients[:3]]) - [INTERCEPT, *TRUE[:3]])
     assert np.all(misses < 4.0 * errors)
     assert np.all(errors < 0.12)  # so that four of them say something
@@ -56,16 +60,17 @@ def test_probabilities_of_the_true_law_are_as_honest_out_of_family_as_chance_all
     assert found.outside.calibration_error < found.outside.honest_95
     assert found.outside.honest < found.outside.honest_95
     told = [entry for one in found.families for entry in one.examples]
-    honest = quality(expit(INTERCEPT + np.array([entry.features for entry in told]) @ TRUE), told)
+    shares = np.array([entry.share for entry in told])
+    honest = quality(shares * expit(INTERCEPT + np.array([entry.features for entry in told]) @ TRUE), told)
     assert found.outside.log_loss == pytest.approx(honest.log_loss, abs=0.02)
     assert found.inside.log_loss <= found.outside.log_loss
 
 
 def test_few_answers_have_a_finite_law_all_right_or_told_apart_without_error_and_more_decay_a_flatter_one() -> None:
-    right = fit([Example((float(place), 0.0, 1.0, 0.0), True, None) for place in range(3)], DECAYS[0])
+    right = fit([Example((float(place), 0.0, 1.0, 0.0), 1.0, True, None) for place in range(3)], DECAYS[0])
     assert right.coefficients == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-9)
     assert 3.0 < right.intercept < 10.0
-    apart = [Example((float(place), 0.0, 1.0, 0.0), place > 1, None) for place in range(4)]
+    apart = [Example((float(place), 0.0, 1.0, 0.0), 1.0, place > 1, None) for place in range(4)]
     loose, tight = fit(apart, DECAYS[0]), fit(apart, DECAYS[-1])
     assert 10.0 > loose.coefficients[0] > tight.coefficients[0] > 0.0
 
@@ -84,6 +89,7 @@ def recorded(of: str, sure: float = 1.0, stated: float | None = 0.7) -> Mapping[
     """A diagnosis.json that says nothing but what was told the law."""
     values = dict(zip(FEATURES, (sure, 0.5, 0.0, 0.0), strict=True))
     records = [{"rule": f"calibration_{name}", "of": of, "value": value} for name, value in values.items()]
+    records.append({"rule": "calibration_share", "of": of, "value": 0.9})
     return {"decisions": [*records, {"rule": "comes_true", "of": of, "value": stated}]}
 
 
@@ -118,7 +124,7 @@ MIXED = [
 def test_a_name_is_right_as_the_scorer_says_and_answers_without_features_teach_nothing(tmp_path: Path) -> None:
     found = family("first", [write(tmp_path, MIXED, 24)], FEATURES)
     assert [entry.right for entry in found.examples] == [True, False, False, True, True, False]
-    assert found.examples[3].features == (2.0, 0.5, 0.0, 0.0)
+    assert (found.examples[3].features, found.examples[3].share) == ((2.0, 0.5, 0.0, 0.0), 0.9)
     assert [entry.stated for entry in found.examples[3:5]] == [0.7, None]
     assert (found.cases, found.seeds) == (8, (24,))
 

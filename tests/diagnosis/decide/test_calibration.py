@@ -16,22 +16,16 @@ def weighed(first: float, second: float, unknown: float) -> Weighed:
     return Weighed(names, (first, second), unknown, 1.0 - first - second - unknown, 10.0)
 
 
-def test_the_first_gets_the_laws_probability_and_the_rest_share_what_is_left() -> None:
+def test_the_names_share_the_laws_probability_and_the_rest_shares_what_is_left() -> None:
     law = Law(-0.5, (1.0, 2.0, 0.0, 0.0))
     found, rules = calibrated(weighed(0.5, 0.2, 0.2), 0.25, law)
-    truth = 1.0 / (1.0 + np.exp(0.5 - 0.0 - 0.5))  # logit(0.5) = 0
-    assert found.probabilities[0] == pytest.approx(truth)
-    assert found.unknown == pytest.approx((1.0 - truth) * 0.2 / 0.5)
+    truth = 1.0 / (1.0 + np.exp(0.5 - np.log(0.7 / 0.3) - 0.5))
+    assert found.probabilities == pytest.approx((truth * 5.0 / 7.0, truth * 2.0 / 7.0))
+    assert found.unknown == pytest.approx((1.0 - truth) * 0.2 / 0.3)
     assert sum(found.probabilities) + found.unknown + found.retune == pytest.approx(1.0)
     told = {rule.rule: rule.value for rule in rules}
     assert (told["calibration_favour"], told["calibration_silent"]) == (0.25, 0.0)
-
-
-def test_no_other_name_gets_more_than_the_first() -> None:
-    # Truth: two names alike, of which the law trusts the first with a quarter: the second with no more, half is unknown.
-    found, _ = calibrated(weighed(0.53, 0.47, 0.0), None, Law(-np.log(3.0), (0.0, 0.0, 0.0, 0.0)))
-    assert found.probabilities == pytest.approx((0.25, 0.25))
-    assert found.unknown == pytest.approx(0.5)
+    assert told["calibration_share"] == pytest.approx(5.0 / 7.0)
 
 
 def test_surer_weights_than_the_law_was_told_of_count_no_more() -> None:
