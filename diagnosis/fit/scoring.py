@@ -22,7 +22,7 @@ from jobs.thread_map import thread_map
 Array = NDArray[np.float64]
 NUDGE = 0.05  # decades, over which slopes are taken
 JUMP = 0.3  # of ln s: twice what a nudge makes of it; beyond, an axis came to rest a row earlier
-MOST_STEPS = 5
+MOST_STEPS = 10
 LITTLE_PROMISED = 0.3  # nats
 NEARLY_THERE = 3.0  # nats promised and found: of so near a top one step leaves less than little
 KNOWN = 1e-2  # information (1/decade^2) of a number of which the logs tell nothing: to a factor of 10 decades

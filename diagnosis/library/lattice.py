@@ -16,6 +16,7 @@ Counts = NDArray[np.int64]
 NOISES = np.geomspace(0.03, 1.0, 8)[:, None]  # of (1), in counts
 STRAY = 0.01  # share of readings that may lie anywhere: a row that was put together from two
 PADDED, PEAKS = 8, 6  # points of the spectrum a cycle over all counts; its highest peaks are asked
+NEARLY_AS_HIGH = 0.8
 LOWEST = 0.3  # of all counts in phase: those of a grid of 1.5 counts without noise are 0.41
 AROUND = np.linspace(-1.0, 1.0, 81)
 AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
@@ -23,11 +24,13 @@ AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 def coarse_step(y: Array, step: float) -> float | None:
     """The step of the grid that the readings y (n,) lie on where it is coarser than `step`; None where it is not."""
-    counts, times = np.unique(_passed(_counts(y, step)), return_counts=True)
+    read = _counts(y, step)
+    counts, times = np.unique(_passed(read), return_counts=True)
     if len(counts) < decisions.LEAST_VALUES:
         return None
-    best = max((_finely(counts, times, f, width) for f, width in _peaks(counts, times)), default=(0.0, 0.0))
-    return step / best[1] if _lies(best[0], int(times.sum()), best[1]) else None
+    evidence, f = max((_finely(counts, times, f, width) for f, width in _peaks(counts, times)), default=(0.0, 0.0))
+    different = min(len(np.unique(read)), int(times.sum()))
+    return step / f if _lies(evidence / times.sum(), different, int(np.ptp(counts)) + 1, f) else None
 
 
 def grid_evidence(y: Array, grid: float, step: float) -> float:
@@ -37,7 +40,7 @@ def grid_evidence(y: Array, grid: float, step: float) -> float:
     if len(counts) == 0 or grid <= decisions.COARSE_STEP * step:
         return 0.0
     found = _evidence(counts, times, step / grid)
-    return found if _lies(found, int(times.sum()), step / grid) else 0.0
+    return found if _lies(found / times.sum(), len(counts), int(np.ptp(counts)) + 1, step / grid) else 0.0
 
 
 def _counts(y: Array, step: float) -> Counts:
@@ -60,12 +63,17 @@ def _peaks(counts: Counts, times: Counts) -> list[tuple[float, float]]:
     passes[counts - counts[0]] = times
     points = 1 << (PADDED * span - 1).bit_length()
     height = np.abs(np.fft.rfft(passes, points))
-    height[: int(decisions.LEAST_VALUES * points / span)] = 0.0  # fewer points of a grid between the extremes show none
+    height[: int(0.5 * decisions.LEAST_VALUES * points / span)] = (
+        0.0  # a grid of fewer points between the extremes is none
+    )
     height[height < LOWEST * times.sum()] = 0.0
     inner = np.flatnonzero(
         (height >= np.append(0.0, height[:-1])) & (height >= np.append(height[1:], 0.0)) & (height > 0.0)
     )
-    highest = inner[np.argsort(height[inner])[::-1][:PEAKS]] / points
+    ranked = inner[np.argsort(height[inner])[::-1]]
+    # Overtones of a grid that is read without noise are as high as its own frequency, the lowest of them.
+    lowest = [place for place in inner if height[place] > NEARLY_AS_HIGH * height[ranked[0]]][:1]
+    highest = np.array([*lowest, *ranked[:PEAKS]]) / points
     both = [f for peak in highest for f in (peak, 1.0 - peak)]
     return [(float(f), 1.0 / points) for f in both if f * decisions.COARSE_STEP < 1.0]
 
@@ -89,6 +97,9 @@ def _evidence(counts: Counts, times: Counts, f: float) -> float:
     return float(np.max(np.log(STRAY + (1.0 - STRAY) * p) @ times))
 
 
-def _lies(evidence: float, readings: int, f: float) -> bool:
-    """Whether that evidence is a grid's: beyond chance, and a good part of what readings without noise would show."""
-    return evidence > max(decisions.GRID_NATS, decisions.GRID_SHARE * readings * -np.log(f) if f > 0.0 else np.inf)
+def _lies(each: float, different: int, span: int, f: float) -> bool:
+    """Whether the evidence of each reading, of so many different ones over `span` counts, is a grid's: beyond chance, as the same count
+    again says nothing new and as many grids differ as there are counts, and a good part of what readings without noise would show."""
+    return (
+        f > 0.0 and each * different > decisions.GRID_NATS + np.log(span) and each > decisions.GRID_SHARE * -np.log(f)
+    )

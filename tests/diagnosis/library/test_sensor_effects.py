@@ -83,6 +83,19 @@ def test_a_grid_whose_points_are_read_with_noise_is_found(steps: float) -> None:
     assert coarse_step(read, STEP) == pytest.approx(steps * STEP, rel=1e-3)
 
 
+def test_a_grid_so_coarse_that_few_points_of_it_are_read_is_found() -> None:
+    angle = 0.35 + 0.25 * np.sin(np.linspace(0.0, 30.0, 4000))
+    coarse = 75.3 * STEP
+    read = STEP * np.round(coarse * np.round(angle / coarse) / STEP)
+    assert len(np.unique(read)) < 7
+    assert coarse_step(read, STEP) == pytest.approx(coarse, rel=3e-3)
+
+
+def test_a_swing_that_is_sampled_at_the_same_few_angles_has_no_grid() -> None:
+    angle = np.tile(0.9 * np.sin(np.linspace(0.0, 2.0 * np.pi, 14, endpoint=False) + 0.3), 300)
+    assert coarse_step(STEP * np.round(angle / STEP), STEP) is None
+
+
 def test_an_axis_that_rests_between_two_counts_has_no_grid() -> None:
     places = np.repeat(np.random.default_rng(4).uniform(-0.5, 0.5, 30), 200)
     noise = np.random.default_rng(5).normal(0.0, 0.5 * STEP, len(places))
