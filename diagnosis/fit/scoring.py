@@ -7,7 +7,7 @@
 part of the noise give way to each other at once.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,10 +21,11 @@ from jobs.thread_map import thread_map
 
 Array = NDArray[np.float64]
 NUDGE = 0.05  # decades, over which slopes are taken
-JUMP = 0.3  # of ln s: twice what a nudge makes of it; beyond, an axis came to rest a row earlier
+# Of ln s and of a whitened innovation: more than a nudge makes of them. Beyond, an axis came to rest a row earlier: no slope.
+JUMP, FAR = 0.3, 1.0
 MOST_STEPS = 10
 LITTLE_PROMISED = 0.3  # nats
-NEARLY_THERE = 3.0  # nats promised and found: of so near a top one step leaves less than little
+NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
 KNOWN = 1e-2  # information (1/decade^2) of a number of which the logs tell nothing: to a factor of 10 decades
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
@@ -45,19 +46,44 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
         return start, -np.inf
     for _ in range(MOST_STEPS):
         g, information = _linear(case, at, runs, numbers)
-        step = np.asarray(np.linalg.solve(information, g), float)
+        step = _step(at, numbers, g, information)
         promised, before = 0.5 * float(g @ step), likelihood(runs)
         if promised < LITTLE_PROMISED:
             break
-        for share in SHARES:
-            moved = _moved(at, numbers, step, share)
+        for moved in _tries(at, numbers, step, np.asarray(g / np.diag(information), float)):
             there = passes(case, moved)
             if there is not None and likelihood(there) > before:
                 at, runs = moved, there
                 break
-        if likelihood(runs) < before + LITTLE_PROMISED or (share == 1.0 and promised < NEARLY_THERE):
+        gained = likelihood(runs) - before
+        if gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised):
             break
     return at, likelihood(runs)
+
+
+def _step(hypothesis: Hypothesis, numbers: Sequence[Number], g: Array, information: Array) -> Array:
+    """I^-1 g among the numbers that no bound keeps from going there."""
+    free, step = list(range(len(numbers))), np.zeros(len(numbers))
+    while free:
+        step[free] = np.linalg.solve(information[np.ix_(free, free)], g[free])
+        kept = [place for place in free if not _is_blocked(hypothesis, numbers[place], float(step[place]))]
+        if kept == free:
+            break
+        step[:], free = 0.0, kept
+    return step
+
+
+def _is_blocked(hypothesis: Hypothesis, number: Number, step: float) -> bool:
+    x = number.of(hypothesis)
+    return number.of(number.put(hypothesis, x + float(np.copysign(NUDGE, step)))) == x
+
+
+def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Array) -> Iterator[Hypothesis]:
+    """Where the likelihood may be higher: shares of the whole step; where axes stick, a step of one number alone."""
+    for share in SHARES:
+        yield _moved(hypothesis, numbers, step, share)
+    for place in np.argsort(-np.abs(alone)).tolist():
+        yield _moved(hypothesis, [numbers[place]], alone[[place]], SHARES[0])
 
 
 def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, share: float) -> Hypothesis:
@@ -83,7 +109,8 @@ def _linear(case: Case, hypothesis: Hypothesis, runs: Sequence[Pass], numbers: S
 def _slope(
     case: Case, hypothesis: Hypothesis, runs: Sequence[Pass], number: Number
 ) -> tuple[tuple[float, float], Array]:
-    """A nudge of one number and what it gains in likelihood; and the slopes of ln s / sqrt(2) and of nu / sqrt(s), in a row."""
+    """A nudge of one number and what it gains in likelihood where that is smooth; and the slopes of ln s / sqrt(2) and of nu / sqrt(s), in
+    a row."""
     none = np.zeros(2 * stacked(runs).size)
     x = number.of(hypothesis)
     for nudge in (NUDGE, -NUDGE):
@@ -94,8 +121,10 @@ def _slope(
         if others is None:
             continue
         ratio = np.concatenate([(other.s / one.s).ravel() for one, other in zip(runs, others, strict=True)])
-        ratio = np.where(np.abs(np.log(ratio)) < JUMP, ratio, 1.0)
-        changed = np.where(ratio == 1.0, 0.0, stacked(others) * np.sqrt(ratio) - stacked(runs))
-        both = np.concatenate([np.log(ratio) / np.sqrt(2.0), changed]) / nudge
-        return (nudge, likelihood(others) - likelihood(runs)), both
+        before, after = stacked(runs), stacked(others)
+        changed = after * np.sqrt(np.nan_to_num(ratio, nan=1.0)) - before
+        smooth = (np.abs(np.log(ratio)) < JUMP) & (np.abs(changed) < FAR)
+        spread, changed = np.where(smooth, np.log(ratio), 0.0), np.where(smooth, changed, 0.0)
+        gained = -0.5 * float(np.sum(spread + np.where(smooth, after**2 - before**2, 0.0)))
+        return (nudge, gained), np.concatenate([spread / np.sqrt(2.0), changed]) / nudge
     return (NUDGE, 0.0), none
