@@ -26,7 +26,7 @@ JUMP, FAR = 0.3, 1.0
 MOST_STEPS = 10
 LITTLE_PROMISED = 0.3  # nats
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
-KNOWN = 1e-2  # information (1/decade^2) of a number of which the logs tell nothing: to a factor of 10 decades
+KNOWN = 1e-8  # information (1/decade^2) of a number of which the logs tell nothing: far too little noise tells next to nothing too
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
 
@@ -56,7 +56,8 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
                 at, runs = moved, there
                 break
         gained = likelihood(runs) - before
-        if gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised):
+        far = gained > 0.0 and float(np.max(np.abs(step))) >= FURTHEST
+        if not far and (gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised)):
             break
     return at, likelihood(runs)
 

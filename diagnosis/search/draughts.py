@@ -1,7 +1,7 @@
 """Torques that come and go: noise of the plant, and told as a gust where nothing else is missing and they are more than a rig's usual."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from diagnosis import decisions
 from diagnosis.decisions import decided
@@ -9,7 +9,7 @@ from diagnosis.fit.coloured_noise import coloured_noise_of
 from diagnosis.fit.evidence import FittedHypothesis, as_fitted
 from diagnosis.fit.gauss_newton import fit
 from diagnosis.hypothesis.case import Case
-from diagnosis.hypothesis.hypothesis import Hypothesis
+from diagnosis.hypothesis.hypothesis import Hypothesis, noise_on
 from records.reasons import Decision
 from sim.effect import Role
 
@@ -54,8 +54,16 @@ def gust_shares(case: Case, hypothesis: Hypothesis) -> dict[str, float]:
 
 
 def without_gusts(case: Case, fitted: FittedHypothesis, names: Collection[str]) -> FittedHypothesis | None:
-    """The same fitted without some of its torques that come and go; None where the plant cannot follow its logs then."""
-    hypothesis = fitted.fit.hypothesis
-    still = hypothesis.with_effects({name: v for name, v in hypothesis.effects.items() if name not in names})
+    """The same fitted without some of its torques that come and go; None where the plant cannot follow its logs then.
+
+    White noise, of which such a torque may have left none, begins on its axis where it does before any log is seen.
+    """
+    hypothesis, process_noise = fitted.fit.hypothesis, fitted.fit.hypothesis.process_noise.copy()
+    for axis in range(len(process_noise)):
+        gust = noise_on(case, axis)
+        if gust is not None and gust.name in names:
+            process_noise[axis] = max(process_noise[axis], decisions.FIRST_PROCESS_NOISE)
+    kept = {name: v for name, v in hypothesis.effects.items() if name not in names}
+    still = replace(hypothesis.with_effects(kept), process_noise=process_noise)
     found = fit(case, coloured_noise_of(case, still), rounds=STILL_ROUNDS)
     return None if found is None else as_fitted(case, found)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.gauss_newton import likelihood_of
-from diagnosis.fit.process_noise import axis_noise
+from diagnosis.fit.process_noise import LEAST_NOISE, axis_noise
 from diagnosis.fit.scoring import likeliest_numbers
 from tests.diagnosis.arm import plain_linearisation
 
@@ -31,3 +31,14 @@ def test_a_hypothesis_that_is_likeliest_stays() -> None:
     again, same = likeliest_numbers(case, found, axis_noise(case, found))
     assert again is found
     assert same == value
+
+
+def test_noise_that_is_next_to_none_is_found_again() -> None:
+    # Where a torque that came and goes is taken away, the white noise beside it may be far too little for slopes of size.
+    linearisation = plain_linearisation()
+    case, fitted = linearisation.case, linearisation.fit.hypothesis
+    best, value = likeliest_numbers(case, fitted, axis_noise(case, fitted))
+    begun = replace(best, process_noise=np.full_like(best.process_noise, LEAST_NOISE))
+    found, there = likeliest_numbers(case, begun, axis_noise(case, begun))
+    assert there > value - 0.3
+    assert found.process_noise == pytest.approx(best.process_noise, abs=0.1)
