@@ -5,11 +5,14 @@ from functools import partial
 
 import numpy as np
 
+from diagnosis import decisions
 from diagnosis.fit.scoring import Number, likeliest_numbers
 from diagnosis.hypothesis.case import Case
 from diagnosis.hypothesis.hypothesis import Hypothesis, scaled
 from diagnosis.hypothesis.initial_state import FIRST_REST_DOUBT
 
+# What is known of white noise beforehand: real and simulated rigs have 1e-3 to 0.5. Without, noise with a memory leaves none of it.
+KNOWN = (float(decisions.FIRST_PROCESS_NOISE), 1.0)
 LEAST_NOISE, MOST_NOISE = -5.0, 1.5  # log10 rad/s per sqrt(s)
 # The most is where it starts: longer doubt would take the part of friction that gives before it slides.
 LEAST_DOUBT = -7.0  # log10 s
@@ -24,14 +27,14 @@ def axis_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """One number for all noise of each axis, so that what comes and goes grows with what is white, and that of rest where any axis has dry
     friction."""
     axes = range(len(hypothesis.process_noise))
-    found = [Number(partial(_noise, axis), partial(_with_all, case, axis)) for axis in axes]
+    found = [Number(partial(_noise, axis), partial(_with_all, case, axis), KNOWN) for axis in axes]
     return found + _rest(case, hypothesis)
 
 
 def white_noise(case: Case, hypothesis: Hypothesis) -> list[Number]:
     """The same for white noise alone, where what comes and goes has numbers of its own."""
     axes = range(len(hypothesis.process_noise))
-    return [Number(partial(_noise, axis), partial(_with_white, axis)) for axis in axes] + _rest(case, hypothesis)
+    return [Number(partial(_noise, axis), partial(_with_white, axis), KNOWN) for axis in axes] + _rest(case, hypothesis)
 
 
 def _rest(case: Case, hypothesis: Hypothesis) -> list[Number]:

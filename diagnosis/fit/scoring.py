@@ -26,38 +26,48 @@ JUMP, FAR = 0.3, 1.0
 MOST_STEPS = 10
 LITTLE_PROMISED = 0.3  # nats
 NEARLY_THERE = 3.0  # nats promised, and half of them found: of so near a top one step leaves less than little
-KNOWN = 1e-8  # information (1/decade^2) of a number of which the logs tell nothing: far too little noise tells next to nothing too
+UNKNOWN_SD = 1e3  # decades: next to nothing is known beforehand
 SHARES = (1.0, 0.3, 0.1)  # of a step that are tried
 FURTHEST = 1.0  # decades in one step
+ACROSS = 0.3  # decades, over a ridge or a hollow that an axis makes which comes to rest
 
 
 @dataclass(frozen=True, eq=False)
 class Number:
-    """The log10 of a number that a hypothesis has: where it is, and a hypothesis with another, kept within its bounds."""
+    """The log10 of a number that a hypothesis has: where it is, and a hypothesis with another, kept within its bounds; what is known of it
+    beforehand, a normal law's middle and standard deviation in decades."""
 
     of: Callable[[Hypothesis], float]
     put: Callable[[Hypothesis, float], Hypothesis]
+    known: tuple[float, float] = (0.0, UNKNOWN_SD)
+
+    def away(self, hypothesis: Hypothesis) -> float:
+        """How far it is from what is known, in standard deviations."""
+        return (self.of(hypothesis) - self.known[0]) / self.known[1]
 
 
 def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) -> tuple[Hypothesis, float]:
-    """The hypothesis with the likeliest of those numbers near its own, and its log likelihood, -inf where the filter left all bounds."""
+    """The hypothesis with the most probable of those numbers nearby, and its log likelihood; -inf where the filter left all bounds."""
+
+    def worth(runs: Sequence[Pass], hypothesis: Hypothesis) -> float:
+        return likelihood(runs) - 0.5 * sum(number.away(hypothesis) ** 2 for number in numbers)
+
     at, runs = start, passes(case, start)
     if runs is None:
         return start, -np.inf
     for _ in range(MOST_STEPS):
         g, information = _linear(case, at, runs, numbers)
         step = _step(at, numbers, g, information)
-        promised, before = 0.5 * float(g @ step), likelihood(runs)
+        promised, before = 0.5 * float(g @ step), worth(runs, at)
         if promised < LITTLE_PROMISED:
             break
         for moved in _tries(at, numbers, step, np.asarray(g / np.diag(information), float)):
             there = passes(case, moved)
-            if there is not None and likelihood(there) > before:
+            if there is not None and worth(there, moved) > before + LITTLE_PROMISED:
                 at, runs = moved, there
                 break
-        gained = likelihood(runs) - before
-        far = gained > 0.0 and float(np.max(np.abs(step))) >= FURTHEST
-        if not far and (gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised)):
+        gained = worth(runs, at) - before
+        if gained < LITTLE_PROMISED or (promised < NEARLY_THERE and gained > 0.5 * promised):
             break
     return at, likelihood(runs)
 
@@ -80,11 +90,14 @@ def _is_blocked(hypothesis: Hypothesis, number: Number, step: float) -> bool:
 
 
 def _tries(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, alone: Array) -> Iterator[Hypothesis]:
-    """Where the likelihood may be higher: shares of the whole step; where axes stick, a step of one number alone."""
+    """Where the likelihood may be higher: shares of the whole step; where axes stick, and slopes lead nowhere, one number alone, by its own
+    step or by ACROSS."""
     for share in SHARES:
         yield _moved(hypothesis, numbers, step, share)
     for place in np.argsort(-np.abs(alone)).tolist():
         yield _moved(hypothesis, [numbers[place]], alone[[place]], SHARES[0])
+    for number in numbers:
+        yield from (number.put(hypothesis, number.of(hypothesis) + by) for by in (ACROSS, -ACROSS))
 
 
 def _moved(hypothesis: Hypothesis, numbers: Sequence[Number], step: Array, share: float) -> Hypothesis:
@@ -104,7 +117,8 @@ def _linear(case: Case, hypothesis: Hypothesis, runs: Sequence[Pass], numbers: S
     curvature = np.diag(information)
     nudges = np.array([nudge for (nudge, _), _ in found])
     g = np.array([gained for (_, gained), _ in found]) / nudges + 0.5 * curvature * nudges
-    return g, information + KNOWN * np.eye(len(numbers))
+    known = np.array([number.known[1] for number in numbers])
+    return g - [number.away(hypothesis) for number in numbers] / known, information + np.diag(1.0 / known**2)
 
 
 def _slope(

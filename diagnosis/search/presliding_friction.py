@@ -131,9 +131,9 @@ def _likeliest(case: Case, hypothesis: Hypothesis, ways: Sequence[Effect], value
 
 
 def _begun(case: Case, hypothesis: Hypothesis, effect: Effect, value: float) -> Hypothesis | None:
-    """The likelier of two sizes of a way with its own noise; None where neither is likelier than `value` as the noise was."""
+    """The likelier of two sizes of a way with its own noise; None where both are far less likely than `value` as the noise was."""
     start, reached = likeliest(case, _tried(hypothesis, effect))
-    return with_process_noise(case, start) if reached > value else None
+    return with_process_noise(case, start) if reached > value - decisions.NEAR_BEST else None
 
 
 def _tried(hypothesis: Hypothesis, effect: Effect) -> list[Hypothesis]:
