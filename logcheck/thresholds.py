@@ -121,7 +121,6 @@ LEAST_DURATION_S = Limit(1.0, "s", "one window of prediction")
 GAP_PERIODS = Limit(1.5, "sample periods", "a longer step has rows missing")
 JITTER_PERIODS = Limit(0.01, "sample periods rms", "more is told")
 PERIOD_ERROR_PPM = Limit(500.0, "ppm", "beyond what a crystal does")
-OTHER_UNIT = Limit(300.0, "factor", "milliseconds, microseconds")
 
 # units
 UNIT_FACTOR = Limit(1.35, "factor", "a slope this near a unit's is that unit")
