@@ -396,6 +396,12 @@ WIRING_STRAINED_GAIN = Limit(
     "24 published recordings as they are: 14 at most; inputs of other runs, rows backwards, another rig's: 138; "
     "a turned sign: 266 to 32600",
 )
+WIRING_DOUBT = Limit(
+    25.0,
+    "nats",
+    "another reading that is likelier by so much is told",
+    "24 published recordings as they are: 14 at most; with a column turned: 27 and more, where the plant is not alike both ways round",
+)
 WIRING_ALIKE = Limit(
     2.0, "nats", "readings of the columns that no log tells apart, such as either sign of a plant alike both ways round"
 )
@@ -405,6 +411,12 @@ ROWS_GAIN = Limit(
     "nats",
     "commands moved by whole rows must be likelier by so much",
     "flights of the CE150 with late commands gained 60 to 210, ten published recordings 4 at most, a sealed case without any effect 20",
+)
+ROWS_STRAINED_GAIN = Limit(
+    40.0,
+    "nats",
+    "the same where the plant is far from its rig even so: told, and not refused",
+    "24 published recordings as they are: commands late 25 at most; early 119, as four of these rigs are late themselves",
 )
 
 # What is told beside it (explain)

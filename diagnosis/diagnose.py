@@ -14,7 +14,7 @@ from diagnosis.decide.calibration import calibrated
 from diagnosis.decide.consequence import consequence, without_idle
 from diagnosis.decide.doubt import contradicting, doubt
 from diagnosis.decide.holdout import Holdout, added, asked, favour, holdout_of, overruled, preferred, surely_better
-from diagnosis.decide.rows import EARLY, LATE, demand_rows, early_note
+from diagnosis.decide.rows import EARLY, LATE, demand_rows
 from diagnosis.decide.unknown import left_beside
 from diagnosis.decide.weighing import Weighed, likeliest, weigh
 from diagnosis.decide.wiring import demand_wiring
@@ -43,14 +43,10 @@ from sim.bind import BoundPlant
 def diagnose(bound: BoundPlant, material: Material) -> Result:
     """Find what `bound`, with its own effects, lacks to explain the logs. Raises BadInput where it cannot be run along them."""
     seen = _seen(bound, material)
-    if not _in_their_rows(material.firmware):
-        demand_rows(seen.case, "the logs to explain", _ways(material.firmware))
-    demand_wiring(seen.case, seen.retuned.fit, plain_fit, "the logs to explain")
+    material = replace(material, notes=(*material.notes, *_columns(seen, material.firmware)))
     seen = seen if _alarmed(seen.detection.p) else _over_noise(seen)
     if not _alarmed(seen.detection.p):
         return _nothing(seen, material, Exit.NOTHING_SEEN)
-    if not _in_their_rows(material.firmware):
-        material = replace(material, notes=(*material.notes, *early_note(seen.case)))
     seen, found = _explained(_beside_noise(seen))
     if found is None:
         return _nothing(seen, material, Exit.YIELDING_EXPLAINS)
@@ -66,6 +62,13 @@ def diagnose(bound: BoundPlant, material: Material) -> Result:
     if not matters:
         return _nothing(seen, replace(material, notes=judged.notes), Exit.TOO_SMALL, judged.holdout)
     return gap(seen, material, judged)
+
+
+def _columns(seen: Seen, firmware: Firmware | None) -> tuple[Note, ...]:
+    """What is to be known of the columns of the logs to explain; raises BadInput where they are not what they are called."""
+    nominal, where = seen.retuned.fit, "the logs to explain"
+    rows = () if _in_their_rows(firmware) else demand_rows(seen.case, nominal, where, _ways(firmware))
+    return (*demand_wiring(seen.case, nominal, plain_fit, where), *rows)
 
 
 def _in_their_rows(firmware: Firmware | None) -> bool:

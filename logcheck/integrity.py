@@ -3,7 +3,7 @@
 Rows that cannot be used are marked, everything odd is said, and what makes a log worthless is refused by `demand`.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -89,9 +89,14 @@ def examine(
     return Integrity(tuple(_examined(log, name, own, facts) for log, name, own in examined), tuple(findings))
 
 
-def demand(integrity: Integrity) -> None:
-    """Raise BadInput with the first finding that forbids any conclusion."""
+OTHER_UNITS = ("time_unit", "unit_slip")  # kinds of findings: such numbers can be neither replayed nor predicted
+
+
+def demand(integrity: Integrity, kinds: Collection[str] | None = None) -> None:
+    """Raise BadInput with the first finding, of some `kinds` or of any, that forbids any conclusion."""
     for finding in integrity.refusals:
+        if kinds is not None and finding.kind not in kinds:
+            continue
         where = finding.log if finding.column is None else f"{finding.log}, column {finding.column!r}"
         raise BadInput(finding.kind.replace("_", " "), where, finding.sentence, finding.expected, finding.remedy)
 

@@ -46,6 +46,10 @@ def plant_facts(bound: BoundPlant) -> PlantFacts:
 
 def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts) -> Iterator[Found]:
     """What is odd about the numbers of a log of this plant."""
+    slow = list(_time_unit(log, name, bound))
+    yield from slow
+    if any(entry.finding.severity == REFUSE for entry in slow):
+        return
     slips = [slip for column in log.columns.outputs for slip in _angle_unit(log, name, column, facts)]
     slips += [*_input_unit(log, name, facts), *_machine_unit(log, name, bound, facts)]
     yield from slips
@@ -59,6 +63,18 @@ def plant_findings(log: RunLog, name: str, bound: BoundPlant, facts: PlantFacts)
     yield from motion_findings(log, name, bound)
     yield from rate_unit(log, name, bound.model)
     yield from rotor_unit(log, name, bound, facts.limits)
+
+
+def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
+    """Rows so far apart that no axis shows its motion in them, by the sidecar too: both count in another unit."""
+    period_s = log.sample_period_s
+    if period_s < thresholds.SLOW_S or not bound.model.axes:
+        return
+    severity = REFUSE if period_s >= thresholds.STANDING_S else NOTE
+    sentence = f"rows are {period_s:g} s apart, by the sidecar too: are these milliseconds?"
+    span = (float(log.t_s[0]), float(log.t_s[-1]))
+    expected, remedy = "t_s and sample_period_s in seconds", "convert both to seconds"
+    yield Found(Finding("time_unit", name, "t_s", *span, sentence, severity, 0, expected, remedy))
 
 
 def _angle_unit(log: RunLog, name: str, column: str, facts: PlantFacts) -> Iterator[Found]:

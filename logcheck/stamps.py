@@ -87,11 +87,7 @@ def timing_findings(log: RunLog, name: str, found: Timing) -> Iterator[Found]:
         yield say("too_short", got, REFUSE, least, "record a longer run")
         return
     yield from _order(log, name)
-    ratio = found.period_s / log.sample_period_s
-    if not 1.0 / thresholds.OTHER_UNIT < ratio < thresholds.OTHER_UNIT:
-        got = f"rows {found.period_s:g} s apart where the sidecar states {log.sample_period_s:g} s"
-        yield say("time_unit", got, REFUSE, "t_s in seconds", "convert the time stamps to seconds")
-    elif abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
+    if abs(found.period_error_ppm) > max(thresholds.PERIOD_ERROR_PPM, _by_jitter_ppm(found)):
         yield say(
             "sample_period",
             f"the rows are {found.period_s:.8g} s apart, not {log.sample_period_s:g} s ({found.period_error_ppm:+.0f} ppm); "

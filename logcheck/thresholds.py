@@ -119,9 +119,15 @@ LONGEST_HELD_S = Limit(
 LEAST_ROWS = Count(50, "rows", "fewer rows tell nothing")
 LEAST_DURATION_S = Limit(1.0, "s", "one window of prediction")
 GAP_PERIODS = Limit(1.5, "sample periods", "a longer step has rows missing")
+SLOW_S = Limit(1.0, "s", "rows of a plant with an axis that are so far apart are remarked on")
+STANDING_S = Limit(
+    5.0,
+    "s",
+    "and refused: no axis shows its motion in them",
+    "rigs of all data sets are sampled every 0.5 to 50 ms: in milliseconds 0.5 to 50 s",
+)
 JITTER_PERIODS = Limit(0.01, "sample periods rms", "more is told")
 PERIOD_ERROR_PPM = Limit(500.0, "ppm", "beyond what a crystal does")
-OTHER_UNIT = Limit(300.0, "factor", "milliseconds, microseconds")
 
 # units
 UNIT_FACTOR = Limit(1.35, "factor", "a slope this near a unit's is that unit")

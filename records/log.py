@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from records.errors import BadInput
 from records.files import demand_writable, write_atomic
+from records.logs.clock import demand_seconds
 from records.logs.restarts import Restart, counted_on, on_one_clock, restart_rows
 from records.logs.source import Source, parse_source, source_table
 from records.text import checks
@@ -145,7 +146,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
 
     Rows in front of an input's first number are left out, as nobody knows what moved the plant there. Raises BadInput naming file, line
     and remedy: no file, empty, no sidecar, unknown or missing key or column, another plant, a truncated row, a number that is none, time
-    that does not increase, an input that is not finite.
+    that does not increase, an input that is not finite, a time in another unit.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = _sidecar(path)
@@ -156,6 +157,7 @@ def load_log(path: Path, columns: LogColumns) -> RunLog:
     data["t_s"], restarts = on_one_clock(data["t_s"])
     kept, late_inputs = _from_the_inputs(data, begins, columns)
     _check_numbers(data, kept, str(path), columns)
+    demand_seconds(data["t_s"], float(sidecar["sample_period_s"]), str(path))
     seq = counted_on(data["seq"].astype(np.int64), begins)[kept] if "seq" in data else None
     data = {name: values[kept] for name, values in data.items()}
     return RunLog(

@@ -4,6 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+# Kinds of notes that stand before any verdict: a column that may be another than it is called makes whatever follows doubtful.
+DOUBTS = ("columns_doubted", "columns_late", "columns_early")
+
 
 @dataclass(frozen=True)
 class Decision:

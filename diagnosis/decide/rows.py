@@ -1,132 +1,276 @@
-"""Commands that stand in other rows than those of their time: logged a row or two late, or early.
+"""Columns that stand in other rows than those of their time: logged a row or two late, or early.
 
 A plant that answers before its command was logged is against all causes, so the log is wrong. One that answers late may be so itself.
+Where the plant as stated is far from its rig it is asked with the dry friction and the constant force that rigs have.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from diagnosis import decisions
-from diagnosis.decide.wiring import as_stated, fitted_or_none, is_strained
-from diagnosis.filter.filter_input import beginning
-from diagnosis.fit.nominal import gain_over, plain_fit, settled
-from diagnosis.hypothesis.case import Case
+from diagnosis.decide.wiring import fitted_or_none, is_strained
+from diagnosis.filter.filter_input import READINGS, FilterInput, beginning
+from diagnosis.fit.gauss_newton import Fit, likelihood_of
+from diagnosis.fit.nominal import gain_over, settled
+from diagnosis.hypothesis.case import Case, FilteredLog
+from diagnosis.hypothesis.hypothesis import Hypothesis, nominal_hypothesis
+from diagnosis.hypothesis.initial_state import start_of
 from jobs.thread_map import thread_map
 from records.errors import BadInput
 from records.reasons import Note
 
 LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
+USUAL_FORCES = ("coulomb", "offset_force")  # of an axis: what hardly any rig is without
+MOST_TRIED = 4  # moves, the likeliest before anything is fitted
+SURELY_LOST = -10.0  # nats that a move loses under more noise than there is: under less it loses some ten times as many
+MOST_ROWS = 6000  # of each log: ten times as many nats as a row of a published recording needs
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Misplaced:
-    """Inputs, by their place, that stand so many rows late in the logs (below zero: early)."""
+    """Inputs, and outputs, by their place, that stand so many rows late in the logs (below zero: early)."""
 
     inputs: tuple[int, ...]
     rows: int
+    outputs: tuple[int, ...] = ()
+
+    @property
+    def way(self) -> int:
+        """LATE where the plant would have to answer before its commands, EARLY where it may be late itself."""
+        return int(np.sign(self.rows)) * (LATE if self.inputs else EARLY)
+
+    def further(self) -> "Misplaced":
+        """The same by a row more."""
+        return replace(self, rows=self.rows + int(np.sign(self.rows)))
 
 
-def demand_rows(case: Case, where: str, ways: Sequence[int] = (LATE,)) -> None:
-    """Raise BadInput where the plant as stated follows the logs once their commands are moved by whole rows.
+@dataclass(frozen=True)
+class Moved:
+    """What it gains, in nats, to move columns, and whether the plant then follows the logs; and which other moves gain about as much."""
 
-    `where` says which logs they are, `ways` whether late or early commands are looked for.
+    slip: Misplaced
+    gain: float
+    follows: bool
+    alike: tuple[Misplaced, ...] = ()
+
+    @property
+    def told(self) -> bool:
+        """Whether it gains so much that it is to be told."""
+        return self.gain > (decisions.ROWS_GAIN if self.follows else decisions.ROWS_STRAINED_GAIN)
+
+
+def demand_rows(case: Case, nominal: Fit, where: str, ways: Sequence[int] = (LATE,)) -> tuple[Note, ...]:
+    """What is to be known of the rows in which columns stand: that some may be others, or that these logs do not tell.
+
+    Raises BadInput where the plant follows the logs once columns are moved by whole rows, in one of the `ways` that are no plant's own.
+    `nominal` is the plant's fit to the logs as they are, or to a part; `where` says which logs they are.
     """
-    found = misplaced(case, ways)
+    short = case.with_flights([_begun(flight) for flight in case.flights])
+    usual = _usual(short, nominal)
+    if usual is None:
+        return ()
+    found, commands = misplaced(_Asked(short, usual))
     if found is None:
-        return
-    slip, gain = found
-    names, rows = _names(case, slip), NUMBERS[abs(slip.rows)]
-    remedy = f"move {names} {'up' if slip.rows > 0 else 'down'} by {rows}"
-    if slip.rows < 0:
+        return _unseen(commands)
+    if not (found.follows and found.slip.way in ways):
+        return (_note(case, found),)
+    remedy = ", or ".join(_move(case, slip) for slip in (found.slip, *found.alike))
+    if found.slip.way == EARLY:
         remedy += "; where the rig itself is late, `twinlaw diagnose` adds that to its model"
     raise BadInput(
         what="columns",
         where=where,
-        got=f"{_in_words(case, slip)}: moved by that, the plant follows {gain:.0f} nats better",
-        expected="commands in the rows of their time",
+        got=_in_words(case, found),
+        expected="columns in the rows of their time",
         remedy=remedy,
     )
 
 
-def early_note(case: Case) -> tuple[Note, ...]:
-    """That the commands may stand some rows early in the logs, where moving them explains these; none where it does not."""
-    found = misplaced(case, (EARLY,))
-    if found is None:
+@dataclass(frozen=True)
+class _Asked:
+    """Logs as they are with the plant's fit to them, asked what it gains to move columns."""
+
+    case: Case
+    usual: Fit
+
+    @cached_property
+    def starts(self) -> tuple[Hypothesis, ...]:
+        """The plant as stated, and as the logs bent it, under noise that forgives both."""
+        bent = self.usual.hypothesis
+        noise = np.full_like(bent.process_noise, decisions.FIRST_PROCESS_NOISE)
+        return tuple(replace(bent, theta=theta, process_noise=noise) for theta in (0.0 * bent.theta, bent.theta))
+
+    def raw(self, slip: Misplaced) -> float:
+        """What a move gains before anything is fitted to it."""
+        other = moved(self.case, slip)
+        return max(likelihood_of(other, start) - likelihood_of(self.case, start) for start in self.starts)
+
+    def moved(self, slip: Misplaced) -> Moved:
+        """What a move gains once the plant is fitted to it."""
+        other = moved(self.case, slip)
+        end = _settled_or_none(other, max(self.starts, key=lambda start: likelihood_of(other, start)))
+        if end is None:
+            return Moved(slip, -np.inf, False)
+        return Moved(slip, gain_over(self.case, self.usual, end), not is_strained(other, end))
+
+    @property
+    def commands(self) -> tuple[Misplaced, ...]:
+        """All inputs a row late and early."""
+        every = tuple(range(len(self.case.library.bound.model.inputs)))
+        return Misplaced(every, 1), Misplaced(every, -1)
+
+
+def misplaced(asked: _Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
+    """The columns that stand in other rows than those of their time, None where none do; and what it gains to move all inputs by a row,
+    nothing where that is surely lost."""
+    model = asked.case.library.bound.model
+    singles = tuple(_one_column(len(model.inputs), len(model.outputs)))
+    raw = dict(zip(tried := (*asked.commands, *singles), thread_map(asked.raw, tried), strict=True))
+    forgiving = bool(model.axes) and not is_strained(asked.case, asked.usual)
+    seen = forgiving and max(raw[slip] for slip in asked.commands) < SURELY_LOST
+    asks = max((raw[slip] for slip in singles), default=-np.inf) > 0.0
+    likelier = sorted((slip for slip in singles if asks and raw[slip] > SURELY_LOST), key=lambda slip: -raw[slip])
+    likelier = likelier[:MOST_TRIED]
+    tried = (*(() if seen else asked.commands), *likelier)
+    ones = dict(zip(tried, thread_map(asked.moved, tried), strict=True))
+    commands = tuple(one for slip, one in ones.items() if slip in asked.commands)
+    for one in sorted(ones.values(), key=lambda one: (-one.follows, -one.gain)):
+        found = _furthest(one, asked.moved)
+        if found.told:
+            alike = tuple(
+                other.slip
+                for other in ones.values()
+                if other not in (one, found)
+                and other.slip.way == found.slip.way
+                and other.gain > found.gain - decisions.ROWS_GAIN
+            )
+            return replace(found, alike=alike), commands
+    return None, commands
+
+
+def _unseen(commands: Sequence[Moved]) -> tuple[Note, ...]:
+    """That the logs do not tell in which rows the commands stand, where a row more or less would not show."""
+    if not commands or max(one.gain for one in commands) < -decisions.ROWS_GAIN:
         return ()
-    slip, gain = found
-    said = f"{_in_words(case, slip)}: moved by that, the plant follows {gain:.0f} nats better"
-    return (Note("commands_early", _names(case, slip), {"rows": -slip.rows, "gain_nats": gain}, said),)
+    up, down = (one.gain for one in commands)
+    said = (
+        f"a shift of one row cannot be seen in these logs: with the commands one row up the plant follows {_better(up)}, "
+        f"one row down {_better(down)}; {float(decisions.ROWS_GAIN):.0f} nats would tell"
+    )
+    return (Note("rows_unseen", "inputs", {"up_nats": up, "down_nats": down}, said),)
 
 
-def _in_words(case: Case, slip: Misplaced) -> str:
-    verb, rows = "stands" if len(slip.inputs) == 1 else "stand", NUMBERS[abs(slip.rows)]
-    late = f"{rows} late in the log" if slip.rows > 0 else f"{rows} early in the log, or the plant is so late"
-    return f"{_names(case, slip)} {verb} {late}"
+def _begun(flight: FilteredLog) -> FilteredLog:
+    seconds = min(float(decisions.ROWS_S), MOST_ROWS * flight.step_s)
+    return replace(flight, filter_input=beginning(flight.filter_input, seconds))
+
+
+def _better(gain: float) -> str:
+    return f"{abs(gain):.2g} nats {'better' if gain > 0.0 else 'worse'}" if np.isfinite(gain) else "not at all"
+
+
+def _usual(case: Case, nominal: Fit) -> Fit | None:
+    """The plant as it follows the logs, with usual forces besides where it is far from its rig without; None where it cannot run."""
+    plain = _settled_or_none(case, nominal.hypothesis)
+    if plain is None or not is_strained(case, plain):
+        return plain
+    starts = (plain.hypothesis, nominal_hypothesis(case, float(decisions.FIRST_PROCESS_NOISE)))
+    forced = thread_map(lambda start: _settled_or_none(case, _with_forces(case, start)), starts)
+    best = max((found for found in forced if found is not None), key=lambda found: found.log_posterior, default=plain)
+    return best if best.log_posterior > plain.log_posterior + decisions.ROWS_GAIN else plain
+
+
+def _with_forces(case: Case, start: Hypothesis) -> Hypothesis:
+    """The same with dry friction and a constant force on every axis that has none yet."""
+    names = [f"{axis.name}.{kind}" for axis in case.library.bound.model.axes for kind in USUAL_FORCES]
+    effects = {name: case.library.effects[name] for name in names if name in case.library.effects}
+    sizes = {name: {p.symbol: p.reference for p in effect.parameters} for name, effect in effects.items()}
+    return start.with_effects(sizes | dict(start.effects))
+
+
+def _settled_or_none(case: Case, start: Hypothesis) -> Fit | None:
+    return fitted_or_none(case, lambda case: settled(case, start))
+
+
+def _furthest(found: Moved, asked: Callable[[Misplaced], Moved]) -> Moved:
+    """The same by as many rows more as each gains."""
+    while found.gain > 0.0 and abs(found.slip.rows) < max(NUMBERS):
+        more = asked(found.slip.further())
+        if more.gain <= found.gain:
+            break
+        found = more
+    return found
+
+
+def _note(case: Case, found: Moved) -> Note:
+    kind = "columns_late" if found.slip.way == LATE else "columns_early"
+    numbers = {"rows": found.slip.rows, "gain_nats": found.gain}
+    return Note(kind, _names(case, found.slip), numbers, f"perhaps {_in_words(case, found)}")
+
+
+def _in_words(case: Case, found: Moved) -> str:
+    where = ", or ".join(_standing(case, slip) for slip in (found.slip, *found.alike))
+    if found.slip.way == EARLY:
+        where += ", or the plant is so late"
+    return f"{where}: moved by that, the plant follows {found.gain:.0f} nats better"
+
+
+def _standing(case: Case, slip: Misplaced) -> str:
+    verb = "stands" if len(slip.inputs + slip.outputs) == 1 else "stand"
+    return f"{_names(case, slip)} {verb} {NUMBERS[abs(slip.rows)]} {'late' if slip.rows > 0 else 'early'} in the log"
+
+
+def _move(case: Case, slip: Misplaced) -> str:
+    return f"move {_names(case, slip)} {'up' if slip.rows > 0 else 'down'} by {NUMBERS[abs(slip.rows)]}"
 
 
 def _names(case: Case, slip: Misplaced) -> str:
-    return " and ".join(str(case.library.bound.model.inputs[place]) for place in slip.inputs)
+    model = case.library.bound.model
+    outputs = list(model.outputs)
+    return " and ".join([*(str(model.inputs[n]) for n in slip.inputs), *(outputs[n] for n in slip.outputs)])
 
 
-def misplaced(case: Case, ways: Sequence[int]) -> tuple[Misplaced, float] | None:
-    """The inputs that stand in other rows than those of their time, and what it gains in nats to move them; None where none do."""
-    short = case.with_flights(
-        [replace(flight, filter_input=beginning(flight.filter_input, decisions.ROWS_S)) for flight in case.flights]
-    )
-    tried = list(_by_one_row(len(case.library.bound.model.inputs), ways))
-    least, *stated = thread_map(as_stated, [short, *(moved(short, slip) for slip in tried)])
-    slips = [slip for slip, value in zip(tried, stated, strict=True) if value > least]
-    usual = fitted_or_none(short, plain_fit) if slips else None
-    if usual is None:
-        return None
-    start = usual.hypothesis
-
-    def followed(slip: Misplaced) -> tuple[float, bool]:
-        fit = fitted_or_none(moved(short, slip), lambda case: settled(case, start))
-        return (-np.inf, False) if fit is None else (gain_over(short, usual, fit), not is_strained(case, fit))
-
-    found = zip(slips, thread_map(followed, slips), strict=True)
-    for slip, told in sorted(found, key=lambda entry: -entry[1][0]):
-        slip, (gain, follows) = _furthest(slip, told, followed)
-        if follows and gain > decisions.ROWS_GAIN:
-            return slip, gain
-    return None
-
-
-def _furthest(
-    slip: Misplaced, told: tuple[float, bool], followed: Callable[[Misplaced], tuple[float, bool]]
-) -> tuple[Misplaced, tuple[float, bool]]:
-    """A slip by as many rows more as each gains, with what it gains and whether the plant then follows."""
-    while told[0] > 0.0 and abs(slip.rows) < max(NUMBERS):
-        further = replace(slip, rows=slip.rows + int(np.sign(slip.rows)))
-        more = followed(further)
-        if more[0] <= told[0]:
-            break
-        slip, told = further, more
-    return slip, told
-
-
-def _by_one_row(inputs: int, ways: Sequence[int]) -> Iterator[Misplaced]:
-    """All inputs, and each by itself, a row late or early."""
-    together = tuple(range(inputs))
-    for way in ways:
-        yield Misplaced(together, way)
+def _one_column(inputs: int, outputs: int) -> Iterator[Misplaced]:
+    """Each column by itself where there are others of its kind, a row late or early."""
+    for rows in (1, -1):
         if inputs > 1:
-            yield from (Misplaced((place,), way) for place in together)
+            yield from (Misplaced((place,), rows) for place in range(inputs))
+        if outputs > 1:
+            yield from (Misplaced((), rows, (place,)) for place in range(outputs))
 
 
 def moved(case: Case, slip: Misplaced) -> Case:
-    """The case with commands in the rows to which they belong."""
-    flights = []
-    for flight in case.flights:
-        u = flight.filter_input.u.copy()
-        source = np.clip(np.arange(len(u)) + slip.rows, 0, len(u) - 1)
-        for place in slip.inputs:
-            u[:, place] = flight.filter_input.u[source, place]
-        flights.append(replace(flight, filter_input=replace(flight.filter_input, u=u)))
-    return case.with_flights(flights)
+    """The case with columns in the rows to which they belong."""
+    return case.with_flights([_moved_flight(case, flight, slip) for flight in case.flights])
+
+
+def _moved_flight(case: Case, flight: FilteredLog, slip: Misplaced) -> FilteredLog:
+    own = flight.filter_input
+    rows = np.arange(len(own.t_s)) + slip.rows
+    u, source = own.u.copy(), np.clip(rows, 0, len(rows) - 1)
+    u[:, slip.inputs] = own.u[source][:, slip.inputs]
+    filter_input = replace(own, u=u, **_readings(own, slip.outputs, rows))
+    if not slip.outputs:
+        return replace(flight, filter_input=filter_input)
+    x0, p0 = start_of(case.library, filter_input, flight.locked)
+    return replace(flight, filter_input=filter_input, x0=x0, p0=p0)
+
+
+def _readings(own: FilterInput, outputs: Sequence[int], rows: NDArray[np.int64]) -> dict[str, Any]:
+    """What is known of each reading, those of `outputs` from other rows; nothing where the log has no such row."""
+    if not outputs:
+        return {}
+    there = (rows >= 0) & (rows < len(rows))
+    source = np.clip(rows, 0, len(rows) - 1)
+    found = {name: getattr(own, name).copy() for name in READINGS}
+    for name, output in chain.from_iterable(((name, output) for output in outputs) for name in READINGS):
+        found[name][:, output] = np.where(there, found[name][source, output], READINGS[name])
+    return found

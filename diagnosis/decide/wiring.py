@@ -18,6 +18,7 @@ from diagnosis.hypothesis.initial_state import start_of
 from diagnosis.search.draughts import gust_shares
 from jobs.thread_map import thread_map
 from records.errors import BadInput
+from records.reasons import Note
 
 
 @dataclass(frozen=True)
@@ -32,27 +33,26 @@ class Wiring:
     output_signs: Sequence[float]
 
 
-def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where: str) -> None:
-    """Raise BadInput where turning one column's sign, or swapping two columns, lets the plant as stated follow the logs.
+def demand_wiring(case: Case, nominal: Fit, fitted: Callable[[Case], Fit], where: str) -> tuple[Note, ...]:
+    """What is to be known of the columns: that one may be another, or that these logs do not tell the sign of an input.
 
-    `nominal` is the plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained.
-    `where` says which logs they are.
+    Raises BadInput where turning one column's sign, or swapping two columns, lets the plant as stated follow the logs. `nominal` is the
+    plant's fit to the logs as they are; `fitted` makes such a fit, and is asked only where that one is strained. `where` says which logs
+    they are.
     """
     found = likelier_wiring(case, fitted) if is_strained(case, nominal) else None
-    if found is not None:
-        wiring, gain = found
-        raise BadInput(
-            what="columns",
-            where=where,
-            got=f"{wiring.what}: read so, the plant follows them {gain:.0f} nats better",
-            expected="columns that are what they are called",
-            remedy=wiring.remedy,
-        )
+    if found is None:
+        return _blind_signs(case, nominal)
+    wiring, gain, is_sure = found
+    got = f"{wiring.what}: read so, the plant follows them {gain:.0f} nats better"
+    if not is_sure:
+        return (Note("columns_doubted", "columns", {"gain_nats": gain}, f"perhaps {got}"),)
+    raise BadInput("columns", where, got, "columns that are what they are called", wiring.remedy)
 
 
-def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float] | None:
-    """Another reading of the columns, with what it gains in nats, under which the plant follows the logs with its parameters where
-    they are stated; or, of a plant that is far from its rig whatever the reading, by far better."""
+def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, float, bool] | None:
+    """Another reading of the columns under which the plant follows the logs better, with what it gains in nats, and whether that is sure:
+    with its parameters where they are stated; or, of a plant that is far from its rig whatever the reading, by far."""
     short = case.with_flights(
         [replace(flight, filter_input=beginning(flight.filter_input, decisions.WIRING_S)) for flight in case.flights]
     )
@@ -65,10 +65,28 @@ def likelier_wiring(case: Case, fitted: Callable[[Case], Fit]) -> tuple[Wiring, 
         return None
     best, fit = max(found, key=lambda entry: entry[1].log_posterior)
     gain = gain_over(short, usual, fit)
-    if gain > (decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN):
-        alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
-        return _either(best, alike), gain
-    return None
+    if gain <= decisions.WIRING_DOUBT:
+        return None
+    alike = [other for other, own in found if fit.log_posterior - own.log_posterior < decisions.WIRING_ALIKE]
+    limit = decisions.WIRING_STRAINED_GAIN if is_strained(case, fit) else decisions.WIRING_GAIN
+    return _either(best, alike), gain, bool(gain > limit)
+
+
+def _blind_signs(case: Case, nominal: Fit) -> tuple[Note, ...]:
+    """That the plant answers alike to either sign of an input that moves it."""
+    inputs = [str(u) for u in case.library.bound.model.inputs]
+    blind = [
+        name
+        for place, (name, wiring) in enumerate(zip(inputs, wirings(case), strict=False))
+        if any(np.any(flight.filter_input.u[:, place]) for flight in case.flights)
+        and abs(likelihood_of(_rewired(case, wiring), nominal.hypothesis) - nominal.log_likelihood)
+        < decisions.WIRING_ALIKE
+    ]
+    if not blind:
+        return ()
+    names = " and ".join(blind)
+    said = f"the sign of {names} cannot be seen in these logs: the plant as stated answers alike to either"
+    return (Note("sign_unseen", names, {}, said),)
 
 
 def as_stated(case: Case) -> float:

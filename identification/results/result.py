@@ -40,7 +40,7 @@ class Identification:
     """The whole result; `stages` are (title, estimate) in the order in which they were made, `aids` what experiments needed besides,
     `holdout` how the identified plant predicts logs that were not used. `unfinished` are the values that a fit which was interrupted had
     come to; they are in the plant, without sd of their own. `remarks` tell what is odd in the data themselves, `flags` what makes
-    the estimates doubtful, `doubt` which columns may be others where a parameter ended at a bound.
+    the estimates doubtful, `doubt` which columns may be others than they are called.
     """
 
     plant: Plant
@@ -67,8 +67,7 @@ class Identification:
     @property
     def warning(self) -> str:
         """What is to be read before any number; empty where nothing is."""
-        told = bound_warning(self.at_bound)
-        return f"{told}; {self.doubt}" if told and self.doubt else told
+        return "; ".join(filter(None, (bound_warning(self.at_bound), self.doubt)))
 
     @property
     def notes(self) -> tuple[str, ...]:

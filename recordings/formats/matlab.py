@@ -8,6 +8,7 @@ from typing import Any
 
 from scipy.io import loadmat
 from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadError
+from scipy.sparse import issparse
 
 from recordings.formats import hdf5
 from recordings.formats.clocks import is_time_name, with_clocks
@@ -82,4 +83,6 @@ def _content(path: Path) -> dict[str, Any]:
 def _readable(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _readable(inner) for name, inner in value.items()}
+    if issparse(value):
+        return value.toarray() if 1 in value.shape else Unreadable("a sparse matrix")
     return Unreadable(WHAT) if isinstance(value, (MatlabOpaque, MatlabFunction)) else value

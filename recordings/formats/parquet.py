@@ -16,7 +16,10 @@ _NS = 1e-9
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
-    """The columns of numbers, dates in seconds from the first; raises BadInput when pyarrow is not installed, and for no Parquet file."""
+    """The columns of numbers, those of a structure behind a point, dates in seconds from the first.
+
+    Raises BadInput when pyarrow is not installed, and for no Parquet file.
+    """
     package("pyarrow", "parquet", path)
     parquet = package("pyarrow.parquet", "parquet", path)
     try:
@@ -27,6 +30,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
         raise BadInput(
             "Parquet file", str(path), f"no Parquet ({error})", "a .parquet file", "export it again"
         ) from error
+    while any(str(field.type).startswith("struct") for field in table.schema):
+        table = table.flatten()
     signals: dict[str, Signal] = {}
     unread: dict[str, str] = {}
     for heading, column in zip(table.column_names, table.columns, strict=True):

@@ -79,11 +79,12 @@ def _look_up(reference: Reference, *, clock: str | None, length: int, of: Source
 
 
 def _calendar(quantity: Quantity) -> tuple[float, str] | None:
-    """The factor of times without a unit that are dates in ms, us or ns since 1970, or in days, and what is to be said of it; else None."""
-    if quantity.unit != "" or not np.isfinite(quantity.values).any():
+    """The factor of times that are dates in ms, us or ns since 1970, or in days where no unit is known, and what is to be said of it; else
+    None. A `t_s` that is such a number is called seconds by its name only."""
+    if quantity.unit not in ("", "s") or not np.isfinite(quantity.values).any():
         return None
     first = float(np.nanmin(quantity.values))
-    if quantity.values.size > 1 and np.nanmedian(np.diff(quantity.values)) < MOST_DAYS:
+    if quantity.unit == "" and quantity.values.size > 1 and np.nanmedian(np.diff(quantity.values)) < MOST_DAYS:
         days = next((what for what, (least, most) in DAYS.items() if least <= first < most), None)
         if days:
             return factor_to("s", "days", None), f", dates in days {days}"
@@ -95,10 +96,10 @@ def _calendar(quantity: Quantity) -> tuple[float, str] | None:
 def _no_times(of: Source, name: str, length: int) -> BadInput:
     """What is said where no times of a column are known: none in the file, or none as many as its values."""
     if of.clocks:
-        sizes = " or ".join(f"{of.signals[clock].values.size} of {clock}" for clock in sorted(of.clocks)[:4])
+        sizes = " or ".join(f"{clock} has {of.signals[clock].values.size}" for clock in sorted(of.clocks)[:4])
         remedy = f"save one run, whole vectors, or name its own times with --column {TIME}=NAME"
         return BadInput(
-            f"column {name!r}", of.where, f"{length} values at {sizes} times", "one value at each time", remedy
+            f"column {name!r}", of.where, f"{length} values where {sizes}", "one value at each time", remedy
         )
     texts = [f"{unread} ({told})" for unread, told in of.contents.unread.items()]
     rising = (signal for signal in of.signals if _may_be_times(signal, of.signals[signal], length))

@@ -90,7 +90,7 @@ def test_a_clean_log_has_no_findings_and_its_numbers_are_told() -> None:
         (_scaled("omega_T_rad_s", 0.5 / np.pi), "unit_slip", "omega_T_rad_s"),
         (_scaled("u_M_V", 10.0), "unit_slip", "u_M_V"),
         (_scaled("u_M_V", 0.1), "unit_slip", "u_M_V"),
-        (_scaled("t_s", 1000.0), "time_unit", "t_s"),
+        (lambda log: replace(log, t_s=1e3 * log.t_s, sample_period_s=10.0), "time_unit", "t_s"),
         (lambda log: _column(log, "psi_rad", log.extra["psi_ref_rad"]), "copied_column", "psi_rad"),
         (lambda log: replace(log, u=0.0 * log.u, y=0.0 * log.y + 0.1, extra={}), "constant", None),
         (lambda log: replace(log, y=0.0 * log.y + 0.1, extra={}), "stuck_sensors", None),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.io import savemat
+from scipy.sparse import csc_matrix
 
 from recordings.channels import Channel, Span, log_of_channels
 from recordings.importing import import_file
@@ -86,7 +87,7 @@ def _without(name: str) -> dict[str, Any]:
     [
         (_without("t_s"), r"column 't_s': got u_M_V, u_T_V, psi_rad, phi_rad, .*--column t_s=NAME"),
         (_without("phi_rad"), r"columns phi_rad: got t_s, u_M_V, u_T_V, psi_rad, .*--column phi_rad=SIGNAL"),
-        ({"phi_rad": np.zeros(49)}, r"column 'phi_rad': got 49 values at 50 of t_s times"),
+        ({"phi_rad": np.zeros(49)}, r"column 'phi_rad': got 49 values where t_s has 50"),
         ({"t_s": T_S[::-1]}, r"times of psi_rad: got 0\.48 s in row 2 after 0\.49 s"),
         ({"t_s": np.where(T_S == 0.1, np.nan, T_S)}, "times of psi_rad: got nan s in row 11"),
         ({"u_M_V": np.where(T_S > 0.2, np.nan, 5.0)}, r"column 'u_M_V': got no number at 0\.21 s, in 29 of 50 rows"),
@@ -256,7 +257,7 @@ def test_an_expression_of_times_takes_each_columns_own_times(tmp_path: Path) -> 
         ({"psi_rad": "psi_rad*nan"}, "no finite number"),
         ({"psi_rad": "psi_rad*gain"}, r"name 'gain': got t_s, u_M_V"),
         ({"psi_rad": "psi_rad(:,2)"}, "an array of 50, expected one row or column"),
-        ({"psi_rad": "K"}, "6 values at 50 of t_s times"),
+        ({"psi_rad": "K"}, "6 values where t_s has 50"),
         ({"psi_rad": "K + psi_rad"}, "one clock|samples in one expression"),
         ({"psi_rad": "gains"}, r"a matrix of 3 x 3, .*gains\(:,1\)"),
         ({"psi_rad": "u_M_V"}, ""),
@@ -316,12 +317,17 @@ def test_times_of_a_calendar_are_counted_from_the_first(tmp_path: Path) -> None:
     assert any("counted from the first" in told for told in done.found)
 
 
-@pytest.mark.parametrize("per_second", [1e3, 1e6, 1e9])
-def test_dates_in_parts_of_a_second_are_told_by_their_size(per_second: float, tmp_path: Path) -> None:
-    done = imported_here(
-        _saved(tmp_path / "run.mat", t_s=None, stamp=np.round((T_S + 1_716_398_564.0) * per_second)), ColumnMapping()
-    )
+@pytest.mark.parametrize(("per_second", "name"), [(1e3, "stamp"), (1e6, "stamp"), (1e9, "stamp"), (1e3, "t_s")])
+def test_dates_in_parts_of_a_second_are_told_by_their_size(per_second: float, name: str, tmp_path: Path) -> None:
+    stamps = {"t_s": None, name: np.round((T_S + 1_716_398_564.0) * per_second)}
+    done = imported_here(_saved(tmp_path / "run.mat", **stamps), ColumnMapping())
     np.testing.assert_allclose(done.log.t_s, T_S, atol=1e-3 if per_second == 1e3 else 1e-6)
+
+
+def test_a_sparse_vector_is_a_vector_and_a_sparse_matrix_is_left_alone(tmp_path: Path) -> None:
+    sparse = {"psi_rad": csc_matrix(RUN["psi_rad"][:, None]), "K": csc_matrix(np.eye(3))}
+    done = imported_here(_saved(tmp_path / "run.mat", **sparse), ColumnMapping())
+    np.testing.assert_array_equal(done.log.column("psi_rad"), RUN["psi_rad"])
 
 
 def test_times_that_look_like_milliseconds_are_remarked(tmp_path: Path) -> None:

@@ -69,6 +69,18 @@ def test_an_empty_cell_of_an_output_is_a_value_that_was_not_measured(files):
 
 
 @pytest.mark.parametrize(
+    ("period", "unit"), [("10", "milliseconds"), ("10000", "microseconds"), ("1e7", "nanoseconds"), ("7", "7 s apart")]
+)
+def test_times_in_another_unit_are_refused_wherever_a_log_is_read(files, period, unit):
+    rows = "".join(f"{row * float(period)},5.0,1.8,-0.1,0.0\n" for row in range(4))
+    with pytest.raises(
+        BadInput, match=rf"a\.csv, column 't_s': time unit: .* the sidecar states 0\.01 s|{unit}"
+    ) as caught:
+        files(HEADER + rows)
+    assert unit in str(caught.value)
+
+
+@pytest.mark.parametrize(
     ("csv", "message"),
     [
         ("", r"a\.csv: run log: got an empty file, expected a header and rows"),

@@ -7,7 +7,7 @@ import pytest
 
 from diagnosis.decide.wiring import demand_wiring, likelier_wiring
 from diagnosis.fit.gauss_newton import Fit
-from diagnosis.fit.nominal import nominal_fit
+from diagnosis.fit.nominal import nominal_fit, plain_fit
 from diagnosis.hypothesis.case import Case, make_case
 from diagnosis.library.effect_library import EffectLibrary, effect_library
 from records.errors import BadInput
@@ -84,7 +84,30 @@ def test_a_plant_that_lacks_something_is_not_taken_for_one_wired_wrongly(
 def test_numbers_without_meaning_are_not_taken_for_a_slip(library: EffectLibrary, fly: Fly) -> None:
     log, rng = fly(33, seconds=SECONDS), np.random.default_rng(3)
     walk = np.cumsum(rng.normal(0.0, 0.004, log.y.shape), axis=0)
-    assert likelier_wiring(make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit) is None
+    found = likelier_wiring(make_case(library, [replace(log, y=np.clip(walk, -0.7, 0.7))]), nominal_fit)
+    assert found is None or not found[2]
+
+
+def test_the_sign_of_an_input_that_the_plant_answers_alike_either_way_is_said_to_be_unseen() -> None:
+    """Truth: thrusts of the Aero's published equations go with the square of the voltage."""
+    log = recorded("quanser_aero", "yaw_coefficients")
+    case = make_case(effect_library(bound("quanser_aero")), [log])
+    nominal = plain_fit(case)
+    assert [note.kind for note in demand_wiring(case, nominal, plain_fit, "the log")] == ["sign_unseen"]
+
+
+def test_a_turned_sign_that_is_likelier_but_not_surely_is_told() -> None:
+    """Truth: as recorded no column is doubted; with the torque's sign turned the plant as stated follows 33 nats worse."""
+    library, log = effect_library(bound("torque_limited_pendulum")), recorded("torque_limited_pendulum", "sac")
+
+    def told(log: RunLog) -> list[str]:
+        case = make_case(library, [log])
+        return [str(note.said) for note in demand_wiring(case, plain_fit(case), plain_fit, "the log")]
+
+    assert told(log) == []
+    (said,) = told(turned(log, "u", 0))
+    assert said.startswith("perhaps ")
+    assert "tau_Nm has the wrong sign" in said
 
 
 @pytest.mark.soak

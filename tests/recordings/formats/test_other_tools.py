@@ -97,7 +97,8 @@ def _ulog(path: Path) -> None:
 def _parquet(path: Path) -> None:
     pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     stamps = pa.array(STAMPS_NS, type=pa.timestamp("ns"))
-    columns = {"stamp": stamps, "u [mV]": 1e3 * RUN["u_V"], "q_mm": 1e3 * RUN["q_m"], "mode": ["fly"] * N}
+    arm = [{"joint": {"q_mm": 1e3 * q}} for q in RUN["q_m"]]
+    columns = {"stamp": stamps, "u [mV]": 1e3 * RUN["u_V"], "arm": arm, "mode": ["fly"] * N}
     parquet.write_table(pa.table(columns), path)
 
 

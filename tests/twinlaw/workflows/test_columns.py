@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from records.errors import BadInput
 from tests.diagnosis.arm import arm, arm_log
-from twinlaw.workflows.identify.columns import doubted_columns, where_most_moves
+from twinlaw.workflows.identify.columns import demand_columns, where_most_moves
 
 
 def test_of_a_long_log_the_seconds_in_which_its_outputs_travel_most_are_looked_at() -> None:
@@ -19,8 +20,14 @@ def test_of_a_long_log_the_seconds_in_which_its_outputs_travel_most_are_looked_a
     assert where_most_moves(part) is part
 
 
-@pytest.mark.parametrize("turned", [False, True])
-def test_a_reading_that_the_stated_plant_follows_better_is_named_and_none_of_honest_columns(turned: bool) -> None:
+def test_a_column_that_was_never_read_says_nothing_of_where_most_moves() -> None:
+    log = arm_log(seconds=30.0)
+    beside = replace(log, y=np.hstack((log.y, np.full_like(log.y, np.nan))))
+    assert where_most_moves(beside).t_s[0] == where_most_moves(log).t_s[0]
+
+
+def test_a_column_that_is_turned_is_refused_or_doubted_and_no_honest_one() -> None:
     log = arm_log(seconds=6.0)
-    said = doubted_columns(arm(), {"a": replace(log, y=-log.y) if turned else log})
-    assert said.startswith("perhaps theta_rad has the wrong sign: read so, ") if turned else said == ""
+    assert demand_columns(arm(), {"a": log}) == ()
+    with pytest.raises(BadInput, match="theta_rad has the wrong sign"):
+        demand_columns(arm(), {"a": replace(log, y=-log.y)})

@@ -4,7 +4,7 @@ from records.diagnosis import Diagnosis
 from records.quality import MISFIT, Colour, Look, Quality, flag
 from twinlaw.pages.diagnose.firmware import differs
 from twinlaw.pages.diagnose.retune import parameters_alone
-from twinlaw.pages.diagnose.words import words
+from twinlaw.pages.diagnose.words import doubts_in_words, words
 
 
 def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
@@ -18,6 +18,8 @@ def diagnosis_quality(diagnosis: Diagnosis) -> Quality:
     flags = [_verdict(diagnosis)]
     if differs(diagnosis.firmware):
         flags.append(flag("the firmware does not do as its table says", Colour.RED))
+    if doubts_in_words(diagnosis.note_records):
+        flags.append(flag("columns that may be others than they are called"))
     misfits = [MISFIT.look(f"{name} on the logs held out", rms / floor) for name, (rms, floor) in left.items() if floor]
     return Quality((*misfits, *(entry for entry in flags if entry is not None)))
 

@@ -9,7 +9,15 @@ from twinlaw.pages.diagnose.firmware import firmware_first, firmware_in_words
 from twinlaw.pages.diagnose.quality import diagnosis_quality
 from twinlaw.pages.diagnose.retune import Moved, lowered, moved_in_words, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import alarm_in_words, chance, class_in_words, plain_notes, shown, sized
+from twinlaw.pages.diagnose.words import (
+    alarm_in_words,
+    chance,
+    class_in_words,
+    doubts_in_words,
+    plain_notes,
+    shown,
+    sized,
+)
 from twinlaw.pages.quality import quality_sentence
 
 MOST = 5
@@ -23,6 +31,8 @@ def summary_text(diagnosis: Diagnosis, moved: Sequence[Moved] = (), widths: Mapp
 
 def _lines(diagnosis: Diagnosis, moved: Sequence[Moved], widths: Mapping[str, float]) -> Iterator[str]:
     p = diagnosis.false_alarm_probability
+    if doubts_in_words(diagnosis.note_records):
+        yield doubts_in_words(diagnosis.note_records)
     if firmware_first(diagnosis.firmware):
         yield firmware_first(diagnosis.firmware)
     if p is None:

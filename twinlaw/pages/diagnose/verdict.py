@@ -6,7 +6,7 @@ from records.diagnosis import Diagnosis, Hypothesis
 from twinlaw.pages.diagnose.firmware import firmware_first
 from twinlaw.pages.diagnose.retune import lowered, parameters_alone
 from twinlaw.pages.diagnose.why import SMALL, reason_in_words
-from twinlaw.pages.diagnose.words import listed, percent, plain_unit, words
+from twinlaw.pages.diagnose.words import doubts_in_words, listed, percent, plain_unit, words
 
 LIKELY = 0.8  # below which a name is no more than the likeliest of several
 LEAST_TOLD = 0.01  # share of the error below which its going is not told
@@ -15,8 +15,11 @@ MOVED = "moved_parameter"  # kind of note
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """What was found for a reader who knows nothing but the rig: first what the firmware did otherwise, then one sentence on the plant."""
-    return f"{firmware_first(diagnosis.firmware)} {_plant_sentence(diagnosis)}".strip()
+    """What was found for a reader who knows nothing but the rig: first what makes it doubtful and what the firmware did otherwise, then one
+    sentence on the plant."""
+    doubts = doubts_in_words(diagnosis.note_records)
+    first = f"{doubts[0].upper()}{doubts[1:]}." if doubts else ""
+    return " ".join(filter(None, (first, firmware_first(diagnosis.firmware), _plant_sentence(diagnosis))))
 
 
 def _plant_sentence(diagnosis: Diagnosis) -> str:

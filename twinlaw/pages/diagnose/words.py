@@ -8,7 +8,7 @@ from diagnosis import decisions
 from diagnosis.explain.sentences import plain_sentence
 from records.diagnosis import Diagnosis, Hypothesis
 from records.functional_class import Dependence, parse_class
-from records.reasons import Note
+from records.reasons import DOUBTS, Note
 from sim.added_effects import every_effect
 
 # By the unit at the end of a name: how a person reads it.
@@ -85,8 +85,13 @@ def shown(name: str) -> tuple[str, str, float]:
 
 
 def plain_notes(notes: Sequence[Note]) -> list[str]:
-    """Each note once, in words that need no statistics."""
-    return list(dict.fromkeys(map(plain_sentence, notes)))
+    """Each note once, in words that need no statistics, but those that stand before the verdict."""
+    return list(dict.fromkeys(plain_sentence(note) for note in notes if note.kind not in DOUBTS))
+
+
+def doubts_in_words(notes: Sequence[Note]) -> str:
+    """What is to be read before the verdict: columns that may be others than they are called."""
+    return "; ".join(plain_sentence(note) for note in notes if note.kind in DOUBTS)
 
 
 def plain_unit(unit: str) -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 from codegen.law import generate_law
 from codegen.law_equations import state_words
 from design.structure import stops
-from logcheck.integrity import as_read, examine
+from logcheck.integrity import OTHER_UNITS, as_read, examine
+from logcheck.integrity import demand as demand_log
 from records.board import STM32G071
 from records.errors import VerificationFailed
 from records.loops import LOOPS, Loop
@@ -170,9 +171,10 @@ def recorded_replay(
         return replay, None
     begins = None
     if log.columns == log_columns(bound.model):
-        looked = examine([log], bound, names=[path.stem]).logs[0]
-        log, begins = as_read(log, looked), looked.begins
-    found = replay_stretches(log, table, begins=begins)
-    if found.cause not in CLEARED:
-        return replay, None if found.cause is None else f"{path.name}: {found.sentence}"
-    return replace(replay, sent=None), f"{path.name}: {found.sentence}; its inputs are not compared bit by bit"
+        found = examine([log], bound, names=[path.stem])
+        demand_log(found, OTHER_UNITS)
+        log, begins = as_read(log, found.logs[0]), found.logs[0].begins
+    replayed = replay_stretches(log, table, begins=begins)
+    if replayed.cause not in CLEARED:
+        return replay, None if replayed.cause is None else f"{path.name}: {replayed.sentence}"
+    return replace(replay, sent=None), f"{path.name}: {replayed.sentence}; its inputs are not compared bit by bit"

@@ -37,7 +37,7 @@ from twinlaw.pages.identify.frequency_tables import CHECK_HEADING, check_rows, p
 from twinlaw.pages.identify.summary import estimate_heading, estimate_rows
 from twinlaw.pages.page import page_text
 from twinlaw.pages.quality import quality_sentence
-from twinlaw.workflows.identify.columns import demand_columns
+from twinlaw.workflows.identify.columns import asked_for_columns
 from twinlaw.workflows.identify.inputs import Inputs, free_names, looked_at, read_limits
 from twinlaw.workflows.identify.progress import progress, save_result, told_files
 
@@ -140,8 +140,7 @@ def _operating_point(
             "identify from the plant without them",
         )  # fmt: skip
     inputs = looked_at(Inputs((), *_read(chosen, holdout, plant_columns(bound.model))), bound)
-    with console.stage("asking whether the columns are what they are called"):
-        demand_columns(bound, inputs.logs)
+    inputs = asked_for_columns(inputs, bound)
     outputs = tuple(bound.model.outputs)
     records, others = (
         [record_of(log, name, outputs) for name, log in some.items()] for some in (inputs.logs, inputs.holdout)
@@ -150,7 +149,7 @@ def _operating_point(
     limits = read_limits(chosen.bounds, coefficient_names(bound.model))
     names = free_names(bound, chosen.free)
     found = _matched(chosen, bound.plant, operating_point_model(bound, names, means, limits), records, others, told)
-    found = replace(found, notes=(*inputs.notes, *found.notes))
+    found = replace(found, notes=(*filter(None, [inputs.doubt]), *inputs.notes, *found.notes))
     truth = None if true is None else truth_of(true, operating_point_model(bind(true), names, means), found.fit)
     return Done(found, truth)
 

@@ -21,7 +21,6 @@ from records.experiment import Experiment
 from records.log import RunLog
 from sim.bind import BoundPlant, bind
 from twinlaw.cli import console
-from twinlaw.workflows.identify.columns import doubted_columns
 from twinlaw.workflows.identify.inputs import Inputs, Limits
 from twinlaw.workflows.identify.progress import Done, Progress, progress, save_result, told_files
 
@@ -51,10 +50,7 @@ def identify(bound: BoundPlant, inputs: Inputs, wishes: Wishes, folder: Path) ->
         if inputs.logs:
             done = _from_logs(bound, inputs.logs, wishes, done, so_far)
     flags = (*_untold(bound, inputs.logs, wishes, done), *_held(bound, done))
-    result = replace(so_far.finished(done), remarks=inputs.notes, flags=flags)
-    if result.at_bound and inputs.logs:
-        with console.stage("asking which columns may be others"):
-            result = replace(result, doubt=doubted_columns(bound, inputs.logs))
+    result = replace(so_far.finished(done), remarks=inputs.notes, flags=flags, doubt=inputs.doubt)
     save_result(folder, result)
     if not inputs.holdout:
         return result

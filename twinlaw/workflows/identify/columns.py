@@ -1,4 +1,4 @@
-"""Are columns what they are called? As a diagnosis asks it, before parameters are bent to what is not there, and where they were."""
+"""Are columns what they are called? As a diagnosis asks it, before parameters are bent to what is not there."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -8,20 +8,17 @@ import numpy as np
 
 from diagnosis import decisions
 from diagnosis.decide.rows import EARLY, LATE, demand_rows
-from diagnosis.decide.wiring import Wiring, demand_wiring, fitted_or_none, wirings
-from diagnosis.fit.nominal import gain_over, plain_fit
+from diagnosis.decide.wiring import demand_wiring
+from diagnosis.fit.nominal import plain_fit
 from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from identification.runs.rows import trimmed
 from records.log import RunLog
+from records.reasons import DOUBTS, Note
 from sim.added_effects import without_effects
 from sim.bind import BoundPlant
 from twinlaw.cli import console
 from twinlaw.workflows.identify.inputs import Inputs, looked_at, read_inputs
-
-# A reading of the columns that gains so much is named where a fit has failed. Published recordings as they are: 14 at most; with a
-# column of quanser_aero or of the pendulum turned: 33 and more.
-DOUBT_NATS = 25.0
 
 
 def usable_inputs(
@@ -31,48 +28,36 @@ def usable_inputs(
     inputs = read_inputs(files, holdout, bound)
     if trim is not None:
         inputs = replace(inputs, logs={name: trimmed(log, *trim) for name, log in inputs.logs.items()})
-    inputs = looked_at(inputs, bound)
+    return asked_for_columns(looked_at(inputs, bound), bound)
+
+
+def asked_for_columns(inputs: Inputs, bound: BoundPlant) -> Inputs:
+    """The inputs with what is to be known of their logs' columns; raises BadInput where these are not what they are called."""
     with console.stage("asking whether the columns are what they are called"):
-        demand_columns(bound, inputs.logs)
-    return inputs
+        told = demand_columns(bound, inputs.logs)
+    doubts = [note.said for note in told if note.kind in DOUBTS and note.said]
+    notes = tuple(note.said for note in told if note.kind not in DOUBTS and note.said)
+    return replace(inputs, notes=(*inputs.notes, *notes), doubt="; ".join(doubts))
 
 
-def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> None:
-    """Raise BadInput where the plant as stated follows the logs once a column is turned, exchanged with another, or moved by rows."""
+def demand_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> tuple[Note, ...]:
+    """What is to be known of the columns; raises BadInput where the plant as stated follows the logs once a column is turned, exchanged
+    with another, or moved by rows."""
     if not logs:
-        return
+        return ()
     library, where = effect_library(without_effects(bound) if bound.effects else bound), ", ".join(logs)
     busiest = make_case(library, [where_most_moves(log) for log in logs.values()], stated=bound)
-    demand_wiring(busiest, plain_fit(busiest), plain_fit, where)
-    demand_rows(make_case(library, list(logs.values()), stated=bound), where, (LATE, EARLY))
-
-
-def doubted_columns(bound: BoundPlant, logs: Mapping[str, RunLog]) -> str:
-    """The reading of the columns by which the plant as stated follows the logs better, as a sentence; empty without one.
-
-    What is not sure enough to refuse the logs says where to look once a fit has failed.
-    """
-    library = effect_library(without_effects(bound) if bound.effects else bound)
-    parts = [replace(where_most_moves(log), extra={}) for log in logs.values()]
-    usual = make_case(library, parts, stated=bound)
-    fit = fitted_or_none(usual, plain_fit)
-    found = []
-    for wiring in wirings(usual):
-        other = fitted_or_none(make_case(library, [_read_by(wiring, log) for log in parts], stated=bound), plain_fit)
-        if fit is not None and other is not None:
-            found.append((gain_over(usual, fit, other), wiring.what))
-    gain = max((gain for gain, _ in found), default=0.0)
-    if gain <= DOUBT_NATS:
-        return ""
-    alike = ", or ".join(what for own, what in found if gain - own < decisions.WIRING_ALIKE)
-    return f"perhaps {alike}: read so, the plant as stated follows the logs {gain:.0f} nats better"
+    nominal = plain_fit(busiest)
+    told = demand_wiring(busiest, nominal, plain_fit, where)
+    return (*told, *demand_rows(make_case(library, list(logs.values()), stated=bound), nominal, where, (LATE, EARLY)))
 
 
 def where_most_moves(log: RunLog) -> RunLog:
     """The rows of the seconds in which the outputs travel most, as many as a diagnosis looks at to doubt the columns."""
     if log.t_s[-1] - log.t_s[0] <= decisions.WIRING_S:
         return log
-    y = np.where(np.isfinite(log.y), log.y, np.nanmean(log.y, axis=0, keepdims=True)) if log.y.size else log.y
+    y = log.y[:, np.isfinite(log.y).any(axis=0)]
+    y = np.where(np.isfinite(y), y, np.nanmean(y, axis=0, keepdims=True)) if y.size else y
     spread = np.std(y, axis=0)
     travel = np.abs(np.diff(y, axis=0)) @ np.where(spread > 0.0, 1.0 / np.where(spread > 0.0, spread, 1.0), 0.0)
     gone = np.concatenate([[0.0], np.cumsum(np.nan_to_num(travel))])
@@ -80,8 +65,3 @@ def where_most_moves(log: RunLog) -> RunLog:
     whole = log.t_s + decisions.WIRING_S <= log.t_s[-1]
     first = int(np.argmax(np.where(whole, gone[ends] - gone, -1.0)))
     return trimmed(log, float(log.t_s[first]), float(log.t_s[ends[first]]))
-
-
-def _read_by(wiring: Wiring, log: RunLog) -> RunLog:
-    u = log.u[:, list(wiring.inputs)] * np.array(wiring.input_signs)
-    return replace(log, u=u, y=log.y[:, list(wiring.outputs)] * np.array(wiring.output_signs))

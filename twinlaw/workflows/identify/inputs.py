@@ -29,12 +29,14 @@ Limits = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict; what is odd in these."""
+    """Experiments in the paper's order; logs by the name of their file, those to fit and those to predict; what is odd in these, and
+    which columns may be others than they are called."""
 
     experiments: tuple[Experiment, ...]
     logs: Mapping[str, RunLog]
     holdout: Mapping[str, RunLog]
     notes: tuple[str, ...] = ()
+    doubt: str = ""
 
 
 def read_inputs(paths: Sequence[Path], holdout: Sequence[Path], bound: BoundPlant) -> Inputs:

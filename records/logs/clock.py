@@ -1,0 +1,28 @@
+"""The unit of a log's times: seconds, as its sidecar's sample period says. Every reader of a log asks here."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from records.errors import BadInput
+
+OTHER_UNIT = 300.0  # times the stated period and more are no jitter and no lost rows, but another unit
+UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds", 1.0 / 60.0: "minutes", 1.0 / 3600.0: "hours"}
+CLOSE = 1.5  # a unit is named where the rows are so near to it
+
+
+def demand_seconds(t_s: NDArray[np.float64], sample_period_s: float, where: str) -> None:
+    """Raise BadInput where the rows of a log are so far apart, or so close, that its times are in another unit than its sample period."""
+    if len(t_s) < 2:
+        return
+    usual = float(np.median(np.diff(t_s)))
+    ratio = usual / sample_period_s
+    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT:
+        unit = next((name for factor, name in UNITS.items() if factor / CLOSE < ratio < factor * CLOSE), None)
+        raise BadInput(
+            "time unit",
+            f"{where}, column 't_s'",
+            f"rows {usual:g} s apart where the sidecar states {sample_period_s:g} s"
+            + (f": these are {unit}" if unit else ""),
+            "t_s in seconds",
+            f"convert the time stamps{f' from {unit}' if unit else ''} to seconds",
+        )
