@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from toolchain.templates import text_templates
@@ -13,10 +14,28 @@ from verification.comparison.flights import AXES, FILTERED
 from verification.comparison.manoeuvres import FIGURES
 
 OVERSHOOT = 0.05
+OPEN_LOOP_CAPTION = (
+    "Fig. 18 of seed 001: steps of u_T at u_M = 0.48 MU, steps of u_M at u_T = 0.21 MU, each on the figure's own levels, and steps of u_T "
+    "about the 0.38 MU at which this plant's azimuth stands still"
+)
+
+
+@dataclass(frozen=True)
+class Where:
+    """The page's command and folder, how its files begin, and the caption of its picture without a controller, if it has one."""
+
+    command: str
+    out: str
+    stem: str
+    open_loop: str | None
 
 
 def page_text(
-    rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError], command: str, out: str
+    rows: Sequence[Compared],
+    refused: Mapping[str, str],
+    wanted: Wanted,
+    eq26: Mapping[tuple[str, str], FormError],
+    where: Where,
 ) -> str:
     """The page; the same comparison gives the same bytes."""
     effects = tables.effect_rows(rows)
@@ -24,8 +43,11 @@ def page_text(
         text_templates(TEMPLATES)
         .get_template("controllers.md.j2")
         .render(
-            command=command,
-            out=out,
+            command=where.command,
+            out=where.out,
+            stem=where.stem,
+            open_loop=where.open_loop,
+            refused=[f"`{name}`: {why}" for name, why in refused.items()],
             rows=[
                 {
                     **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
@@ -58,13 +80,13 @@ def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "title": figure.title,
+            "title": FIGURES[name].title,
             "tables": [
                 (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
                 for axis in AXES
             ],
         }
-        for name, figure in FIGURES.items()
+        for name in (rows[0].figures if rows else ())
     ]
 
 
