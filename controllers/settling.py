@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.controller import Controller as LawDesign
-from design.settings import DesignSettings
 from records.errors import BadInput
 from records.law_table import LawTable
 from sim.added_effects import without_effects
@@ -27,14 +25,6 @@ QUIET_S = 3.0  # at the end
 # The largest error in them. On the CE150 the papers' controllers stay within 1.3 deg, most of it the fuzzy ones', which have no integrator;
 # on ce150_velagic, which they do not hold, these are off by 9 and 41 deg.
 SETTLED_DEG = 3.0
-
-
-def design_settling(row: LawDesign, bound: BoundPlant, settings: DesignSettings) -> Any:
-    """The table of a row of CONTROLLERS on this plant; raises BadInput where it cannot be designed, or does not settle there."""
-    table = row.design(bound, settings)
-    if isinstance(table, LawTable):  # the scheduled law's margins are judged where it is designed
-        demand_settling(bound, table, row.float_law(table), row.plants)
-    return table
 
 
 def demand_settling(bound: BoundPlant, table: LawTable[Any], law: Controller, expected: str) -> None:

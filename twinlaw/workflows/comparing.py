@@ -9,11 +9,12 @@ from controllers.controller import Controller
 from controllers.designing import points_of
 from controllers.equation_controller import EquationController
 from controllers.instantaneous import CONTROLLER as INSTANTANEOUS
-from controllers.settling import design_settling
+from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
 from records.errors import BadInput, VerificationFailed
 from records.files import write_atomic
+from records.law_table import LawTable
 from records.protocol import PROTOCOL
 from records.table import changed_axis
 from rig.emulator.board import EmulatedBoard
@@ -31,18 +32,30 @@ from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
 
-def design_controllers(bound: BoundPlant, names: Sequence[str]) -> tuple[dict[str, Any], dict[str, str]]:
-    """The tables of the controllers that hold this plant, and why the others do not, by name; raises BadInput where none does."""
-    tables, refused, settings = {}, {}, read_settings(bound)
+def design_controllers(
+    bound: BoundPlant, names: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """The tables of those that can be designed for this plant; why the others cannot; why some do not settle there; each by name.
+
+    Raises BadInput where none can be designed.
+    """
+    tables, refused, unsettled, settings = {}, {}, {}, read_settings(bound)
     for name in names:
-        try:
-            with stage(f"{name}: designing"):
-                tables[name] = design_settling(CONTROLLERS[name], bound, settings)
-        except BadInput as reason:
-            refused[name], last = str(reason), reason
+        row = CONTROLLERS[name]
+        with stage(f"{name}: designing"):
+            try:
+                tables[name] = row.design(bound, settings)
+            except BadInput as reason:
+                refused[name], last = str(reason), reason
+                continue
+            if isinstance(tables[name], LawTable):  # the scheduled law's margins are judged where it is designed
+                try:
+                    demand_settling(bound, tables[name], row.float_law(tables[name]), row.plants)
+                except BadInput as reason:
+                    unsettled[name] = str(reason)
     if not tables:
         raise last
-    return tables, refused
+    return tables, refused, unsettled
 
 
 def compare_controllers(

@@ -20,6 +20,16 @@ OPEN_LOOP_CAPTION = (
 )
 
 
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What was compared, eq (26) in float32, and why controllers were not designed, or do not settle, by name."""
+
+    wanted: Wanted
+    eq26: Mapping[tuple[str, str], FormError]
+    refused: Mapping[str, str]
+    unsettled: Mapping[str, str]
+
+
 @dataclass(frozen=True)
 class Where:
     """The page's command and folder, how its files begin, and the caption of its picture without a controller, if it has one."""
@@ -30,13 +40,7 @@ class Where:
     open_loop: str | None
 
 
-def page_text(
-    rows: Sequence[Compared],
-    refused: Mapping[str, str],
-    wanted: Wanted,
-    eq26: Mapping[tuple[str, str], FormError],
-    where: Where,
-) -> str:
+def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
     """The page; the same comparison gives the same bytes."""
     effects = tables.effect_rows(rows)
     return (
@@ -47,7 +51,8 @@ def page_text(
             out=where.out,
             stem=where.stem,
             open_loop=where.open_loop,
-            refused=[f"`{name}`: {why}" for name, why in refused.items()],
+            refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
+            unsettled=[f"`{name}`: {why}" for name, why in told.unsettled.items()],
             rows=[
                 {
                     **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
@@ -58,16 +63,16 @@ def page_text(
             notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
             cost=_markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
             figures=_figures(rows),
-            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
+            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(told.eq26)) if told.eq26 else "",
             angles=ANGLES,
-            runs=wanted.trial.runs,
-            seed=wanted.trial.seed,
+            runs=told.wanted.trial.runs,
+            seed=told.wanted.trial.seed,
             spread=[
                 (axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES
             ],
             filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
             filtered_verdict=filtered_verdict(rows),
-            filtered=min(FILTERED, wanted.trial.runs),
+            filtered=min(FILTERED, told.wanted.trial.runs),
             effects=_markdown(*effects),
             verdict=verdict(rows),
             quality=_markdown(tables.QUALITY_HEADING, tables.quality_rows(rows)),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from controllers import loading
-from controllers.settling import design_settling
+from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
@@ -66,7 +66,9 @@ def design_other_on(bound: BoundPlant, name: str, where: str = "") -> LawTable[A
     """The same for a plant that is loaded, told as `where`."""
     row = CONTROLLERS[name]
     with stage(f"designing {row.title}"), _computable(where or bound.plant.name):
-        table: LawTable[Any] = design_settling(row, bound, read_settings(bound))
+        table: LawTable[Any] = row.design(bound, read_settings(bound))
+        if isinstance(table, LawTable):  # the scheduled law's margins are judged where it is designed
+            demand_settling(bound, table, row.float_law(table), row.plants)
     return table
 
 
