@@ -292,7 +292,8 @@ CONTROLLER = EquationController(
         "by about 2 V either way while the arm stands. Mended are rule 2 (positive error, positive "
         "output), the outputs' names, the missing set Bneg, the output that is 0 where hovering takes half of the range (it is "
         "added to the feed-forward) and the scale of the output's axis; `controllers/fuzzy_sets.py` names each. The reference "
-        "is not filtered, as in the paper."
+        "is not filtered, as in the paper. Where a plant file has [design.tuned.fuzzy], as `plants/ce150_velagic.toml`, what is open is "
+        "taken from there: `twinlaw design --controller fuzzy --tune SEED` finds it by the same flight as the PID's gains."
     ),
     equations=Fuzzy(),
     gains=FuzzyGains,
