@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from controllers.table import CONTROLLERS
+from design.structure import demand_helicopter
 from records.files import write_atomic
 from records.quality import quality_facts
 from sim.bind import BoundPlant
@@ -58,6 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Design, verify, fly, write, tell, and fail where bits differ."""
     bound = load_bound(chosen.plant)
+    demand_helicopter(bound, "the papers' controllers and manoeuvres")
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
     crew = sweeping.crew_of(chosen)
