@@ -51,10 +51,10 @@ def test_a_decision_that_no_input_turns_is_told_with_its_place() -> None:
     assert any("condition 2 alone" in line for line in result.detail)
 
 
-@pytest.mark.parametrize("orders", sampled([(3, 2, 1), (2,)], keep=[(3, 2, 1)]))
-def test_the_drivers_lead_a_law_of_any_loops(orders: tuple[int, ...], tmp_path: Path) -> None:
+@pytest.mark.parametrize("loops", sampled([3, 1], keep=[3]))
+def test_the_drivers_lead_a_law_of_any_loops(loops: int, tmp_path: Path) -> None:
     # Truth: both compile, and in a soak both end and the law's self-test, the driver's verdict, holds.
-    table = any_table(orders, 0, roll_off=False)
+    table = any_table((3, 2, 1)[:loops], 0, roll_off=False)
     names = lay_out({**generate_law(table), **protocol_source(protocol_of(table.loops))}, tmp_path)
     (tmp_path / "stimuli.bin").write_bytes(stimuli_words(standard_stimuli(table, 200)))
     for driver in DRIVERS:
