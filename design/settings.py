@@ -209,7 +209,8 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     scheduling = _scheduling(section, loops, where)
     ranges = () if scheduling is None else (f"{scheduling.symbol}_min_rad", f"{scheduling.symbol}_max_rad")
     names = [loop.axis for loop in loops]
-    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins", "tuned"))
+    tuned = ("tuned",) if loops == LOOPS else ()  # the papers' controllers are the helicopter's
+    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins", *tuned))
     schedule = None if scheduling is None else _schedule(bound, section, scheduling, where)
     counts = DEFAULTS if schedule else {**DEFAULTS, **UNSCHEDULED}
     coefficient_degree = _count(section, "coefficient_degree", where, counts)
