@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from design.discretise import SampledPlant, sample
-from design.linearise import LinearPlant, linearise, subsystem
+from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.operating_points import equilibria, grid
 from design.settings import DesignSettings
 from design.structure import demand_helicopter
@@ -21,7 +21,7 @@ from sim.equilibrium import OperatingPoint
 
 Array = NDArray[np.float64]
 G = TypeVar("G")
-STATES = 3  # of an axis that the papers' controllers are designed for
+STATES = 3  # of an axis behind one rotor lag
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,12 @@ class Points:
     linear: tuple[LinearPlant, ...]
 
     def axis(self, name: str) -> tuple[LinearPlant, ...]:
-        """The part of each from the axis' input to its angle, of one rotor lag; raises BadInput for another."""
-        parts = tuple(subsystem(self.bound, plant, self.settings.loop(name)) for plant in self.linear)
+        """The part of each from the axis' input to its angle."""
+        return tuple(subsystem(self.bound, plant, self.settings.loop(name)) for plant in self.linear)
+
+    def behind_one_lag(self, name: str) -> tuple[LinearPlant, ...]:
+        """The same of an axis behind one rotor lag; raises BadInput for another."""
+        parts = self.axis(name)
         for part in parts:
             if len(part.A) != STATES:
                 raise BadInput(
@@ -46,8 +50,13 @@ class Points:
         return parts
 
     def sampled(self, name: str) -> tuple[SampledPlant, ...]:
-        """The same, sampled with a zero-order hold."""
+        """The axis' parts, sampled with a zero-order hold."""
         return tuple(sample(plant, self.settings.sample_period_s) for plant in self.axis(name))
+
+    def whole(self) -> tuple[SampledPlant, ...]:
+        """All of the plant, from both inputs to both angles, sampled likewise."""
+        loops, period_s = self.settings.loops, self.settings.sample_period_s
+        return tuple(sample(of_loops(self.bound, plant, loops), period_s) for plant in self.linear)
 
 
 def points_of(bound: BoundPlant, settings: DesignSettings) -> Points:

@@ -9,6 +9,7 @@ from codegen.twin import Float32Twin
 from controllers.designing import Points, points_of
 from controllers.exact import EquationLaw, EquationTwin
 from controllers.source import generate
+from controllers.tuned import Tunable
 from design.settings import DesignSettings
 from records.law_table import LawTable, law_table_text
 from sim.bind import BoundPlant
@@ -20,7 +21,7 @@ class EquationController:
     """A row of the table.
 
     `gains` is the record of one axis' own numbers, `tables` designs at the operating points, `template` is its file in
-    controllers/templates.
+    controllers/templates; `tunable` is what a plant's file may say of it.
     """
 
     name: str
@@ -32,6 +33,7 @@ class EquationController:
     gains: type
     tables: Callable[[Points], LawTable[Any]]
     template: str
+    tunable: Tunable | None = None
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> LawTable[Any]:
         """The table on this plant; raises BadInput where it cannot be designed."""

@@ -11,7 +11,8 @@ controllers/fuzzy_sets.py. v is added to the feed-forward.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -29,7 +30,9 @@ from controllers.fuzzy_sets import (
     RATE_LABELS,
     Trapezoid,
     Wording,
+    error_sets,
 )
+from controllers.tuned import Numbers, OpenNumber, Tunable, tuned
 from records.law_table import LawTable
 from records.table import lag_gain
 
@@ -216,9 +219,13 @@ def _nodes(peaks: list[float]) -> tuple[OutputNode, ...]:
 
 
 def design(points: Points) -> LawTable[FuzzyGains]:
-    """Both controllers as the paper states them; of the plant they take the feed-forward and the limits alone."""
+    """Both controllers as the paper states them; of the plant they take the feed-forward, the limits, and what its file has tuned."""
+    found = tuned(points, "fuzzy", TUNABLE)
+    return _table(points, WORDINGS) if found is None else _tuned_table(points, found)
+
+
+def _table(points: Points, words: Mapping[str, Wording]) -> LawTable[FuzzyGains]:
     Ts_s = points.settings.sample_period_s
-    words = {"elevation": ELEVATION, "azimuth": AZIMUTH}
     axes = {axis: axis_table(points, axis, gains_of(wording, Ts_s), 0.0) for axis, wording in words.items()}
     origin = {
         axis: {"rules": sum(len(row) for table in w.rules.values() for row in table.values())}
@@ -226,6 +233,49 @@ def design(points: Points) -> LawTable[FuzzyGains]:
     }
     return law_table("fuzzy", points, axes, origin)
 
+
+WORDINGS = {"elevation": ELEVATION, "azimuth": AZIMUTH}
+
+
+def _worded(axis: str, numbers: Numbers) -> Wording:
+    """An axis' words with what the paper leaves open of them: the error's sets, the time of the derivative, the volts of a unit."""
+    small, medium, big, leaves, reaches, rate_period_s, unit_V = numbers.values()
+    return replace(
+        WORDINGS[axis],
+        error=error_sets(small, small * medium, small * medium * big, leaves, leaves + reaches),
+        rate_period_s=rate_period_s,
+        unit_V=unit_V,
+    )
+
+
+def _tuned_table(points: Points, found: Mapping[str, Numbers]) -> LawTable[FuzzyGains]:
+    return _table(points, {axis: _worded(axis, numbers) for axis, numbers in found.items()})
+
+
+def _open(
+    smallest: tuple[float, float], leaves: tuple[float, float], reaches: tuple[float, float]
+) -> tuple[OpenNumber, ...]:
+    """Ranges: PS within the zoom of the figures, P anywhere on their axis, the derivative from half a sample to 2 s, a unit up to 1 MU."""
+    return (
+        OpenNumber("small_deg", *smallest),
+        OpenNumber("medium_by_small", 1.2, 6.0),
+        OpenNumber("big_by_medium", 1.2, 6.0),
+        OpenNumber("leaves_0_deg", *leaves, linear=True),
+        OpenNumber("reaches_1_after_deg", *reaches),
+        OpenNumber("rate_period_s", 0.005, 2.0),
+        OpenNumber("unit_V", 1.0, 10.0),
+    )
+
+
+TUNABLE = Tunable(
+    open={
+        "elevation": _open((0.5, 20.0), (-40.0, 20.0), (1.0, 80.0)),
+        "azimuth": _open((0.5, 60.0), (-40.0, 40.0), (1.0, 200.0)),
+    },
+    table=_tuned_table,
+    template="fuzzy_tuning.c.j2",
+    flat=lambda gains: [value for slopes in gains.errors for value in slopes] + [gains.rate_scale, gains.output_V],
+)
 
 CONTROLLER = EquationController(
     name="fuzzy",
@@ -242,10 +292,12 @@ CONTROLLER = EquationController(
         "by about 2 V either way while the arm stands. Mended are rule 2 (positive error, positive "
         "output), the outputs' names, the missing set Bneg, the output that is 0 where hovering takes half of the range (it is "
         "added to the feed-forward) and the scale of the output's axis; `controllers/fuzzy_sets.py` names each. The reference "
-        "is not filtered, as in the paper."
+        "is not filtered, as in the paper. Where a plant file has [design.tuned.fuzzy], as `plants/ce150_velagic.toml`, what is open is "
+        "taken from there: `twinlaw design --controller fuzzy --tune SEED` finds it by the same flight as the PID's gains."
     ),
     equations=Fuzzy(),
     gains=FuzzyGains,
     tables=design,
     template="fuzzy.c.j2",
+    tunable=TUNABLE,
 )

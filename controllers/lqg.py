@@ -157,7 +157,7 @@ def _values(points: Points, axis: str) -> dict[str, Array]:
     """Each coefficient at the operating points (points,)."""
     resolution_rad = points.bound.plant.sensors[points.settings.loop(axis).output]
     Ts_s, weights = points.settings.sample_period_s, WEIGHTS[axis]
-    designs = [gains_at(plant, weights, Ts_s, resolution_rad) for plant in points.axis(axis)]
+    designs = [gains_at(plant, weights, Ts_s, resolution_rad) for plant in points.behind_one_lag(axis)]
     return {name: np.array([entry[name] for entry in designs]) for name in NAMES}
 
 

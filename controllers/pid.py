@@ -10,6 +10,7 @@ in controllers/pid_tuning.py. (C.2) is back-calculation with the tracking time t
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -18,6 +19,7 @@ from controllers.designing import Points, axis_table, law_table
 from controllers.equation_controller import EquationController
 from controllers.frame import AxisNumbers, Decisions
 from controllers.pid_tuning import LARGEST_SENSITIVITY, Tuning, tune
+from controllers.tuned import Numbers, OpenNumber, Tunable, tuned
 from design.table import limits_V, plain
 from records.law_table import LawTable
 from records.table import AXES, lag_gain
@@ -90,12 +92,18 @@ class Pid:
 
 
 def design(points: Points) -> LawTable[PidGains]:
-    """Both axes tuned on the plant's operating points; raises BadInput where no gains hold the sensitivity."""
+    """Both axes as the plant file has tuned them, or tuned on its operating points; raises BadInput where no gains hold the sensitivity."""
+    found = tuned(points, "pid", TUNABLE)
+    if found is not None:
+        return _tuned_table(points, found)
+    for axis in AXES:
+        points.behind_one_lag(axis)
     tunings = {axis: tune(points.sampled(axis), axis) for axis in AXES}
     axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
     return law_table("pid", points, axes, {axis: _origin(axis, tuning) for axis, tuning in tunings.items()})
 
 
+FLOWN = "design.tuned"
 RULE = "largest integral gain with max |1/(1 + L)| <= Ms_max at every operating point and Ti >= 4 Td"
 
 
@@ -118,22 +126,49 @@ def _gains(points: Points, axis: str, tuning: Tuning) -> PidGains:
     )
 
 
+def _tuned_table(points: Points, found: Mapping[str, Numbers]) -> LawTable[PidGains]:
+    tunings = {
+        axis: Tuning(n["k_p_V_rad"], n["k_i_V_rad_s"], n["k_d_V_s_rad"], n["filter_s"], math.nan)
+        for axis, n in found.items()
+    }
+    axes = {axis: axis_table(points, axis, _gains(points, axis, tuning)) for axis, tuning in tunings.items()}
+    return law_table("pid", points, axes, {axis: {**numbers, "rule": FLOWN} for axis, numbers in found.items()})
+
+
+# An azimuth that turns 1 rad for 0.1 V, or for 100; a derivative's filter from two samples on.
+OPEN = (
+    OpenNumber("k_p_V_rad", 0.05, 50.0),
+    OpenNumber("k_i_V_rad_s", 0.01, 50.0),
+    OpenNumber("k_d_V_s_rad", 0.005, 50.0),
+    OpenNumber("filter_s", 0.02, 0.3),
+)
+TUNABLE = Tunable(
+    open=dict.fromkeys(AXES, OPEN),
+    table=_tuned_table,
+    template="pid_tuning.c.j2",
+    flat=lambda gains: list(vars(gains).values()),
+)
+
 CONTROLLER = EquationController(
     name="pid",
     title="PID",
     source="seed 001, section 5.2.2, which prints no gains",
     plants=(
         "a helicopter of two axes, each behind one rotor lag, as `ce150`, on which one set of gains an axis is robust at every elevation "
-        "of its range, and settles"
+        "of its range, and settles; any other on which the gains of its [design.tuned.pid] do"
     ),
     note=(
         "has one set of gains an axis, the largest integral gain under which |1/(1 + L)| stays below 3 (elevation) and 2 (azimuth) at "
         "every operating point, with Ti >= 4 Td and Tf = Td/10; the elevation's bound is 3 because one set of gains reaches no less than "
         "2.5 over +-40 deg. The derivative is of the filtered angle, the integral is held by back-calculation, references are filtered "
-        "as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without it."
+        "as the scheduled law's. Ti >= 4 Td was added when the azimuth overshot by 55 % without it. Where a plant file has "
+        "[design.tuned.pid], as `plants/ce150_velagic.toml`, gains and Tf are those: `twinlaw design --controller pid --tune SEED` finds "
+        "them by differential evolution, as those of the least mean |error| of both axes through a flight of 120 s on that plant "
+        "(`verification/comparison/tuning.py`)."
     ),
     equations=Pid(),
     gains=PidGains,
     tables=design,
     template="pid.c.j2",
+    tunable=TUNABLE,
 )

@@ -18,13 +18,11 @@ class Scheduled:
     name = "scheduled"
     title = "scheduled pole placement"
     source = "seed 000, section 3.4: coefficients as polynomials in the elevation"
-    plants = (
-        "a helicopter of two axes, each behind one rotor lag, as `ce150`, that holds the margins of [design] at every elevation of its "
-        "range"
-    )
+    plants = "any plant of one to four loops of up to five states, as `ce150`, that holds the margins of [design] over its range"
     note = (
-        "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): six poles an axis and one of a roll-off placed "
-        "at 17 operating points, coefficients fitted over the elevation, integral action, references filtered by 1/(T s + 1)^2."
+        "is the table that `twinlaw run` flies ([theory.md](theory.md), sections 2 to 4): two poles a state of each axis and one "
+        "of a roll-off placed at 17 operating points, coefficients fitted over the elevation, integral action, references "
+        "filtered by 1/(T s + 1)^2."
     )
 
     def design(self, bound: BoundPlant, settings: DesignSettings) -> ControllerTable:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
-from functools import cache
+from functools import cache, reduce
 from typing import Any
 
 import jinja2
@@ -38,6 +38,13 @@ def generate(table: LawTable[Any], equations: AxisEquations, template: str) -> M
     }
     templates = {"law.h": "law.h.j2", "law.c": template, "law_self_test.c": "law_self_test.c.j2"}
     return {name: _environment().get_template(file).render(context) for name, file in templates.items()}
+
+
+def tunable_law(texts: Mapping[str, str], template: str) -> Mapping[str, str]:
+    """The same texts with gains that are no constants, and behind them law_tune of `template`, which sets them: for tuning alone."""
+    tables = ("axis_gains", "fuzzy_set")
+    law = reduce(lambda text, name: text.replace(f"static const {name} ", f"static {name} "), tables, texts["law.c"])
+    return {**texts, "law.c": law + _environment().get_template(template).render()}
 
 
 @cache

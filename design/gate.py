@@ -13,9 +13,6 @@ REMEDY = "choose other poles, more operating points or a higher coefficient_degr
 # The controller's own poles may reach the unit circle (integral action) but not leave it by more than rounding.
 LARGEST_RADIUS = 1.0 + 1e-9
 
-# Bristol's rule: a pairing with a relative gain below a half loses more than half of its loop's gain, or its sign, when the others close.
-LEAST_RELATIVE_GAIN = 0.5
-
 
 @dataclass(frozen=True)
 class _Rule:
@@ -47,13 +44,13 @@ def check(report: DesignReport, settings: DesignSettings) -> None:
 def _check_relative_gains(report: DesignReport, settings: DesignSettings) -> None:
     for index, loop in enumerate(settings.loops):
         gains = [found.relative_gain[index] for found in report.coupling]
-        worst = int(np.argmin(gains))
-        if gains[worst] < LEAST_RELATIVE_GAIN:
+        worst, least = int(np.argmin(gains)), settings.margins.min_relative_gain
+        if gains[worst] < least:
             raise BadInput(
                 f"relative gain from {loop.input} to {loop.output}",
                 settings.place(loop.axis, float(report.points_rad[worst])),
                 f"{gains[worst]:.3g} at its crossover",
-                f"at least {LEAST_RELATIVE_GAIN:g}: below, most of what the input does to this angle comes by way of the other loops",
+                f"at least {least:g}: below, most of what the input does to this angle comes by way of the other loops",
                 "pair the loops otherwise, or choose an operating range where they are less coupled",
             )
 

@@ -37,6 +37,7 @@ def _pins_of(loop: Loop, section: Mapping[str, Any], where: str, board: Board) -
     measured = checks.table(section[loop.output], f"{where}.{loop.output}")
     driven = checks.table(section[loop.input], f"{where}.{loop.input}")
     _demand_encoder(measured, f"{where}.{loop.output}")
+    _demand_own_full_scale(driven, f"{where}.{loop.input}")
     checks.keys(driven, f"{where}.{loop.input}", ("pwm",), ("direction",))
     names = {name: checks.text(value, f"{where}.{loop.input}.{name}") for name, value in driven.items()}
     first, second = measured["encoder"]
@@ -60,6 +61,13 @@ def _demand_encoder(measured: Mapping[str, Any], where: str) -> None:
     if not isinstance(names, list) or len(names) != 2 or not all(isinstance(name, str) for name in names):
         got = repr(names)[:40]
         raise BadInput("encoder", where, got, "the names of two pins", 'write { encoder = ["PA0", "PA1"] }')
+
+
+def _demand_own_full_scale(driven: Mapping[str, Any], where: str) -> None:
+    if "full_scale_V" in driven:
+        got = f"{checks.number(driven['full_scale_V'], f'{where}.full_scale_V'):g} V"
+        remedy = "let the equations scale the input to what the driver gives, or leave [board] out"
+        raise BadInput("full scale", where, got, "the PWM's own, which docs/new-plant.md names", remedy)
 
 
 def _unknown(what: str, where: str, got: str, known: str, board: Board) -> BadInput:

@@ -28,6 +28,9 @@ u_max_V = 10.0
 max_sensitivity = 6.0
 min_phase_margin_rad = 0.175
 min_delay_margin_s = 0.02
+min_relative_gain = 0.5
+
+[design.tuned]                       what other controllers than this leave open: controllers/tuned.py
 """
 
 import math
@@ -81,7 +84,7 @@ AXIS_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
 }
 
 # Models whose axes the default poles are for.
-KNOWN_POLES = ("ce150", "ce150_seed_literal", "ce150_velagic")
+KNOWN_POLES = ("ce150", "ce150_seed_literal")
 
 # Wishes for an axis of any other plant, whose poles its file must name.
 PLAIN_AXIS: Mapping[str, Any] = {
@@ -100,10 +103,13 @@ OWN_POLES: Mapping[str, float | None] = {"roll_off_pole_rad_s": 0.0, "coefficien
 
 # The limits refuse tables that do not fly, not tables that fly badly: taste in margins belongs to the plant file.
 # Six times the sensitivity or 10 deg leave no room for the parameters' spread; two samples cover a serial link's delay.
+# Bristol's rule: a pairing with a relative gain below a half loses over half of its loop's gain, or its sign, as others close or open.
+LEAST_RELATIVE_GAIN = 0.5
 MARGIN_DEFAULTS: Mapping[str, float] = {
     "max_sensitivity": 6.0,
     "min_phase_margin_rad": 0.175,
     "min_delay_margin_s": 0.02,
+    "min_relative_gain": LEAST_RELATIVE_GAIN,
 }
 
 # Share of the hard stops that the defaults use, so that neither schedule nor reference ends on a stop; the azimuth's by its own name.
@@ -144,11 +150,12 @@ class AxisSettings:
 
 @dataclass(frozen=True)
 class MarginLimits:
-    """What every operating point must hold: max|1/(1 + L)|, phase margin and extra loop delay."""
+    """What every operating point must hold: max|1/(1 + L)|, phase margin, extra loop delay, and each loop's relative gain."""
 
     max_sensitivity: float
     min_phase_margin_rad: float
     min_delay_margin_s: float
+    min_relative_gain: float = LEAST_RELATIVE_GAIN
 
 
 @dataclass(frozen=True)
@@ -202,7 +209,8 @@ def read_settings(bound: BoundPlant) -> DesignSettings:
     scheduling = _scheduling(section, loops, where)
     ranges = () if scheduling is None else (f"{scheduling.symbol}_min_rad", f"{scheduling.symbol}_max_rad")
     names = [loop.axis for loop in loops]
-    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins"))
+    tuned = ("tuned",) if loops == LOOPS else ()  # the papers' controllers are the helicopter's
+    checks.keys(section, where, (), (*DEFAULTS, "recursion_degree", "schedule", *ranges, *names, "margins", *tuned))
     schedule = None if scheduling is None else _schedule(bound, section, scheduling, where)
     counts = DEFAULTS if schedule else {**DEFAULTS, **UNSCHEDULED}
     coefficient_degree = _count(section, "coefficient_degree", where, counts)

@@ -13,7 +13,7 @@ from sim.bind import BoundPlant
 from sim.model import Axis, Model
 
 # Keys of [design] that are no loop; the range of the schedule has its angle in its name.
-_NO_LOOP = ("margins", "schedule")
+_NO_LOOP = ("margins", "schedule", "tuned")
 
 
 def loops_of(bound: BoundPlant, section: Mapping[str, Any], where: str) -> tuple[Loop, ...]:

@@ -75,8 +75,8 @@ def steps(bound: BoundPlant, table: Table[Any]) -> Manoeuvre:
     """
     wires = wiring(bound, table.loops)
     middle_rad = [0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes]
-    point = equilibrium(bound, *_positions(bound, wires.outputs, middle_rad))
-    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in _outputs(bound, point.x0)]
+    point = equilibrium(bound, *positions(bound, wires.outputs, middle_rad))
+    legs: list[tuple[Leg, ...]] = [(Leg(0.0, math.degrees(y)),) for y in resting_outputs(bound, point.x0)]
     at_s = 0.0
     for place, axis, centre_rad, loop in zip(wires.outputs, table.axes, middle_rad, table.loops, strict=True):
         half_rad, hold_s = 0.5 * (axis.reference_max_rad - axis.reference_min_rad), _hold_s(table, axis, loop.axis)
@@ -98,14 +98,14 @@ def _hold_s(table: Table[Any], axis: Any, name: str) -> float:
     return min(max(wanted_s, SHORTEST_HOLD_S), LONGEST_HOLD_S)
 
 
-def _positions(bound: BoundPlant, places: Sequence[int], angles_rad: Sequence[float]) -> list[float]:
+def positions(bound: BoundPlant, places: Sequence[int], angles_rad: Sequence[float]) -> list[float]:
     """Positions of the model's axes with the outputs at `places` at these angles, all others at 0."""
     measured = list(bound.model.outputs.values())
     wanted = {measured[place]: angle for place, angle in zip(places, angles_rad, strict=True)}
     return [wanted.get(axis.position, 0.0) for axis in bound.model.axes if axis.position is not None]
 
 
-def _outputs(bound: BoundPlant, x0: Array) -> list[float]:
+def resting_outputs(bound: BoundPlant, x0: Array) -> list[float]:
     """What the outputs read at rest where they are states; 0 elsewhere."""
     states = list(bound.model.states)
     return [float(x0[states.index(y)]) if y in states else 0.0 for y in bound.model.outputs.values()]

@@ -51,8 +51,9 @@ class _Hold:
     change: float
 
 
-# A flight has left its references where an axis rests farther off, or overshoots by more. On the CE150 the papers' controllers rest within
-# 1.1 deg and overshoot by a quarter at most; the fuzzy ones on ce150_velagic rest 14 and 31 deg off and overshoot by half again.
+# A flight has left its references where an axis rests farther off or overshoots by more, or is pushed farther off and does not settle. On
+# the CE150 the papers' controllers rest within 1.1 deg and overshoot by a quarter at most; the untuned fuzzy ones on ce150_velagic rest 14
+# and 31 deg off and overshoot by half again, and its tuned PID is pushed by 16 deg and swings from there on.
 LEFT_RAD = 0.087
 LEFT_OVERSHOOT = 1.0
 
@@ -63,6 +64,7 @@ def left(found: Sequence[Tracking]) -> tuple[str, ...]:
         f"{entry.output} by {math.degrees(max(entry.steady_error_rad, entry.push_rad)):.1f} deg"
         for entry in found
         if not (entry.steady_error_rad <= LEFT_RAD and entry.overshoot <= LEFT_OVERSHOOT)
+        or (entry.settling_s is None and entry.push_rad > LEFT_RAD)
     )
 
 

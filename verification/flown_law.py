@@ -8,15 +8,15 @@ from sim.wiring import Wiring
 from toolchain.host import STRICT_FLOAT_FLAGS, CText, build_shared, load_shared
 from verification.drivers import driver
 
-_DECLARATIONS = """
-    uint32_t law_flight_size(void);
-    void law_flight_start(void *self, uint32_t samples);
-    void law_flight_step(void *context, const double *reference_rad, const double *angle_rad, double *u_V);
-"""
-
 
 class FlownLaw:
     """A compiled float32 law that flies whole flights without Python, one after another."""
+
+    declarations = """
+        uint32_t law_flight_size(void);
+        void law_flight_start(void *self, uint32_t samples);
+        void law_flight_step(void *context, const double *reference_rad, const double *angle_rad, double *u_V);
+    """
 
     def __init__(self, texts: Mapping[str, str], loops: tuple[Loop, ...] = LOOPS, wires: Wiring | None = None) -> None:
         """Compile the generated `texts` (file name -> C) of a law of `loops`, by which a plant is wired, or whose columns are the plant's.
@@ -30,7 +30,7 @@ class FlownLaw:
         flight = driver("law_flight.c", loops, outputs=outputs, inputs=inputs, resting=resting)
         sources = [CText(name, text) for name, text in texts.items()]
         library = build_shared("flight", [*sources, flight], flags=STRICT_FLOAT_FLAGS)
-        self._ffi, self._lib = load_shared(_DECLARATIONS, library)
+        self._ffi, self._lib = load_shared(self.declarations, library)
         self._state = self._ffi.new("char[]", self._lib.law_flight_size())
 
     def controller(self, samples: int) -> CController:

@@ -36,9 +36,11 @@ uint8_t supervisor_arm(supervisor_state *self, uint8_t mode, bool table_matches,
     if (!self_test_passed) {
         return PROTOCOL_REASON_SELF_TEST_FAILED;
     }
+#if PROTOCOL_HAS_PINS != 0
     if (mode == PROTOCOL_MODE_FLYING && self->position_lost) {
         return PROTOCOL_REASON_POSITION_LOST;
     }
+#endif
     if (supervisor_is_armed(self)) {
         return self->mode == mode ? PROTOCOL_REASON_DONE : PROTOCOL_REASON_OTHER_MODE;
     }

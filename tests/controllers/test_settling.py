@@ -77,7 +77,8 @@ def test_every_controller_says_for_which_plants_it_is() -> None:
 def test_a_flight_that_left_its_references_is_told() -> None:
     near = Tracking("psi_rad", 3, 0.2, 1.5, 0.02, 0.01, 0.3, "u_M_V", Activity(4.0, 10.0))
     far, wild = replace(near, steady_error_rad=0.25), replace(near, overshoot=1.5)
-    assert left([near]) == ()
+    assert left([near, replace(near, settling_s=None, push_rad=0.05)]) == ()
+    assert left([replace(near, settling_s=None)]) == ("psi_rad by 17.2 deg",)
     assert left([near, far]) == ("psi_rad by 17.2 deg",)
     assert left([wild, replace(near, steady_error_rad=float("nan"))]) != ()
     assert len(left([wild, replace(near, steady_error_rad=float("nan"))])) == 2

@@ -11,7 +11,7 @@ Left of = stands a number as the page writes it, right of it an expression witho
 - `protocol.NAME`, a constant of the serial line's declaration;
 - `PLANT.section.key` of plants/PLANT.toml;
 - `results.NAME.key...` of docs/results/NAME.json, which a command wrote (tests/docs/results.py); a page rounds it, and may round others of
-  its kind alike;
+  its kind alike; a key's hyphen is written _;
 - len, min, max of these.
 
 A comment speaks of the text between the headings about it.
@@ -94,7 +94,7 @@ def _resolved(name: str) -> Any:
     if (ROOT / "plants" / f"{head}.toml").is_file():
         found = _plant(head)
         for key in rest:
-            found = found[key]
+            found = found[key if key in found else key.replace("_", "-")]
         return found
     place = next(index for index, word in enumerate(rest) if word.isupper())
     values = [
@@ -109,7 +109,7 @@ def reached(found: Any, keys: Sequence[str]) -> Any:
     """What lies in a result under one key after the other; in a list, a place, or the entry of that name."""
     for key in keys:
         if not isinstance(found, list):
-            found = found[key]
+            found = found[key if key in found else key.replace("_", "-")]
         elif key.isdigit():
             found = found[int(key)]
         else:

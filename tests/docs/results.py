@@ -45,6 +45,7 @@ def real(rig: str, fitted: Sequence[str], told: Sequence[str], held_out: Sequenc
 
 TWO_CLOCKS = "impulse_char_2026_01_24_"
 COMMANDS: dict[str, list[list[str]]] = {
+    "compared_velagic": [["compare", *VELAGIC]],
     "coverage": [["experiments", "--seed", "1", "--repetitions", "100"]],
     "designed": [["design"]],
     "envelope": [["envelope", "--seed", "1", "--show", "HA6000ft-50kts"]],

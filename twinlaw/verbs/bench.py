@@ -26,6 +26,7 @@ from sim.bench import comparison
 from sim.bench.comparison import BenchRow, StepAccuracy
 from sim.bench.peak import ProcessorShare
 from twinlaw.cli import console, options
+from twinlaw.workflows.chain.building import demand_helicopter_loops
 from twinlaw.workflows.chain.designing import design_controller
 
 BOARD_STEPS = 20_000
@@ -44,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Measure and print."""
     designed = design_controller(chosen.plant)
+    demand_helicopter_loops(designed.table, "the tools that it compares with")
     with console.stage("flying by every tool"):
         rows, share = comparison.run(designed.bound, designed.table, lambda: FloatLaw(designed.table))
     with console.stage("flying with finer steps"):

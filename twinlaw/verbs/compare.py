@@ -1,6 +1,8 @@
 """Compare the controllers of the papers: each as generated C on the same firmware, flown on the papers' own manoeuvres.
 
-Writes DIR/compare.json, DIR/controllers.md with a plot of each figure, and for each controller DIR/NAME/ with its table, C and image.
+Writes DIR/compare.json, DIR/controllers.md (of another plant than ce150: controllers-PLANT.md) with a plot of each figure, and for each
+controller DIR/NAME/ with its table, C and image. Those that cannot be designed for the plant are
+told and left out; those that do not settle on it, which `design` refuses, are told and flown.
 Besides the nominal plant they fly plants whose parameters are all up to 10 % off, and each of a list of effects that the
 equations lack; these flights are shared out among processes and kept in DIR/jobs. Exit status 1 when twin, compiled C and the emulated
 board differ in a single bit.
@@ -9,23 +11,28 @@ board differ in a single bit.
 import argparse
 import json
 import shlex
+from collections.abc import Sequence
+from pathlib import Path
 
 from controllers.table import CONTROLLERS
+from design.structure import demand_helicopter
 from records.files import write_atomic
 from records.quality import quality_facts
+from sim.bind import BoundPlant
 from twinlaw.cli import console, options
 from twinlaw.pages.compare import tables
-from twinlaw.pages.compare.comparison import Wanted, facts
-from twinlaw.pages.compare.plots import figure_plot
+from twinlaw.pages.compare.comparison import Compared, Wanted, facts
+from twinlaw.pages.compare.plots import figure_plot, open_loop_plot
 from twinlaw.pages.compare.quality import controller_quality
-from twinlaw.pages.compare.report import page_text, verdict
+from twinlaw.pages.compare.report import OPEN_LOOP_CAPTION, Told, Where, page_text, verdict
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.verifying import STEPS
-from twinlaw.workflows.comparing import compare_controllers, demand_equal, eq26_errors
+from twinlaw.workflows.comparing import compare_controllers, demand_equal, design_controllers, eq26_errors
 from twinlaw.workflows.reading import load_bound
 from verification.comparison.conditions import EFFECTS
 from verification.comparison.flights import Trial
-from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.manoeuvres import figures
+from verification.comparison.open_loop import fly_open_loop
 
 RUNS, SEED = 100, 2
 
@@ -52,21 +59,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Design, verify, fly, write, tell, and fail where bits differ."""
     bound = load_bound(chosen.plant)
+    demand_helicopter(bound, "the papers' controllers and manoeuvres")
     wanted = Wanted(Trial(chosen.runs, chosen.seed, tuple(chosen.effects)), chosen.steps)
     names = tuple(dict.fromkeys(chosen.controllers))
     crew = sweeping.crew_of(chosen)
     with crew():  # a cluster that is not there is told now, not after a minute of building
         pass
     each = sweeping.each("flights, 25 at a time", crew, chosen.out / "jobs", lambda order: order.name)
-    rows = compare_controllers(bound, names, wanted, chosen.out, each)
-    eq26 = eq26_errors(bound, names)
+    designed, refused, unsettled = design_controllers(bound, names)
+    rows = compare_controllers(bound, designed, wanted, chosen.out, each)
+    eq26 = eq26_errors(bound, designed)
     colours = {row.row.name: quality_facts(controller_quality(row)) for row in rows}
-    content = facts(bound, rows, wanted, eq26) | {"quality": colours}
+    content = facts(bound, rows, wanted, eq26) | {"refused": refused, "unsettled": unsettled, "quality": colours}
     write_atomic(chosen.out / "compare.json", json.dumps(content, indent=1) + "\n")
-    for name in FIGURES:
-        write_atomic(chosen.out / f"controllers-{name}.svg", figure_plot(rows, name))
-    command = _command(chosen)
-    write_atomic(chosen.out / "controllers.md", page_text(rows, wanted, eq26, command, str(chosen.out)))
+    page = _write_page(chosen, bound, rows, Told(wanted, eq26, refused, unsettled))
     if chosen.json:
         print(json.dumps(content))
     else:
@@ -75,9 +81,32 @@ def run(chosen: argparse.Namespace) -> int:
             print(f"\n{axis}, {wanted.trial.runs} plants within +-10 %")
             print(console.table(tables.spread_rows(rows, axis), tables.SPREAD_HEADING))
         print(f"\n{console.table(tables.quality_rows(rows), tables.QUALITY_HEADING)}")
-        print(f"\n{verdict(rows)}\n{chosen.out / 'controllers.md'}")
+        for name, why in refused.items():
+            print(f"\nnot designed: {name}: {why}")
+        for name, why in unsettled.items():
+            print(f"\ndoes not settle: {name}: {why}")
+        print(f"\n{verdict(rows)}\n{page}")
     demand_equal(rows)
     return 0
+
+
+def _write_page(
+    chosen: argparse.Namespace,
+    bound: BoundPlant,
+    rows: Sequence[Compared],
+    told: Told,
+) -> Path:
+    """The page and its pictures, all named controllers, behind that the plant where it is not the design's own."""
+    stem = "controllers" if bound.plant.name == "ce150" else f"controllers-{bound.plant.name}"
+    for name in figures(bound):
+        write_atomic(chosen.out / f"{stem}-{name}.svg", figure_plot(rows, name))
+    alone = fly_open_loop(bound)
+    if alone:
+        write_atomic(chosen.out / f"{stem}-fig-18.svg", open_loop_plot(alone))
+    where = Where(_command(chosen), str(chosen.out), stem, OPEN_LOOP_CAPTION if alone else None)
+    page: Path = chosen.out / f"{stem}.md"
+    write_atomic(page, page_text(rows, told, where))
+    return page
 
 
 def _command(chosen: argparse.Namespace) -> str:

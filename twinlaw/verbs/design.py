@@ -4,6 +4,8 @@ Writes DIR/controller.json and, of the scheduled law, DIR/design.html. Refuses (
 anywhere in the range. The table serves both arithmetics: --arithmetic says in which its poles and margins are computed, and a table
 without a law in it is refused.
 --controller chooses another controller of docs/controllers.md; `build`, `flash`, `validate`, `watch` and `simulate` take its table as well.
+--tune SEED looks for what its design leaves open by flying the plant, a few minutes long, and writes DIR/tuned.toml, the section of the
+plant file that keeps it.
 """
 
 import argparse
@@ -17,17 +19,22 @@ from twinlaw.pages.page import page_text
 from twinlaw.pages.run.design import design_facts, design_heading, design_rows
 from twinlaw.pages.run.design_page import design_page
 from twinlaw.workflows.chain.designing import design_controller, design_other
+from twinlaw.workflows.comparing import tuned_text
+from twinlaw.workflows.reading import load_bound
 
 SCHEDULED = "scheduled"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """--plant, --controller, --arithmetic, --out, --json."""
+    """--plant, --controller, --tune, --arithmetic, --out, --json."""
     options.plant(parser)
     parser.add_argument(
         "--controller", choices=tuple(CONTROLLERS), default=SCHEDULED, metavar="NAME",
         help=f"one of {', '.join(CONTROLLERS)}; default: %(default)s",
     )  # fmt: skip
+    parser.add_argument(
+        "--tune", type=options.count, metavar="SEED", help="look for the controller's open numbers, from this seed"
+    )
     options.arithmetic(parser)
     options.out(parser)
     options.as_json(parser)
@@ -35,6 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Design, write and tell."""
+    if chosen.tune is not None:
+        write_atomic(chosen.out / "tuned.toml", tuned_text(load_bound(chosen.plant), chosen.controller, chosen.tune))
+        print(json.dumps({"tuned": str(chosen.out / "tuned.toml")}) if chosen.json else chosen.out / "tuned.toml")
+        return 0
     if chosen.controller != SCHEDULED:
         return _other(chosen)
     designed = design_controller(chosen.plant, chosen.arithmetic)

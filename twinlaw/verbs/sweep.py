@@ -26,7 +26,9 @@ from identification.proof.monte_carlo_frequency import FlightOrder, Repetition, 
 from jobs.job import Job
 from records.errors import BadInput
 from records.log import RunLog, save_log
+from records.loops import LOOPS
 from records.plant import Plant, load_plant
+from records.table import ControllerTable
 from twinlaw.cli import console, options
 from twinlaw.workflows import sweeping
 from twinlaw.workflows.chain.designing import design_controller
@@ -34,6 +36,7 @@ from twinlaw.workflows.identify.repeated import repeated
 
 BANDS_RAD_S = {LATERAL: (0.25, 12.0), "ce150": (0.3, 10.0)}
 AMPLITUDES = {"sticks": (2.0, 4.0), "inputs": (0.5, 0.5), "references": (0.12, 0.3)}
+SHARE = 0.05  # of the range of an input, or of a reference, that a sweep of any other plant's is large
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,8 +47,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     options.band(parser, "default: 0.3 to 10; of the helicopter 0.25 to 12")
     parser.add_argument("--duration-s", type=float, metavar="T", help="of the sweep; default: 5.5 periods of LOW")
     parser.add_argument(
-        "--amplitudes", nargs=2, type=float, metavar=("FIRST", "SECOND"),
-        help="of the two inputs; default: 0.5 V each, references 0.12 and 0.3 rad, the helicopter's sticks 2 and 4",
+        "--amplitudes", nargs="+", type=float, metavar="SIZE",
+        help="one a loop; default: 0.5 V each, references 0.12 and 0.3 rad, the helicopter's sticks 2 and 4; of a plant of other loops "
+        "a twentieth of each input's range, or of the references'",
     )  # fmt: skip
     parser.add_argument(
         "--on",
@@ -56,9 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--psi-rad",
         type=float,
-        default=0.0,
         metavar="ANGLE",
-        help="elevation at which the plant rests; default: %(default)s",
+        help="at which the first loop, the elevation, rests; default: the middle of its references",
     )
     parser.add_argument(
         "--repeats",
@@ -97,23 +100,39 @@ def run(chosen: argparse.Namespace) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S["ce150"]
     sweep = design_sweep(low, high, designed.table.sample_period_s, chosen.duration_s)
     with console.stage("flying the sweeps"):
-        logs = closed_loop_sweeps(
-            designed.bound, designed.table, sweep, chosen.psi_rad, _amplitudes(chosen, chosen.on), chosen.on
-        )
+        amplitudes = _loop_amplitudes(chosen, designed.table)
+        logs = closed_loop_sweeps(designed.bound, designed.table, sweep, chosen.psi_rad, amplitudes, chosen.on)
     return _write(chosen, logs)
 
 
-def _amplitudes(chosen: argparse.Namespace, of: str) -> tuple[float, float]:
-    first, second = chosen.amplitudes or AMPLITUDES[of]
-    if not (np.isfinite(first) and np.isfinite(second) and first > 0.0 and second > 0.0):
-        raise BadInput("--amplitudes", "command line", f"{first:g} {second:g}", "two numbers above 0", "give both")
-    return first, second
+def _loop_amplitudes(chosen: argparse.Namespace, table: ControllerTable) -> tuple[float, ...]:
+    """What is asked for, or the default, one a loop."""
+    if table.loops == LOOPS:
+        return _amplitudes(chosen, AMPLITUDES[chosen.on])
+    ranges = [
+        (axis.reference_min_rad, axis.reference_max_rad) if chosen.on == "references" else (axis.u_min_V, axis.u_max_V)
+        for axis in table.axes
+    ]
+    return _amplitudes(chosen, tuple(SHARE * (high - low) for low, high in ranges))
+
+
+def _amplitudes(chosen: argparse.Namespace, default: tuple[float, ...]) -> tuple[float, ...]:
+    sizes = tuple(chosen.amplitudes or default)
+    if len(sizes) != len(default) or not all(np.isfinite(size) and size > 0.0 for size in sizes):
+        got, expected = " ".join(f"{size:g}" for size in sizes), f"{len(default)} numbers above 0"
+        raise BadInput("--amplitudes", "command line", got, expected, "give one for each loop")
+    return sizes
 
 
 def _fly_helicopter(chosen: argparse.Namespace, plant: Plant) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
-    return _write(chosen, sweep_flights(plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats, chosen.seed))
+    return _write(chosen, sweep_flights(plant, sweep, _sticks(chosen), chosen.repeats, chosen.seed))
+
+
+def _sticks(chosen: argparse.Namespace) -> tuple[float, float]:
+    first, second = _amplitudes(chosen, AMPLITUDES["sticks"])
+    return first, second
 
 
 def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
@@ -128,7 +147,7 @@ def _write(chosen: argparse.Namespace, logs: Mapping[str, RunLog]) -> int:
 def _repeat(chosen: argparse.Namespace, plant: Plant) -> int:
     low, high = chosen.band_rad_s or BANDS_RAD_S[LATERAL]
     sweep = design_sweep(low, high, SAMPLE_PERIOD_S, chosen.duration_s)
-    order = (plant, sweep, _amplitudes(chosen, "sticks"), chosen.repeats)
+    order = (plant, sweep, _sticks(chosen), chosen.repeats)
     seeds = range(chosen.seed, chosen.seed + chosen.repetitions)
     jobs = [Job(f"flights {seed}", repeat, FlightOrder(*order, seed)) for seed in seeds]
     path, crew = chosen.out / "coverage.json", sweeping.crew_of(chosen)

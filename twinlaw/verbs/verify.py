@@ -14,11 +14,11 @@ from controllers.loading import load_scheduled
 from records.board import BOARDS
 from records.errors import BadInput
 from records.files import write_atomic
-from records.protocol import PROTOCOL
+from records.protocol import protocol_of
 from records.verification import verification_text
 from twinlaw.cli import console, options
 from twinlaw.pages.run.checks import verification_rows
-from twinlaw.workflows.chain.building import build_image, demand_helicopter_loops, generate_sources
+from twinlaw.workflows.chain.building import build_image, generate_sources
 from twinlaw.workflows.chain.designing import table_poles
 from twinlaw.workflows.chain.proving import with_proofs
 from twinlaw.workflows.chain.verifying import STEPS, demand, motion_of, recorded_replay, verify_table
@@ -49,8 +49,6 @@ def run(chosen: argparse.Namespace) -> int:
         remedy = "leave --chip out: all other proofs are of the C, which is the same for every chip"
         raise BadInput("--proofs", "verify", board.chip, "an emulated chip, whose cycles are counted", remedy)
     table = load_scheduled(chosen.table, "bounds, poles and proofs")
-    if chosen.proofs:
-        demand_helicopter_loops(table, "the proofs' drivers")
     bound = load_bound(chosen.plant)
     recorded = [recorded_replay(path, table, bound, chosen.arithmetic) for path in chosen.log]
     poles = table_poles(bound, table, chosen.arithmetic)
@@ -61,7 +59,7 @@ def run(chosen: argparse.Namespace) -> int:
     )
     if chosen.proofs:
         motion = motion_of(bound, table)
-        generated = {**law, **protocol_source(PROTOCOL)}
+        generated = {**law, **protocol_source(protocol_of(table.loops))}
         subject = Subject(table, generated, image.elf, motion, chosen.arithmetic, chosen.all)
         verification = with_proofs(verification, subject)
     text = verification_text(verification)

@@ -1,16 +1,20 @@
 """The stages behind `twinlaw compare`: each controller designed, generated, linked, verified on the board, and flown."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from codegen.protocol_source import protocol_source
 from controllers.controller import Controller
+from controllers.designing import points_of
+from controllers.equation_controller import EquationController
 from controllers.instantaneous import CONTROLLER as INSTANTANEOUS
+from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.settings import read_settings
-from records.errors import VerificationFailed
+from records.errors import BadInput, VerificationFailed
 from records.files import write_atomic
+from records.law_table import LawTable
 from records.protocol import PROTOCOL
 from records.table import changed_axis
 from rig.emulator.board import EmulatedBoard
@@ -21,28 +25,53 @@ from twinlaw.cli.console import stage
 from twinlaw.pages.compare.comparison import BoardCost, Built, Compared, Wanted
 from verification.comparison.eq26 import FormError, form_errors
 from verification.comparison.flights import AXES, FILTERS, Each, Law, fly_figures, judge
+from verification.comparison.tuning import tune, tuned_section
 from verification.equality import compare
 from verification.flown_law import FlownLaw
 from verification.host_law import HostLaw
 from verification.stimuli import standard_stimuli
 
 
+def design_controllers(
+    bound: BoundPlant, names: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """The tables of those that can be designed for this plant; why the others cannot; why some do not settle there; each by name.
+
+    Raises BadInput where none can be designed.
+    """
+    tables, refused, unsettled, settings = {}, {}, {}, read_settings(bound)
+    for name in names:
+        row = CONTROLLERS[name]
+        with stage(f"{name}: designing"):
+            try:
+                tables[name] = row.design(bound, settings)
+            except BadInput as reason:
+                refused[name], last = str(reason), reason
+                continue
+            if isinstance(tables[name], LawTable):  # the scheduled law's margins are judged where it is designed
+                try:
+                    demand_settling(bound, tables[name], row.float_law(tables[name]), row.plants)
+                except BadInput as reason:
+                    unsettled[name] = str(reason)
+    if not tables:
+        raise last
+    return tables, refused, unsettled
+
+
 def compare_controllers(
-    bound: BoundPlant, names: Sequence[str], wanted: Wanted, folder: Path, each: Each
+    bound: BoundPlant, tables: Mapping[str, Any], wanted: Wanted, folder: Path, each: Each
 ) -> list[Compared]:
-    """Everything of each controller; `each` flies the spread plants and effects, as `map` does."""
-    built = [build_controller(bound, name, wanted, folder) for name in names]
+    """Everything of each controller's table; `each` flies the spread plants and effects, as `map` does."""
+    built = [build_controller(bound, name, table, wanted, folder) for name, table in tables.items()]
     laws = {entry.row.name: entry.law for entry in built}
     judged = judge(bound, laws, read_settings(bound).sample_period_s, wanted.trial, each)
     return [Compared(**vars(entry), **vars(judged[entry.row.name])) for entry in built]
 
 
-def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path) -> Built:
-    """One controller designed, verified, and flown through the figures; leaves its table, C and image in folder/NAME."""
+def build_controller(bound: BoundPlant, name: str, table: Any, wanted: Wanted, folder: Path) -> Built:
+    """One controller generated, verified, and flown through the figures; leaves its table, C and image in folder/NAME."""
     row = CONTROLLERS[name]
-    with stage(f"{name}: designing"):
-        table = row.design(bound, read_settings(bound))
-        texts = row.generate(table)
+    texts = row.generate(table)
     place = folder / name
     write_atomic(place / "controller.json", row.text(table))
     for file, text in {**texts, **protocol_source(PROTOCOL)}.items():
@@ -68,6 +97,15 @@ def build_controller(bound: BoundPlant, name: str, wanted: Wanted, folder: Path)
     return Built(row, law, table.digest, equality, mismatches, cost, flights, figures)
 
 
+def tuned_text(bound: BoundPlant, name: str, seed: int) -> str:
+    """The open numbers of a controller as the plant file's section; raises BadInput for one without."""
+    row = CONTROLLERS[name]
+    if not isinstance(row, EquationController):
+        raise BadInput("--tune", f"controller {name!r}", "no open numbers", "pid or fuzzy", "leave --tune out")
+    with stage(f"tuning {row.title} by flights"):
+        return tuned_section(name, tune(row, points_of(bound, read_settings(bound)), seed))
+
+
 def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> Mapping[str, str]:
     """The controller's texts behind another reference filter, in shares of the plant file's time constants."""
     settings = read_settings(bound)
@@ -77,7 +115,7 @@ def _filtered(bound: BoundPlant, row: Controller, table: Any, share: float) -> M
     return row.generate(table)
 
 
-def eq26_errors(bound: BoundPlant, names: Sequence[str]) -> Mapping[tuple[str, str], FormError]:
+def eq26_errors(bound: BoundPlant, names: Iterable[str]) -> Mapping[tuple[str, str], FormError]:
     """Eq (26) in float32, the paper's form and the board's, by form and axis; nothing where the controller that solves it is left out."""
     if INSTANTANEOUS.name not in names:
         return {}

@@ -12,7 +12,7 @@ from sim.bind import BoundPlant, bind
 from sim.manoeuvres import Manoeuvre
 from sim.simulate import simulate
 from verification.comparison.conditions import spread, with_effect
-from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.manoeuvres import FIGURES, figures
 from verification.comparison.measures import Merit, merit
 from verification.flown_law import FlownLaw
 
@@ -96,7 +96,9 @@ Each = Callable[[Callable[[Order], Merits], Sequence[Order]], Iterable[Merits]]
 
 def fly_figures(bound: BoundPlant, law: FlownLaw, sample_period_s: float) -> dict[str, Flown]:
     """One law through all figures on the plant as stated."""
-    return {name: _fly(bound, law, entry.manoeuvre(bound, sample_period_s))[0] for name, entry in FIGURES.items()}
+    return {
+        name: fly_plan(bound, law, entry.manoeuvre(bound, sample_period_s))[0] for name, entry in figures(bound).items()
+    }
 
 
 def judge(
@@ -143,13 +145,13 @@ def fly_order(order: Order) -> Merits:
     bound, law = bind(order.plant), FlownLaw(order.texts)
     both = FIGURES[SPREAD_FIGURE].manoeuvre(bound, order.sample_period_s)
     if order.effect is not None:
-        flown = _fly(with_effect(bound, order.effect), law, both)
+        flown = fly_plan(with_effect(bound, order.effect), law, both)
     else:
-        flown = [_fly(bound, law, both, np.array([row]))[0] for row in order.rows]
+        flown = [fly_plan(bound, law, both, np.array([row]))[0] for row in order.rows]
     return [{axis: asdict(merit) for axis, merit in flight.merits().items()} for flight in flown]
 
 
-def _fly(bound: BoundPlant, law: FlownLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
+def fly_plan(bound: BoundPlant, law: FlownLaw, plan: Manoeuvre, p: Array | None = None) -> list[Flown]:
     """One flight for each row of `p` (runs, parameters), or one with the plant's own parameters."""
     drive = law.controller(plan.t_s.size)
     runs = simulate(bound, plan.t_s, plan.x0, drive, reference=plan.reference_rad, p=p, keep="uy")

@@ -1,4 +1,4 @@
-"""The manoeuvres of the papers' figures: seed 001, Figs. 19-23, and seed 000, Fig. 13.
+"""The manoeuvres of the papers' figures: seed 001, Figs. 16 and 19-23, and seed 000, Fig. 13.
 
 Duration and range of angles are those of each figure's axes; the levels and instants within them are ours, as the papers' texts state none.
 References end on whole encoder steps, where an integrating loop can come to rest.
@@ -16,13 +16,17 @@ from sim.manoeuvres import Leg, Manoeuvre, at_rest, manoeuvre, on_encoder_steps
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure of a paper as a manoeuvre: its legs in deg at s, and where the flight begins (None: on the lower stop, rotors still)."""
+    """One figure of a paper as a manoeuvre: its legs in deg at s, and where the flight begins (None: on the lower stop, rotors still).
+
+    A figure that the paper drew from its own equations is flown on them alone: `model`.
+    """
 
     title: str
     duration_s: float
     elevation: tuple[Leg, ...]
     azimuth: tuple[Leg, ...]
     airborne_deg: float | None = None
+    model: str | None = None
 
     def manoeuvre(self, bound: BoundPlant, sample_period_s: float) -> Manoeuvre:
         """The manoeuvre on this plant; raises BadInput where the plant cannot rest at the start."""
@@ -42,7 +46,24 @@ def _every(seconds: float, angles_deg: Sequence[float]) -> tuple[Leg, ...]:
 _STILL = (Leg(0.0, 0.0),)
 _LOW = (Leg(0.0, -20.0),)
 
+# Both axes over their ranges, each change left alone for 10 s: what is open in a controller is tuned on it, and no figure repeats it.
+TUNING = Figure(
+    "tuning",
+    120.0,
+    _every(20.0, (-40.0, -20.0, 0.0, 20.0, 40.0, 10.0)),
+    tuple(Leg(leg.at_s + 10.0, leg.angle_deg) for leg in _every(20.0, (0.0, -30.0, 30.0, -60.0, 0.0, 45.0))),
+    -40.0,
+)
+
 FIGURES: Mapping[str, Figure] = {
+    "fig-16": Figure(
+        "Fig. 16 of seed 001: its simulation, both axes",
+        200.0,
+        _every(25.0, (-40.0, -25.0, -10.0, -35.0, -20.0, -5.0)),
+        tuple(Leg(leg.at_s + 12.5, leg.angle_deg) for leg in _every(25.0, (0, -30, -60, -100, -70, -110, -40, 0))),
+        -40.0,
+        model="ce150_velagic",
+    ),
     "fig-19": Figure(
         "Fig. 19 of seed 001: steps of the elevation", 60.0, _every(15.0, (-30.0, -10.0, 10.0, -20.0)), _STILL
     ),
@@ -75,3 +96,8 @@ FIGURES: Mapping[str, Figure] = {
         (Leg(0.0, 0.0), Leg(25.0, 30.0), Leg(45.0, -30.0), Leg(70.0, 45.0), Leg(95.0, 0.0), Leg(115.0, -45.0)),
     ),
 }  # fmt: skip
+
+
+def figures(bound: BoundPlant) -> dict[str, Figure]:
+    """The figures that are flown on this plant."""
+    return {name: figure for name, figure in FIGURES.items() if figure.model in (None, bound.model.name)}

@@ -1,6 +1,6 @@
 """Sweeps of a plant of this project under its own controller: on the references, as a real rig can be asked, or on the inputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,10 @@ from records.log import RunLog
 from records.table import ControllerTable
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
-from sim.loop import Controller, fly, fly_law
-from sim.manoeuvres import Manoeuvre
+from sim.kernel.law import is_kernel_s
+from sim.loop import Controller, Wired, fly, fly_law
+from sim.manoeuvres import Manoeuvre, positions, resting_outputs
+from sim.wiring import wiring
 
 Array = NDArray[np.float64]
 
@@ -38,27 +40,41 @@ class SweptController:
 
 
 def closed_loop_sweeps(
-    bound: BoundPlant, table: ControllerTable, sweep: Sweep, psi_rad: float, amplitudes: tuple[float, float], on: str
+    bound: BoundPlant,
+    table: ControllerTable,
+    sweep: Sweep,
+    rest_rad: float | None,
+    amplitudes: Sequence[float],
+    on: str,
 ) -> Mapping[str, RunLog]:
-    """One record for each axis, swept about its rest at `psi_rad`; `on` "references" (amplitudes in rad) or "inputs" (in V).
+    """One record for each loop, swept about its rest; `on` "references" (amplitudes in rad) or "inputs" (in V), one a loop.
 
-    Raises BadInput for a sweep that leaves the controller's range or an angle where the plant cannot rest.
+    Each loop rests in the middle of its references, the first at `rest_rad` where that is given. Raises BadInput for a sweep that leaves
+    the controller's range or an angle where the plant cannot rest.
     """
     period_s = table.sample_period_s
     t_s = np.asarray(period_s * np.arange(round(sweep.duration_s / period_s) + 1), dtype=float)
-    x0 = equilibrium(bound, psi_rad).x0
+    rest = np.array([0.5 * (axis.reference_min_rad + axis.reference_max_rad) for axis in table.axes])
+    rest[0] = rest[0] if rest_rad is None else rest_rad
+    wires = wiring(bound, table.loops)
+    point = equilibrium(bound, *positions(bound, wires.outputs, rest.tolist()))
     found = {}
-    for axis, name in enumerate(("elevation", "azimuth")):
-        swept = np.zeros((t_s.size, 2))
-        swept[:, axis] = sweep_input(sweep, t_s, amplitudes[axis])
-        held = np.tile([psi_rad, 0.0], (t_s.size, 1))
+    for place, loop in enumerate(table.loops):
+        swept = np.zeros((t_s.size, len(rest)))
+        swept[:, place] = sweep_input(sweep, t_s, amplitudes[place])
+        references = np.tile(resting_outputs(bound, point.x0), (t_s.size, 1))
+        references[:, list(wires.outputs)] = rest
+        law: Controller = FloatLaw(table)
         if on == "references":
-            _check_range(table, held + swept, name)
-            found[f"sweep_{name}"] = fly_law(bound, table, Manoeuvre(f"sweep {name}", t_s, held + swept, x0))
+            _check_range(table, rest + swept, loop.axis)
+            references[:, list(wires.outputs)] += swept
         else:
-            controller = SweptController(FloatLaw(table), swept, _limits(table))
-            flown = Manoeuvre(f"sweep {name}", t_s, held, x0)
-            found[f"sweep_{name}"] = fly(bound, controller, flown, table_digest=table.digest)
+            law = SweptController(law, swept, _limits(table))
+        plan = Manoeuvre(f"sweep {loop.axis}", t_s, references, point.x0)
+        if on == "references" and is_kernel_s(table):
+            found[f"sweep_{loop.axis}"] = fly_law(bound, table, plan)
+        else:
+            found[f"sweep_{loop.axis}"] = fly(bound, Wired(law, wires), plan, table_digest=table.digest)
     return found
 
 

@@ -145,6 +145,7 @@ WRONG = [
         r"board.theta_rad.encoder: encoder: got PA0 and PA7.*STM32G071 board has.*PA6",
     ),
     ({"theta_rad": {"analogue": "PA4"}}, r"got an analogue input, expected an encoder"),
+    ({"u_V": {"pwm": "PA8", "full_scale_V": 12.0}}, r"full scale: got 12 V, expected the PWM's own"),
     (
         {"u_V": {"pwm": "PA8", "direction": "PB1"}},
         r"board.u_V: output: got PA8 and PB1.*pwm \"PA8\" with direction \"PB0\"",

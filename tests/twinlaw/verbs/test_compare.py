@@ -7,13 +7,15 @@ from pathlib import Path
 import pytest
 
 from controllers.table import CONTROLLERS
+from design.settings import read_settings
 from sim.loop import fly
 from tests.controllers.rows import ce150, designed
+from tests.plants import bound
 from tests.soak import SOAK
 from tests.test_project import ROOT
 from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
-from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.manoeuvres import FIGURES, figures
 from verification.comparison.measures import merit
 
 DRAWN = {"fig-19", "fig-23"}
@@ -81,5 +83,16 @@ def test_the_page_is_of_today_s_tables() -> None:
     for name in CONTROLLERS:
         assert f"`{name}`" in page
         assert f"`{designed(name)[1].digest[:16]}`" in page, name
+    for link in re.findall(r"\]\(([^)#]+)\)", page):
+        assert (ROOT / "docs" / link).is_file(), link
+
+
+def test_the_page_of_seed_001_s_own_model_is_of_today_s_tables() -> None:
+    page = (ROOT / "docs" / "controllers-ce150_velagic.md").read_text(encoding="utf-8")
+    velagic = bound("ce150_velagic")
+    for name in ("pid", "fuzzy"):
+        digest = CONTROLLERS[name].design(velagic, read_settings(velagic)).digest
+        assert f"`{digest[:16]}`" in page, name
+    assert all((ROOT / "docs" / f"controllers-ce150_velagic-{figure}.svg").is_file() for figure in figures(velagic))
     for link in re.findall(r"\]\(([^)#]+)\)", page):
         assert (ROOT / "docs" / link).is_file(), link

@@ -48,9 +48,7 @@ def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     assert log.table_digest == found["table_digest"]
 
 
-def test_a_table_of_other_loops_has_an_image_and_a_library_but_none_of_the_helicopter_s_proofs(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_of_other_loops_has_an_image_and_a_library(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plant, table = str(plant_file("aeroshield", tmp_path)), str(tmp_path / "controller.json")
     assert main(["design", "--plant", plant, "--out", str(tmp_path)]) == 0
     assert main(["build", "--table", table, "--out", str(tmp_path / "image")]) == 0
@@ -59,9 +57,6 @@ def test_a_table_of_other_loops_has_an_image_and_a_library_but_none_of_the_helic
     example = next((tmp_path / "arduino" / "examples").rglob("*.ino")).read_text()
     assert "law_reset(&law, 0);" in example
     assert "law_duty_arm(output.u_V)" in example
-    capsys.readouterr()
-    assert main(["verify", "--proofs", "--plant", plant, "--table", table, "--out", str(tmp_path)]) == 2
-    assert "are of the helicopter's two loops" in capsys.readouterr().err
     assert main(["simulate", "--plant", "plants/emps.toml", "--table", table, "--out", str(tmp_path)]) == 2
     assert "a plant without the output theta_rad" in capsys.readouterr().err
 
@@ -77,3 +72,24 @@ def test_the_plant_that_new_plant_writes_is_flown_at_once(tmp_path: Path, capsys
     assert all(row["steps"] >= 100_000 and row["mismatches"] == 0 for row in found["equality"])
     assert len(found["equality"]) == 4
     assert (tmp_path / "b" / "firmware.bin").is_file()
+
+
+@pytest.mark.parametrize("verb", ["compare", "bench"])
+def test_what_is_the_helicopter_s_alone_says_so(verb: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--out", str(tmp_path / "out")] if verb == "compare" else []
+    assert main([verb, "--plant", str(plant_file("inverted_arm", tmp_path)), *words]) == 2
+    said = capsys.readouterr().err
+    assert "elevation and azimuth" in said
+    assert said.count("\n") == 1
+
+
+def test_any_loop_is_swept(tmp_path: Path) -> None:
+    # Truth: the first loop alone is there, and moves by the amplitude about the middle of its references.
+    plant = str(plant_file("inverted_arm", tmp_path))
+    words = ["--amplitudes", "0.05", "--band-rad-s", "2", "8", "--out", str(tmp_path / "swept")]
+    assert main(["sweep", "--plant", plant, *words]) == 0
+    assert main(["sweep", "--plant", plant, *words[:1], "0.05", "0.1", *words[2:]]) == 2
+    (path,) = (tmp_path / "swept").glob("*.csv")
+    reference = load_log(path, log_columns(load_bound(Path(plant)).model)).column("theta_ref_rad")
+    assert path.name == "sweep_arm.csv"
+    assert np.abs(reference).max() == pytest.approx(0.05, rel=0.05)

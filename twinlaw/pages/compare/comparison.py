@@ -11,7 +11,7 @@ from records.verification import Equality, equality_table
 from sim.bind import BoundPlant
 from verification.comparison.eq26 import FormError
 from verification.comparison.flights import AXES, Flown, Law, Trial
-from verification.comparison.manoeuvres import FIGURES
+from verification.comparison.manoeuvres import figures
 from verification.comparison.measures import Merit
 
 SCHEMA = "comparison/1"
@@ -106,7 +106,7 @@ def facts(
         "plant": bound.plant.name,
         "runs": wanted.trial.runs,
         "seed": wanted.trial.seed,
-        "figures": {name: figure.title for name, figure in FIGURES.items()},
+        "figures": {name: figure.title for name, figure in figures(bound).items()},
         "controllers": [_facts(row) for row in rows],
         "eq26_float32": [{"form": form, "axis": axis, **asdict(error)} for (form, axis), error in eq26.items()],
     }

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from twinlaw.pages.compare.comparison import Compared
 from twinlaw.pages.plots import BLUE, GREEN, GREY, ORANGE, RED, SKY, Curve, Panel, grid
+from verification.comparison.flights import Flown
 
 Array = NDArray[np.float64]
 COLOURS = (BLUE, RED, GREEN, ORANGE, SKY, "#CC79A7")
@@ -40,6 +41,26 @@ def figure_plot(rows: Sequence[Compared], figure: str) -> str:
         Panel("u_T [V]", sorted(curves(voltages, 1, 1.0), key=_travel, reverse=True)),
     )
     return grid([(panel,) for panel in panels], ("",), "time [s]", height_in=1.9)
+
+
+def open_loop_plot(flown: Mapping[str, Flown]) -> str:
+    """Both angles and both voltages of runs without a controller, side by side, as SVG."""
+    degrees = 180.0 / math.pi
+
+    def panels(label: str, values: Mapping[str, Array], scale: float, axis: int) -> tuple[Panel, ...]:
+        return tuple(
+            Panel(label, [Curve(*_thinned(flown[name].t_s, scale * array[:, axis]))]) for name, array in values.items()
+        )
+
+    angles = {name: entry.y_rad for name, entry in flown.items()}
+    voltages = {name: entry.u_V for name, entry in flown.items()}
+    rows = (
+        panels("elevation [deg]", angles, degrees, 0),
+        panels("azimuth [deg]", angles, degrees, 1),
+        panels("u_M [V]", voltages, 1.0, 0),
+        panels("u_T [V]", voltages, 1.0, 1),
+    )
+    return grid(rows, tuple(flown), "time [s]", height_in=1.6)
 
 
 def _travel(curve: Curve) -> float:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from toolchain.templates import text_templates
@@ -13,19 +14,45 @@ from verification.comparison.flights import AXES, FILTERED
 from verification.comparison.manoeuvres import FIGURES
 
 OVERSHOOT = 0.05
+OPEN_LOOP_CAPTION = (
+    "Fig. 18 of seed 001: steps of u_T at u_M = 0.48 MU, steps of u_M at u_T = 0.21 MU, each on the figure's own levels, and steps of u_T "
+    "about the 0.38 MU at which this plant's azimuth stands still"
+)
 
 
-def page_text(
-    rows: Sequence[Compared], wanted: Wanted, eq26: Mapping[tuple[str, str], FormError], command: str, out: str
-) -> str:
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What was compared, eq (26) in float32, and why controllers were not designed, or do not settle, by name."""
+
+    wanted: Wanted
+    eq26: Mapping[tuple[str, str], FormError]
+    refused: Mapping[str, str]
+    unsettled: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Where:
+    """The page's command and folder, how its files begin, and the caption of its picture without a controller, if it has one."""
+
+    command: str
+    out: str
+    stem: str
+    open_loop: str | None
+
+
+def page_text(rows: Sequence[Compared], told: Told, where: Where) -> str:
     """The page; the same comparison gives the same bytes."""
     effects = tables.effect_rows(rows)
     return (
         text_templates(TEMPLATES)
         .get_template("controllers.md.j2")
         .render(
-            command=command,
-            out=out,
+            command=where.command,
+            out=where.out,
+            stem=where.stem,
+            open_loop=where.open_loop,
+            refused=[f"`{name}`: {why}" for name, why in told.refused.items()],
+            unsettled=[f"`{name}`: {why}" for name, why in told.unsettled.items()],
             rows=[
                 {
                     **{name: getattr(row.row, name) for name in ("name", "title", "source", "plants")},
@@ -36,16 +63,16 @@ def page_text(
             notes=[f"**`{row.row.name}`** {row.row.note}" for row in rows],
             cost=_markdown(tables.cost_heading(rows), tables.cost_rows(rows)),
             figures=_figures(rows),
-            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(eq26)) if eq26 else "",
+            eq26=_markdown(tables.EQ26_HEADING, tables.eq26_rows(told.eq26)) if told.eq26 else "",
             angles=ANGLES,
-            runs=wanted.trial.runs,
-            seed=wanted.trial.seed,
+            runs=told.wanted.trial.runs,
+            seed=told.wanted.trial.seed,
             spread=[
                 (axis.capitalize(), _markdown(tables.SPREAD_HEADING, tables.spread_rows(rows, axis))) for axis in AXES
             ],
             filters=[(axis.capitalize(), _markdown(*tables.filter_rows(rows, axis))) for axis in AXES],
             filtered_verdict=filtered_verdict(rows),
-            filtered=min(FILTERED, wanted.trial.runs),
+            filtered=min(FILTERED, told.wanted.trial.runs),
             effects=_markdown(*effects),
             verdict=verdict(rows),
             quality=_markdown(tables.QUALITY_HEADING, tables.quality_rows(rows)),
@@ -58,13 +85,13 @@ def _figures(rows: Sequence[Compared]) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "title": figure.title,
+            "title": FIGURES[name].title,
             "tables": [
                 (axis.capitalize(), _markdown(tables.MERIT_HEADING, tables.figure_rows(rows, name, axis)))
                 for axis in AXES
             ],
         }
-        for name, figure in FIGURES.items()
+        for name in (rows[0].figures if rows else ())
     ]
 
 

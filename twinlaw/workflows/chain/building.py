@@ -43,7 +43,7 @@ def demand_helicopter_loops(table: FlownTable, what: str) -> None:
     if table.loops != LOOPS:
         names = ", ".join(loop.axis for loop in table.loops)
         expected = f"elevation and azimuth: {what} are of the helicopter's two loops"
-        remedy = "leave them out; all else of `verify` takes this table"
+        remedy = "give such a plant; `design`, `generate`, `verify`, `simulate` and `sweep` take this table"
         raise BadInput(f"loops of {what}", f"controller table {table.digest[:16]}", names, expected, remedy)
 
 

@@ -15,6 +15,10 @@
 #include "words.h"
 
 #define EVENTS 60000u
+#define FAR_COUNTS 1200 /* a reference that asks for full drive */
+/* Once a loop: see PROTOCOL_LOOPS. */
+#define SAME(angle, voltage, motor, VOLTAGE) .angle##_counts = counts,
+#define REFERENCE(angle, voltage, motor, VOLTAGE) .angle##_ref_rad = word_of_number(law_angle_from_counts_##angle(counts)),
 
 typedef struct {
     path_state path;
@@ -50,9 +54,13 @@ static void receive(bench *self, const uint8_t *bytes, size_t length)
     }
 }
 
-static void tick(bench *self, int32_t psi_counts, int32_t phi_counts, uint32_t passed)
+static encoder_counts all_at(int32_t counts)
 {
-    const encoder_counts now = {.psi_counts = psi_counts, .phi_counts = phi_counts};
+    return (encoder_counts){PROTOCOL_LOOPS(SAME)};
+}
+
+static void tick(bench *self, encoder_counts now, uint32_t passed)
+{
     uint8_t line[PROTOCOL_LINE_MAX];
     self->now_us += 10000u * passed;
     if (path_tick(&self->path, &now, passed) == PATH_STEP) {
@@ -109,18 +117,23 @@ static void arm(bench *self, uint8_t mode, uint8_t first_of_digest)
     send(self, PROTOCOL_TYPE_ARM, payload);
 }
 
-static void refer(bench *self, uint32_t psi_word, uint32_t phi_word)
+static protocol_reference all_to(int32_t counts)
+{
+    return (protocol_reference){PROTOCOL_LOOPS(REFERENCE)};
+}
+
+static void refer(bench *self, const protocol_reference *wish)
 {
     uint8_t payload[PROTOCOL_REFERENCE_SIZE];
-    const protocol_reference wish = {.psi_ref_rad = psi_word, .phi_ref_rad = phi_word};
-    protocol_reference_pack(&wish, payload);
+    protocol_reference_pack(wish, payload);
     send(self, PROTOCOL_TYPE_REFERENCE, payload);
 }
 
 static void preset(bench *self)
 {
     uint8_t payload[PROTOCOL_PRESET_SIZE];
-    const protocol_preset now = {.psi_counts = 3, .phi_counts = -4};
+    const int32_t counts = -3;
+    const protocol_preset now = {PROTOCOL_LOOPS(SAME)};
     protocol_preset_pack(&now, payload);
     send(self, PROTOCOL_TYPE_PRESET, payload);
 }
@@ -130,6 +143,14 @@ static void start(bench *self)
     const board_identity identity = {.unique_id = {1, 2, 3}, .reset_cause = PROTOCOL_RESET_CAUSE_WATCHDOG, .resets = 3};
     self->sequence = 0;
     path_start(&self->path, &identity);
+}
+
+#define ANY(angle, voltage, motor, VOLTAGE) now.angle##_counts = (int32_t)chance(self, 8u);
+static encoder_counts anywhere(bench *self)
+{
+    encoder_counts now;
+    PROTOCOL_LOOPS(ANY)
+    return now;
 }
 
 /* Commands of any kind, repeated, skipped or from the past, whole or spoilt, between ticks of any length. */
@@ -166,7 +187,7 @@ static void random_event(bench *self)
     case 6:
     case 7:
     case 8:
-        tick(self, (int32_t)chance(self, 8u), (int32_t)chance(self, 8u), chance(self, 40u) == 0u ? 300u : 1u);
+        tick(self, anywhere(self), chance(self, 40u) == 0u ? 300u : 1u);
         break;
     case 9:
         preset(self);
@@ -177,13 +198,13 @@ static void random_event(bench *self)
     }
 }
 
-/* A flight in which one encoder jumps: `psi`, else phi. */
-static void jump(bench *self, bool psi)
+/* A flight in which an encoder jumps to where `then` says. */
+static void jump(bench *self, encoder_counts then)
 {
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
-    tick(self, 0, 0, 1u);
-    tick(self, psi ? 20000 : 0, psi ? 0 : -20000, 1u);
+    tick(self, all_at(0), 1u);
+    tick(self, then, 1u);
     arm(self, PROTOCOL_MODE_FLYING, 0u); /* the place is lost */
     arm(self, PROTOCOL_MODE_LOOP, 0u);   /* but a simulated plant may be flown */
     send(self, PROTOCOL_TYPE_DISARM, NULL);
@@ -191,15 +212,36 @@ static void jump(bench *self, bool psi)
     arm(self, PROTOCOL_MODE_FLYING, 0u);
 }
 
-/* A flight in which an axis stands still although its motor is at full drive; the reference decides which, and the sign. */
-static void stand_still(bench *self, uint32_t psi_word, uint32_t phi_word, bool psi_moves, bool phi_moves)
+/* A flight in which an axis stands still although its motor is at full drive, whose sign the references decide: all axes go from 0
+ * counts to `other` and back, and one whose count there is 0 stands still. */
+static void stand_still(bench *self, protocol_reference wish, encoder_counts other)
 {
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
     for (uint32_t i = 0; i < 2u * PROTOCOL_ENCODER_STILL_PERIODS + 200u; i++) {
-        refer(self, psi_word, phi_word);
-        tick(self, psi_moves ? (int32_t)(i & 1u) : 0, phi_moves ? (int32_t)(i & 1u) : 0, 1u);
+        refer(self, &wish);
+        tick(self, (i & 1u) != 0u ? other : all_at(0), 1u);
     }
+}
+
+/* Each axis alone: its encoder jumps either way, it stands still at full drive of either sign, it alone is to stay at 0. */
+#define ALONE(angle, voltage, motor, VOLTAGE) \
+    { \
+        encoder_counts away = all_at(0), still = all_at(1); \
+        protocol_reference stays = all_to(-FAR_COUNTS); \
+        away.angle##_counts = 20000; \
+        jump(self, away); \
+        away.angle##_counts = -20000; \
+        jump(self, away); \
+        still.angle##_counts = 0; \
+        stand_still(self, all_to(FAR_COUNTS), still); \
+        stand_still(self, all_to(-FAR_COUNTS), still); \
+        stays.angle##_ref_rad = 0u; \
+        stand_still(self, stays, all_at(1)); \
+    }
+static void each_alone(bench *self)
+{
+    PROTOCOL_LOOPS(ALONE)
 }
 
 /* What ticks of another sample period bring: none of the watch's periods, one begun before, a line that is still busy. */
@@ -207,21 +249,28 @@ static void odd_ticks(bench *self)
 {
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
-    tick(self, 0, 0, 1u);
-    tick(self, 0, 0, 0u);
+    tick(self, all_at(0), 1u);
+    tick(self, all_at(0), 0u);
     self->path.watched_us = PROTOCOL_WATCH_PERIOD_US;
     path_seal(&self->path);
-    tick(self, 0, 0, 1u);
+    tick(self, all_at(0), 1u);
 }
 
 /* Motors at full drive either way, which not every table's law asks for. */
-static void watch_alone(int32_t main_ticks, int32_t tail_ticks)
+static void watch_alone(const motor_duties *applied)
 {
-    const encoder_counts still = {.psi_counts = 1, .phi_counts = 1};
-    const motor_duties applied = {.main_ticks = main_ticks, .tail_ticks = tail_ticks};
+    const encoder_counts still = all_at(1);
     encoder_watch watch;
     encoder_watch_start(&watch, &still);
-    (void)encoder_watch_believes(&watch, &still, &applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_PERIODS);
+    (void)encoder_watch_believes(&watch, &still, applied, (int32_t)LAW_PWM_TICKS, PROTOCOL_ENCODER_STILL_PERIODS);
+}
+
+#define WATCHED(angle, voltage, motor, VOLTAGE) \
+    watch_alone(&(motor_duties){.motor##_ticks = (int32_t)LAW_PWM_TICKS}); \
+    watch_alone(&(motor_duties){.motor##_ticks = -(int32_t)LAW_PWM_TICKS});
+static void watch_each(void)
+{
+    PROTOCOL_LOOPS(WATCHED)
 }
 
 static void lose_host(bench *self, uint32_t late)
@@ -229,12 +278,12 @@ static void lose_host(bench *self, uint32_t late)
     start(self);
     arm(self, PROTOCOL_MODE_FLYING, 0u);
     for (uint32_t i = 0; i < PROTOCOL_HOST_LOSS_PERIODS + 2u; i++) {
-        tick(self, 0, 0, 1u);
+        tick(self, all_at(0), 1u);
     }
     again(self); /* the armed frame of before: it must not arm */
-    tick(self, 0, 0, late);
+    tick(self, all_at(0), late);
     for (uint32_t i = 0; i < 2u * PROTOCOL_RAMP_PERIODS; i++) {
-        tick(self, 0, 0, 1u);
+        tick(self, all_at(0), 1u);
     }
     send(self, PROTOCOL_TYPE_SAMPLE, NULL);
 }
@@ -257,14 +306,14 @@ static void broken_memory(bench *self)
     self->path.law_cycles ^= 1u;
     send(self, PROTOCOL_TYPE_IDENTIFY, NULL);
     self->path.law_cycles ^= 1u;
-    tick(self, 0, 0, 1u);
+    tick(self, all_at(0), 1u);
     self->path.link.incoming.length = sizeof self->path.link.incoming.bytes + 1u;
     self->path.link.incoming.overflowed = false;
     receive(self, &frame_ends, 1u);
     self->path.supervisor.state = PROTOCOL_STATE_RAMPING;
     self->path.supervisor.ramp_left = 1000u;
     path_seal(&self->path);
-    tick(self, 0, 0, 1u);
+    tick(self, all_at(0), 1u);
     (void)command_obey(&self->path, &unknown);
     self->path.reply_type = 0xeeu;
     (void)path_reply(&self->path, 0u, line);
@@ -319,24 +368,13 @@ static void messages(void)
 int main(void)
 {
     static bench self = {.seed = 20u};
-    const uint32_t high = word_of_number(law_angle_from_counts_phi(1200));
-    const uint32_t low = word_of_number(law_angle_from_counts_phi(-1200));
     start(&self);
     for (uint32_t i = 0; i < EVENTS; i++) {
         random_event(&self);
     }
-    jump(&self, true);
-    jump(&self, false);
-    stand_still(&self, high, high, false, true);
-    stand_still(&self, high, high, true, false);
-    stand_still(&self, low, low, false, true);
-    stand_still(&self, low, low, true, false);
-    stand_still(&self, 0u, low, true, true);
+    each_alone(&self);
     odd_ticks(&self);
-    watch_alone((int32_t)LAW_PWM_TICKS, 0);
-    watch_alone(-(int32_t)LAW_PWM_TICKS, 0);
-    watch_alone(0, (int32_t)LAW_PWM_TICKS);
-    watch_alone(0, -(int32_t)LAW_PWM_TICKS);
+    watch_each();
     lose_host(&self, 1u);
     lose_host(&self, 50u);
     broken_memory(&self);

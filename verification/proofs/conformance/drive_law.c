@@ -10,8 +10,22 @@
 #include <string.h>
 
 #include "law.h"
+#include "protocol.h"
 
 #define STATE_BYTES sizeof(law_state)
+#define ANGLE(angle, voltage, motor, VOLTAGE) law_number angle##_rad;
+#define AT(angle, voltage, motor, VOLTAGE) , angles->angle##_rad
+#define DUTIES(angle, voltage, motor, VOLTAGE) \
+    (void)law_duty_##motor(output.voltage##_V); \
+    (void)law_duty_##motor(inputs[step * lanes].angle##_ref_rad);
+#define COUNTED(angle, voltage, motor, VOLTAGE) \
+    (void)law_angle_from_counts_##angle((int32_t)(uint32_t)steps); \
+    (void)law_angle_from_counts_##angle(-(int32_t)(uint32_t)steps);
+
+/* Where the axes rest before the first step, in the order of the stimuli. */
+typedef struct {
+    PROTOCOL_LOOPS(ANGLE)
+} rest_angles;
 
 static bool read_words(FILE *file, void *to, size_t count)
 {
@@ -23,26 +37,27 @@ static void run_lane(law_state *state, const law_input *inputs, uint32_t steps, 
     law_output output;
     for (uint32_t step = 0; step < steps; step++) {
         law_step(state, &inputs[step * lanes], &output);
-        (void)law_duty_main(output.u_M_V);
-        (void)law_duty_tail(output.u_T_V);
-        (void)law_duty_main(inputs[step * lanes].psi_ref_rad);
-        (void)law_duty_tail(inputs[step * lanes].phi_ref_rad);
+        PROTOCOL_LOOPS(DUTIES)
     }
-    (void)law_angle_from_counts_psi((int32_t)(uint32_t)steps);
-    (void)law_angle_from_counts_phi(-(int32_t)(uint32_t)steps);
+    PROTOCOL_LOOPS(COUNTED)
+}
+
+static void rest(law_state *state, const rest_angles *angles)
+{
+    law_reset(state PROTOCOL_LOOPS(AT));
 }
 
 static void run(uint32_t steps, uint32_t lanes, bool given, FILE *file)
 {
-    law_number(*angles)[2] = malloc(lanes * sizeof *angles);
+    rest_angles *angles = malloc(lanes * sizeof *angles);
     law_state *states = malloc(lanes * STATE_BYTES);
     law_input *inputs = malloc((size_t)steps * lanes * sizeof *inputs);
-    const bool whole = read_words(file, angles, 2u * lanes)
+    const bool whole = read_words(file, angles, lanes * sizeof *angles / 4u)
                        && (!given || read_words(file, states, lanes * STATE_BYTES / 4u))
-                       && read_words(file, inputs, (size_t)steps * lanes * 4u);
+                       && read_words(file, inputs, (size_t)steps * lanes * sizeof *inputs / 4u);
     for (uint32_t lane = 0; whole && lane < lanes; lane++) {
         law_state state;
-        law_reset(&state, angles[lane][0], angles[lane][1]);
+        rest(&state, &angles[lane]);
         run_lane(given ? &states[lane] : &state, &inputs[lane], steps, lanes);
     }
     free(angles);

@@ -76,9 +76,14 @@ def stepped(law: BatchStepper, stimuli: Sequence[Stimulus]) -> Behaviour:
 def whole_behaviour(law: HostLaw, stimuli: Sequence[Stimulus]) -> Behaviour:
     """The same with duties of the outputs and of special words, angles, and the self-test's verdict."""
     seen = stepped(law, stimuli)
-    special = _SPECIAL[law.arithmetic]
-    pairs = np.ascontiguousarray(np.stack([special, special[::-1]], axis=-1))
-    outputs = np.concatenate([array.reshape(-1, 2) for array in seen.arrays[2::3]])
-    duties = [law.duties(np.ascontiguousarray(words)).view(np.uint32) for words in (outputs, pairs)]
+    special, loops = _SPECIAL[law.arithmetic], seen.arrays[2].shape[-1]
+    outputs = np.concatenate([array.reshape(-1, loops) for array in seen.arrays[2::3]])
+    words = (outputs, _of_loops(np.stack([special, special[::-1]], axis=-1), loops))
+    duties = [law.duties(np.ascontiguousarray(each)).view(np.uint32) for each in words]
     verdict = np.array([law.self_test()], dtype=np.uint32)
-    return Behaviour((*seen.arrays, *duties, law.angles_from_counts(COUNTS), verdict), seen.is_float)
+    return Behaviour((*seen.arrays, *duties, law.angles_from_counts(_of_loops(COUNTS, loops)), verdict), seen.is_float)
+
+
+def _of_loops(pairs: Bits, loops: int) -> Bits:
+    """A column for each loop, from `pairs` (n, 2) in turn."""
+    return np.ascontiguousarray(pairs[:, np.arange(loops) % 2])

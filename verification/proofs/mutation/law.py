@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from records.loops import LOOPS, Loop
 from verification.host_law import HostLaw
 from verification.proofs.mutation.judge import Behaviour, whole_behaviour
 from verification.proofs.mutation.mutants_c import Mutant, mutated_c
@@ -13,8 +14,8 @@ _FLAGS = ("-O1", "-std=c11", "-ffp-contract=off", "-fwrapv", "-fno-sanitize=unde
 class MutatedLaw(HostLaw):
     """The law with all its mutants compiled in."""
 
-    def __init__(self, texts: Mapping[str, str], arithmetic: str, flags: Sequence[str]) -> None:
-        super().__init__(texts, arithmetic, flags)
+    def __init__(self, texts: Mapping[str, str], arithmetic: str, loops: tuple[Loop, ...]) -> None:
+        super().__init__(texts, arithmetic, _FLAGS, loops)
         self._ffi.cdef("void law_choose_mutant(int number);")
 
     def choose(self, number: int) -> None:
@@ -27,14 +28,15 @@ def judged_c(
     arithmetic: str,
     stimuli: Sequence[Sequence[Stimulus]],
     look: Callable[[HostLaw, Sequence[Stimulus]], Behaviour] = whole_behaviour,
+    loops: tuple[Loop, ...] = LOOPS,
 ) -> Iterator[tuple[Mutant, bool]]:
     """Each mutant of law.c and whether a `look` at it notices it under the first or a later one of the `stimuli`, short ones first.
 
     Raises ValueError where the unmutated copy is not the law.
     """
     made = mutated_c(dict(law), "law.c")
-    mutated = MutatedLaw({**law, "law.c": made.text}, arithmetic, flags=_FLAGS)
-    original = HostLaw(law, arithmetic)
+    mutated = MutatedLaw({**law, "law.c": made.text}, arithmetic, loops)
+    original = HostLaw(law, arithmetic, loops=loops)
     truths = [look(original, part) for part in stimuli]
     mutated.choose(0)
     if any(truth.differs(look(mutated, part)) for truth, part in zip(truths, stimuli, strict=True)):

@@ -75,7 +75,10 @@ def c_score(subject: Subject) -> Score:
     """All mutants of law.c."""
     law = {name: text for name, text in subject.generated.items() if name.startswith("law")}
     stimuli = [stimuli_of(subject.table, subject.arithmetic, steps) for steps in C_STEPS]
-    judged = [(str(mutant), noticed) for mutant, noticed in judged_c(law, subject.arithmetic, stimuli)]
+    judged = [
+        (str(mutant), noticed)
+        for mutant, noticed in judged_c(law, subject.arithmetic, stimuli, loops=subject.table.loops)
+    ]
     return _score("C", judged, subject)
 
 
@@ -93,7 +96,7 @@ def table_score(subject: Subject) -> Score:
 def twin_score(subject: Subject) -> Score:
     """Mutants of the twin's own text, against the compiled C."""
     law = {name: text for name, text in subject.generated.items() if name.startswith("law")}
-    truths = _truths(HostLaw(law, subject.arithmetic), subject)
+    truths = _truths(HostLaw(law, subject.arithmetic, loops=subject.table.loops), subject)
     table, arithmetic = subject.table, subject.arithmetic
     facts = twin_facts(mutated_twin(arithmetic, None)(table), table)
     mutants = _sampled(list(python_mutants(arithmetic)), subject)
