@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
+from twinlaw.pages.margins import arrange
 from twinlaw.pages.plots import ORANGE, STYLE, svg
 
 
@@ -30,9 +31,11 @@ class Bars:
 def bars(panels: Sequence[Bars], *, height_in: float = 2.4) -> str:
     """Bar charts side by side, as SVG text."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.0, height_in), layout="constrained")
-        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
+        figure = Figure(figsize=(9.0, height_in))
+        cells = figure.subplots(1, len(panels), squeeze=False)
+        for axes, panel in zip(cells[0], panels, strict=True):
             _draw_bars(axes, panel)
+        arrange(figure, cells)
         return svg(figure)
 
 

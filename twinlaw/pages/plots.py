@@ -12,6 +12,8 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from twinlaw.pages.margins import LEGEND_POINTS, arrange, names_in
+
 Array = NDArray[np.float64]
 
 # Okabe and Ito's palette.
@@ -29,6 +31,8 @@ COLOURS = (
     YELLOW,
     GREY,
 )  # of curves side by side, as many as the palette has
+
+COLUMNS = 4  # of names in a legend below all panels
 
 STYLE: Any = {
     "svg.hashsalt": "twinlaw",
@@ -72,24 +76,26 @@ class Panel:
 def stack(panels: Sequence[Panel], xlabel: str, *, panel_height_in: float = 1.9) -> str:
     """Panels one above the other over the same abscissa, as SVG text."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.0, panel_height_in * len(panels) + 0.5), layout="constrained")
+        figure = Figure(figsize=(9.0, panel_height_in * len(panels) + 0.5))
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _draw(axes, panel)
         rows[-1].set_xlabel(xlabel)
+        arrange(figure, rows[:, None])
         return svg(figure)
 
 
 def row(panels: Sequence[Panel], xlabels: Sequence[str], *, equal: bool = False, height_in: float = 3.6) -> str:
     """Panels side by side with abscissas of their own, as SVG text; `equal` gives both axes one scale (pole maps)."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.0, height_in), layout="constrained")
+        figure = Figure(figsize=(9.0, height_in))
         columns = figure.subplots(1, len(panels), squeeze=False)[0]
         for axes, panel, xlabel in zip(columns, panels, xlabels, strict=True):
             _draw(axes, panel)
             axes.set_xlabel(xlabel)
             if equal:
                 axes.set_aspect("equal", adjustable="datalim")
+        arrange(figure, columns[None])
         return svg(figure)
 
 
@@ -98,7 +104,7 @@ def grid(
 ) -> str:
     """Lines of panels one above the other over one abscissa, each column with its title, one legend below, as SVG text."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.0, height_in * len(lines) + 0.8), layout="constrained")
+        figure = Figure(figsize=(9.0, height_in * len(lines) + 0.8))
         cells = figure.subplots(len(lines), len(titles), sharex=True, squeeze=False)
         for line, panels in zip(cells, lines, strict=True):
             for axes, panel in zip(line, panels, strict=True):
@@ -110,7 +116,8 @@ def grid(
         for axes in cells[-1]:
             axes.set_xlabel(xlabel)
         handles = {label: handle for line in cells for axes in line for handle, label in _named(axes)}
-        figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=4, fontsize=8.0)
+        figure.legend(list(handles.values()), list(handles), loc="lower center", ncols=COLUMNS, fontsize=LEGEND_POINTS)
+        arrange(figure, cells, titles=True, below_in=names_in(len(handles), COLUMNS))
         return svg(figure)
 
 
@@ -121,7 +128,7 @@ def _named(axes: Axes) -> list[tuple[Any, str]]:
 def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
     """Stated probabilities against the shares that were right: one point a bin (stated, right, count), larger for more cases."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(4.2, 4.2), layout="constrained")
+        figure = Figure(figsize=(4.2, 4.2))
         axes = figure.subplots()
         axes.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linestyle="--", label="as stated")
         stated, right, count = np.array(bins, float).reshape(-1, 3).T
@@ -134,6 +141,7 @@ def reliability(bins: Sequence[tuple[float, float, int]]) -> str:
             ylabel="share right",
         )
         axes.legend(loc="lower right")
+        arrange(figure, np.array([[axes]]))
         return svg(figure)
 
 
@@ -148,14 +156,11 @@ def _draw(axes: Axes, panel: Panel, *, legend: bool = True) -> None:
     if panel.within is not None:
         axes.set_ylim(*panel.within)
     if legend and axes.get_legend_handles_labels()[1]:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8.0)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=LEGEND_POINTS)
 
 
 def svg(figure: Figure) -> str:
-    """The figure as SVG text without date or program.
-
-    Drawn once: `savefig` would draw the whole of it a first time only to lay it out, which drawing does itself.
-    """
+    """The figure as SVG text without date or program, drawn once: `savefig` would draw the whole of it a first time only to lay it out."""
     stream, canvas = io.StringIO(), cast(Any, FigureCanvasSVG(figure))
     canvas.print_svg(stream, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()

@@ -88,7 +88,7 @@ def training(entry: ConditionResult) -> str:
     potentials, cost, error = entry.potentials, np.array(entry.training.cost), np.array(entry.fuzzy.error)
     panels = (
         Panel("potential", (Curve(np.arange(1.0, len(potentials) + 1), potentials),)),
-        Panel("rms error of free runs [margins]", (Curve(np.arange(float(len(cost))), np.sqrt(cost)),)),
+        Panel("rms error\nof free runs [margins]", (Curve(np.arange(float(len(cost))), np.sqrt(cost)),)),
         Panel("rms error, fuzzy [margins]", (Curve(np.arange(float(len(error))), error),)),
     )
     return row(panels, ("row", "round", "epoch"), height_in=2.4)
