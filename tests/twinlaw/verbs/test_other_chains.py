@@ -18,7 +18,7 @@ EACH = [(name, arithmetic) for name in WISHES for arithmetic in ("float32", "fix
 
 
 @pytest.mark.parametrize(
-    ("name", "arithmetic"), sampled(EACH, keep=[("inverted_arm", "fixed"), ("quanser_aero", "float32")])
+    ("name", "arithmetic"), sampled(EACH, keep=[("inverted_arm", "fixed"), ("aeroshield", "float32")])
 )
 def test_from_the_plant_s_file_to_a_verified_law_and_a_flight_of_its_c(
     name: str, arithmetic: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
