@@ -20,7 +20,7 @@ def test_numbers_labels_and_names_stay_within_the_picture_and_apart() -> None:
     renderer = FigureCanvasAgg(figure).get_renderer()
     cells = figure.subplots(2, 2, sharex=True, squeeze=False)
     for index, axes in enumerate(cells.ravel()):
-        axes.plot([0.0, 1.0], [-1.2e-5 * 10.0**index, 1e-5], label="a name of some length")
+        axes.plot([0.0, 1.0], [-1.2e-5 * (1.0, 1e3)[index % 2], 1e-5], label="a name of some length")
         axes.set_ylabel("rms error of psi\n[deg]")
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=LEGEND_POINTS)
     for axes in cells[-1]:
