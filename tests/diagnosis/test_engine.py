@@ -71,6 +71,7 @@ def test_a_parameter_beyond_its_spread_is_named_and_no_effect(plant: BoundPlant,
     assert diagnosis.places[0].place == "azimuth"
 
 
+@pytest.mark.soak  # in every suite tests/twinlaw/verbs/test_diagnose.py has a log of one constant
 def test_a_rig_at_rest_gives_no_name(plant: BoundPlant, fly: Fly) -> None:
     log = fly(31, seconds=6.0)
     still = replace(log, t_s=log.t_s[:300], u=np.tile(log.u[:1], (300, 1)), y=np.zeros((300, 2)))

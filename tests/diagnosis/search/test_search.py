@@ -51,12 +51,21 @@ def test_the_step_of_an_input_is_found_to_a_fifty_thousandth(plant: BoundPlant, 
     assert end.fit.hypothesis.effects["main_input.quantization"]["q"] == pytest.approx(STEP_V, rel=FINELY)
 
 
-def test_an_effect_is_exchanged_for_its_like(plant: BoundPlant, fly: Fly) -> None:
+SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
+LATE = {"main_input.delay": {"tau": 0.05}}
+
+
+@pytest.fixture(scope="module")
+def sprung_and_late(plant: BoundPlant, fly: Fly) -> tuple[Case, Fit]:
+    """A flight of a rig with a spring and 50 ms of delay, and the plant as stated fitted to it."""
+    case = make_case(effect_library(plant), [fly(42, {**SPRING, **LATE}, air=False)])
+    return case, nominal_fit(case)
+
+
+def test_an_effect_is_exchanged_for_its_like(sprung_and_late: tuple[Case, Fit]) -> None:
     # 50 ms of delay of the main input, taken for a lag of the elevation's sensor beside the right spring.
-    spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
-    case = make_case(effect_library(plant), [fly(42, {**spring, "main_input.delay": {"tau": 0.05}}, air=False)])
-    nominal = nominal_fit(case)
-    wrong = fitted(case, nominal, {**spring, "psi_sensor.lag": {"tau": 0.05}})
+    case, nominal = sprung_and_late
+    wrong = fitted(case, nominal, {**SPRING, "psi_sensor.lag": {"tau": 0.05}})
     found = {frozenset(wrong.effects): wrong}
     exchange(case, found, {"main_input.delay", "main_input.lag", "psi_sensor.delay", "psi_sensor.lag"})
     best = max(found.values(), key=lambda entry: entry.evidence)
@@ -104,13 +113,10 @@ def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: F
     assert gains["main_input.saturation"] > decisions.LEAST_GAIN
 
 
-def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(plant: BoundPlant, fly: Fly) -> None:
+def test_an_effect_whose_absence_was_not_tried_has_its_part_of_the_gap(sprung_and_late: tuple[Case, Fit]) -> None:
     # Two effects of some size; of the two alone only one was tried, so that nothing says what the other takes from the evidence.
-    spring = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
-    late = {"main_input.delay": {"tau": 0.05}}
-    case = make_case(effect_library(plant), [fly(42, {**spring, **late}, air=False)])
-    nominal = nominal_fit(case)
-    both, single = (fitted(case, nominal, effects) for effects in ({**spring, **late}, late))
+    case, nominal = sprung_and_late
+    both, single = (fitted(case, nominal, effects) for effects in ({**SPRING, **LATE}, LATE))
     none = FittedHypothesis((), nominal, evidence(nominal, case.library.effects))
     search = Search((both, single, none), none, True, linearised(case, nominal), ())
     weighed = Weighed((both,), (1.0,), 0.0, 0.0, 1.0)

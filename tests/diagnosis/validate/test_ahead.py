@@ -42,19 +42,25 @@ def low_noise(fly: Fly, plant: BoundPlant) -> list[LiveRow]:
     return rows_of(fly(3, seconds=12.0, air=False, factors=dict.fromkeys(names, 1.0)))
 
 
-def test_a_twin_that_is_exact_leaves_what_the_encoder_leaves(plant: BoundPlant, low_noise: list[LiveRow]) -> None:
+@pytest.fixture(scope="module")
+def followed(plant: BoundPlant, low_noise: list[LiveRow]) -> tuple[Lookahead, list[Ahead]]:
+    """A look ahead that has followed that rig, and what it predicted."""
+    lookahead = Lookahead(plant)
+    return lookahead, fed(lookahead, low_noise)
+
+
+def test_a_twin_that_is_exact_leaves_what_the_encoder_leaves(followed: tuple[Lookahead, list[Ahead]]) -> None:
     # A state estimated from readings of one step's resolution by a filter that expects some air, run on for a second of a lively
     # flight: rms within one and a half steps, nothing beyond six times that.
-    lookahead = Lookahead(plant)
-    found = fed(lookahead, low_noise)
+    lookahead, found = followed
     assert np.abs(errors(found)).max() < 9 * STEP_RAD
     assert max(gap for gap in lookahead.gap if gap is not None) < 1.5 * STEP_RAD
 
 
 def test_it_begins_after_three_seconds_and_goes_on_twenty_times_a_second(
-    plant: BoundPlant, low_noise: list[LiveRow]
+    followed: tuple[Lookahead, list[Ahead]],
 ) -> None:
-    times = np.array([entry.t_s for entry in fed(Lookahead(plant), low_noise)])
+    times = np.array([entry.t_s for entry in followed[1]])
     assert times[0] == pytest.approx(3.0, abs=0.011)
     assert np.allclose(np.diff(times), EVERY_S)
 
