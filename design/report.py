@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,10 @@ from design.linearise import LinearPlant, linearise, of_loops, subsystem
 from design.loop import PlantPolynomials, Poles, controller_poles, open_loop, plant_polynomials
 from design.margins import Margins, margins
 from design.migration import Migration, ScheduledAxis, SlowestPole, migrations, pole_map, slowest_of
-from design.operating_points import DesignPoints, PointDesign, equilibria, rest_V
+from design.operating_points import DesignPoints, equilibria, grid, rest_V
 from design.rounding import FLOAT32, Rounding
 from design.schedule import FitError, Schedule, evaluate, fit_error, schedule_of
-from design.settings import DesignSettings
+from design.settings import AxisSettings, DesignSettings
 from records.table import ControllerTable, Polynomial
 from sim.bind import BoundPlant
 
@@ -33,8 +34,8 @@ class AxisReport:
 
     `poles_fitted_rad_s` and `poles_flown_rad_s` have shape (angles, poles); `margins` and `controller_radius`, the largest |z| of the
     controller's own poles, belong to the table as its arithmetic rounds it, as it flies. `largest_q_V_rad` is that of eq (22).
-    `designs` and `operating_V` (points,) are the feedback and the voltage at each operating point, `schedule` and `feedforward_V` the
-    polynomials fitted to them.
+    `scheduled` has the feedback and `operating_V` (points,) the voltage at each operating point, `schedule` and `feedforward_V` are the
+    polynomials fitted to them; `plants` (angles,) are what the law is closed around at `psi_rad` (angles,).
     """
 
     axis: str
@@ -44,18 +45,33 @@ class AxisReport:
     condition: float
     fit_error: FitError
     feedforward_error_V: float
-    designs: tuple[DeltaForm, ...]
+    scheduled: ScheduledAxis
     operating_V: Array
-    schedule: Schedule
     feedforward_V: Polynomial
     poles_fitted_rad_s: Poles
     poles_flown_rad_s: Poles
     designed_slowest_rad_s: float
     after_fit: SlowestPole
     after_rounding: SlowestPole
-    migrations: tuple[Migration, ...]
     margins: tuple[Margins, ...]
     controller_radius: tuple[float, ...]
+    psi_rad: Array
+    plants: tuple[PlantPolynomials, ...]
+
+    @property
+    def designs(self) -> tuple[DeltaForm, ...]:
+        """The feedback (points,) at each operating point."""
+        return self.scheduled.designs
+
+    @property
+    def schedule(self) -> Schedule:
+        """The polynomials fitted to `designs`."""
+        return self.scheduled.schedule
+
+    @cached_property
+    def migrations(self) -> tuple[Migration, ...]:
+        """Where the slowest pole goes in every form, from every source and storage: more work than all the rest, for those who ask."""
+        return migrations(self.scheduled, self.psi_rad, self.plants)
 
     @property
     def worst_margins(self) -> Margins:
@@ -95,16 +111,29 @@ class DesignReport:
 
     def pole_entries(self) -> list[dict[str, Any]]:
         """The entries `poles` of verification.json: designed poles against those that fly, per axis."""
-        return [
-            {
-                "axis": axis.axis,
-                "designed_slowest_rad_s": axis.designed_slowest_rad_s,
-                "worst_slowest_rad_s": axis.after_rounding.worst_rad_s,
-                "at_psi_rad": axis.after_rounding.at_psi_rad,
-                "stable": axis.after_rounding.stable,
-            }
-            for axis in self.axes
-        ]
+        return [_pole_entry(axis.axis, axis.designed_slowest_rad_s, axis.after_rounding) for axis in self.axes]
+
+
+def _pole_entry(axis: str, designed_rad_s: float, flown: SlowestPole) -> dict[str, Any]:
+    return {
+        "axis": axis,
+        "designed_slowest_rad_s": designed_rad_s,
+        "worst_slowest_rad_s": flown.worst_rad_s,
+        "at_psi_rad": flown.at_psi_rad,
+        "stable": flown.stable,
+    }
+
+
+def flown_poles(
+    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, rounding: Rounding = FLOAT32
+) -> list[dict[str, Any]]:
+    """The entries `poles` of verification.json for a table that exists already; raises BadInput where an angle cannot be held at rest."""
+    survey = _survey(bound, settings, table, grid(settings), rounding)
+    return [
+        _pole_entry(axis, _designed_slowest_rad_s(settings.axis(axis)), slowest_of(survey.psi_rad, poles))
+        for axis in (loop.axis for loop in settings.loops)
+        for poles in [pole_map(survey.plants(axis), survey.flown(axis))]
+    ]
 
 
 def make_report(
@@ -118,10 +147,9 @@ def make_report(
 
     Raises BadInput where an angle cannot be held at rest.
     """
-    psi_rad = angles(points.psi_rad)
-    linear = tuple(linearise(bound, point) for point in equilibria(bound, settings, psi_rad))
-    survey = _Survey(bound, settings, table, points, rounding, psi_rad, linear)
-    axes = tuple(_axis_report(survey, loop.axis) for loop in settings.loops)
+    survey = _survey(bound, settings, table, points.psi_rad, rounding)
+    psi_rad = survey.psi_rad
+    axes = tuple(_axis_report(survey, points, loop.axis) for loop in settings.loops)
     poles = _coupled(survey)
     return DesignReport(
         rounding.name,
@@ -131,8 +159,16 @@ def make_report(
         axes,
         np.max(poles.real, axis=1),
         slowest_of(psi_rad, poles),
-        _coupling(survey),
+        _coupling(survey, points),
     )
+
+
+def _survey(
+    bound: BoundPlant, settings: DesignSettings, table: ControllerTable, grid_rad: Array, rounding: Rounding
+) -> "_Survey":
+    psi_rad = angles(grid_rad)
+    linear = tuple(linearise(bound, point) for point in equilibria(bound, settings, psi_rad))
+    return _Survey(bound, settings, table, rounding, psi_rad, linear)
 
 
 def angles(grid_rad: Array) -> Array:
@@ -151,23 +187,9 @@ class _Survey:
     bound: BoundPlant
     settings: DesignSettings
     table: ControllerTable
-    points: DesignPoints
     rounding: Rounding
     psi_rad: Array
     linear: tuple[LinearPlant, ...]
-
-    def scheduled(self, axis: str) -> ScheduledAxis:
-        return ScheduledAxis(
-            name=axis,
-            wishes=self.settings.axis(axis),
-            grid_rad=self.points.psi_rad,
-            designs=tuple(design.delta for design in self.designs(axis)),
-            degree=self.settings.coefficient_degree,
-            schedule=schedule_of(self.table.axis(axis)),
-        )
-
-    def designs(self, axis: str) -> tuple[PointDesign, ...]:
-        return self.points.axes[self.settings.index(axis)]
 
     def plants(self, axis: str) -> tuple[PlantPolynomials, ...]:
         loop, loops = self.settings.loop(axis), self.settings.loops
@@ -188,9 +210,19 @@ class _Survey:
         return self.rounding.controllers(self.table, axis, self.psi_rad)
 
 
-def _axis_report(survey: _Survey, axis: str) -> AxisReport:
+def _axis_report(survey: _Survey, points: DesignPoints, axis: str) -> AxisReport:
     psi_rad, plants, controllers = survey.psi_rad, survey.plants(axis), survey.flown(axis)
-    scheduled, designs = survey.scheduled(axis), survey.designs(axis)
+    designs = points.axes[survey.settings.index(axis)]
+    scheduled = ScheduledAxis(
+        name=axis,
+        wishes=survey.settings.axis(axis),
+        grid_rad=points.psi_rad,
+        designs=tuple(design.delta for design in designs),
+        degree=survey.settings.coefficient_degree,
+        schedule=schedule_of(survey.table.axis(axis)),
+    )
+    operating_V = rest_V(survey.bound, points.equilibria, survey.settings.loop(axis))
+    feedforward_V = survey.table.axis(axis).feedforward_V
     fitted = pole_map(plants, [evaluate(scheduled.schedule, float(psi)) for psi in psi_rad])
     rounded = pole_map(plants, controllers)
     return AxisReport(
@@ -200,29 +232,24 @@ def _axis_report(survey: _Survey, axis: str) -> AxisReport:
         largest_q_V_rad=max(float(np.max(np.abs(design.placement.controller.q))) for design in designs),
         condition=max(design.placement.condition for design in designs),
         fit_error=fit_error(scheduled.grid_rad, scheduled.designs, scheduled.schedule),
-        feedforward_error_V=_feedforward_error_V(survey, axis),
-        designs=scheduled.designs,
-        operating_V=_operating_V(survey, axis),
-        schedule=scheduled.schedule,
-        feedforward_V=survey.table.axis(axis).feedforward_V,
+        feedforward_error_V=float(np.max(np.abs(polyval(points.psi_rad, feedforward_V) - operating_V))),
+        scheduled=scheduled,
+        operating_V=operating_V,
+        feedforward_V=feedforward_V,
         poles_fitted_rad_s=fitted,
         poles_flown_rad_s=rounded,
-        designed_slowest_rad_s=max(pole.real for pole in scheduled.wishes.placed_rad_s),
+        designed_slowest_rad_s=_designed_slowest_rad_s(scheduled.wishes),
         after_fit=slowest_of(psi_rad, fitted),
         after_rounding=slowest_of(psi_rad, rounded),
-        migrations=migrations(scheduled, psi_rad, plants),
         margins=tuple(margins(open_loop(p, c)) for p, c in zip(plants, controllers, strict=True)),
         controller_radius=tuple(float(np.max(np.abs(1.0 + controller_poles(c)))) for c in controllers),
+        psi_rad=psi_rad,
+        plants=plants,
     )
 
 
-def _feedforward_error_V(survey: _Survey, axis: str) -> float:
-    fitted_V = polyval(survey.points.psi_rad, survey.table.axis(axis).feedforward_V)
-    return float(np.max(np.abs(fitted_V - _operating_V(survey, axis))))
-
-
-def _operating_V(survey: _Survey, axis: str) -> Array:
-    return rest_V(survey.bound, survey.points.equilibria, survey.settings.loop(axis))
+def _designed_slowest_rad_s(wishes: AxisSettings) -> float:
+    return max(pole.real for pole in wishes.placed_rad_s)
 
 
 def _coupled(survey: _Survey) -> Poles:
@@ -231,10 +258,10 @@ def _coupled(survey: _Survey) -> Poles:
     return np.array([coupled_poles(plant, controllers) for plant, controllers in pairs])
 
 
-def _coupling(survey: _Survey) -> tuple[Coupling, ...]:
+def _coupling(survey: _Survey, points: DesignPoints) -> tuple[Coupling, ...]:
     """At the operating points; nothing of one loop."""
     if len(survey.settings.loops) == 1:
         return ()
-    wanted = set(survey.points.psi_rad.tolist())
+    wanted = set(points.psi_rad.tolist())
     rows = zip(survey.psi_rad.tolist(), survey.whole(), survey.together(), strict=True)
     return tuple(coupling(plant, controllers) for psi, plant, controllers in rows if psi in wanted)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from design.gate import check
 from design.operating_points import DesignPoints, design_points, rest_V
-from design.report import DesignReport, make_report
+from design.report import DesignReport, flown_poles, make_report
 from design.rounding import FLOAT32, Rounding
 from design.schedule import DIGITS, NOISE, fit_error, fit_schedule, stored_fit
 from design.settings import AxisSettings, DesignSettings
@@ -42,18 +42,19 @@ def design(
         return _designed_on(without_effects(bound), bound, settings, rounding)
 
 
-def report_on(
+def poles_on(
     bound: BoundPlant, settings: DesignSettings, table: ControllerTable, rounding: Rounding = FLOAT32
-) -> DesignReport:
-    """What is known of a table that exists already, on this plant; raises BadInput where the plant cannot be designed for."""
+) -> list[dict[str, Any]]:
+    """The entries `poles` of verification.json of a table that exists already, on this plant as `design` sees it; raises BadInput
+    where an angle cannot be held at rest."""
+    if not bound.effects:
+        return flown_poles(bound, settings, table, rounding)
     try:
         seen = linear_part(bound)
-        return make_report(seen, settings, table, design_points(seen, settings), rounding)
+        design_points(seen, settings)
+        return flown_poles(seen, settings, table, rounding)
     except BadInput:
-        if not bound.effects:
-            raise
-        seen = without_effects(bound)
-        return make_report(seen, settings, table, design_points(seen, settings), rounding)
+        return flown_poles(without_effects(bound), settings, table, rounding)
 
 
 def _designed_on(

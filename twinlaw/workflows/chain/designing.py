@@ -13,7 +13,7 @@ from controllers.settling import demand_settling
 from controllers.table import CONTROLLERS
 from design.report import DesignReport
 from design.settings import read_settings
-from design.table import design, report_on
+from design.table import design, poles_on
 from design.trade_off import TradePoint, trade_off
 from records.errors import BadInput, VerificationFailed
 from records.law_table import LawTable
@@ -98,4 +98,5 @@ def table_poles(bound: BoundPlant, table: ControllerTable, arithmetic: str = "fl
         )
     with stage("closing the loop at all angles"):
         settings = read_settings(bound)
-        return poles_of(report_on(bound, settings, table, ARITHMETICS[arithmetic].rounding))
+        entries = poles_on(bound, settings, table, ARITHMETICS[arithmetic].rounding)
+        return tuple(PoleMigration(**entry) for entry in entries)
