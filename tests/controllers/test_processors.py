@@ -21,7 +21,7 @@ from records.plant import load_plant
 from sim.bind import bind
 from tests.plants import stated_table
 
-transfer._by_python_control = transfer._check = lambda *_: None  # a check, for which a second of modules would be loaded
+transfer._in_z = transfer._check = lambda *_: None  # a check, for which a second of modules would be loaded
 bound = bind(load_plant(Path("plants/ce150.toml")))
 for name in sys.argv[1:]:
     table = stated_table("ce150") if name == "scheduled" else CONTROLLERS[name].design(bound, read_settings(bound))

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import control
 import mpmath
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def test_exponential_agrees_with_forty_digits(size):
 
 @pytest.mark.parametrize("psi_deg", [-40.0, 0.0, 40.0])
 def test_the_transfer_function_is_that_of_forty_digits(psi_deg):
-    """B is kept to 1e-13 of its coefficients; python-control's own keeps nine digits of it."""
+    """B is kept to 1e-13 of its coefficients; the usual conversion keeps nine digits of it."""
     linear = elevation(np.radians(psi_deg))
     found = transfer_function(linear, SAMPLE_PERIOD_S, LOOPS[0])
     with mpmath.workdps(40):
@@ -57,6 +58,16 @@ def test_the_transfer_function_is_that_of_forty_digits(psi_deg):
         b = [mpmath.fsum(a[i] * response[k - i] for i in range(k + 1)) for k in range(4)]
     np.testing.assert_allclose(found.a, np.array(a, dtype=float), atol=1e-15)
     np.testing.assert_allclose(found.b, np.array(b, dtype=float), rtol=1e-13)
+
+
+def test_the_conversion_in_z_is_that_of_python_control():
+    """To nine digits, which are what either has of B."""
+    linear = elevation(0.3)
+    plant = control.ss(linear.A, linear.B, linear.C, [[0.0]])
+    expected = control.ss2tf(control.sample_system(plant, SAMPLE_PERIOD_S, method="zoh"))
+    found = transfer._in_z(linear, SAMPLE_PERIOD_S)
+    np.testing.assert_allclose(found.a, expected.den[0][0], atol=1e-12)
+    np.testing.assert_allclose(found.b[1:], expected.num[0][0], atol=1e-13)
 
 
 def _characteristic(phi):
