@@ -104,10 +104,8 @@ def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: Bound
 def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: Fly) -> None:
     # Commands stay well under the limit of 8.5 V, whose corner is rounded from 6.8 V on: a limit that they reach is far from the truth.
     truth = {"main_input.saturation": {"limit": 8.5, "w": 0.2}}
-    case = make_case(
-        effect_library(plant), [fly(seed, truth, rig_seed=43, air=False, seconds=60.0) for seed in (45, 46)]
-    )
-    assert 6.8 < max(np.max(flight.filter_input.u[:, 0]) for flight in case.flights) < 0.9 * 8.5
+    case = make_case(effect_library(plant), [fly(45, truth, rig_seed=43, air=False, seconds=60.0)])
+    assert 6.8 < np.max(case.flights[0].filter_input.u[:, 0]) < 0.9 * 8.5
     score_tests = score_effects(case, linearised(case, nominal_fit(case)), list(truth))
     gains = {entry.effect: entry.gain for entry in score_tests}
     assert gains["main_input.saturation"] > decisions.LEAST_GAIN
