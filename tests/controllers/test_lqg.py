@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import control
 import numpy as np
 import pytest
 
@@ -23,6 +22,8 @@ from verification.flown_law import FlownLaw
 
 def test_the_model_is_the_plant_sampled_by_python_control() -> None:
     # Truth: m' = 7 (u - m), x'' = 9 m - 0.4 v + 2 x from rest at x = 0, sampled with a zero-order hold by python-control.
+    import control  # a second and a half of modules, which one worker alone is to load
+
     lag, k, a, b = 7.0, 9.0, 2.0, 0.4
     system = control.ss([[-lag, 0, 0], [0, 0, 1], [k, a, -b]], [[lag], [0], [0]], np.eye(3), np.zeros((3, 1)))
     truth = control.sample_system(system, 0.01, method="zoh")

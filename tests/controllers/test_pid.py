@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import control
 import numpy as np
 import pytest
 
@@ -25,6 +24,8 @@ def test_the_sensitivity_of_python_control_is_the_bound_at_its_worst_operating_p
 
 def _sensitivity(plant: object, tuning: dict[str, float], Ts_s: float) -> float:
     """Largest |S| from transfer functions in z, poles checked."""
+    import control  # a second and a half of modules, which one worker alone is to load
+
     system = control.ss(np.eye(3) + plant.N, plant.B, plant.C, [[0.0]], Ts_s)  # type: ignore[attr-defined]
     z, g = control.tf([1.0, 0.0], [1.0], Ts_s), -math.expm1(-Ts_s / tuning["filter_s"])
     slope = tuning["k_d"] / tuning["filter_s"] * (1.0 - g * z / (z - 1.0 + g))

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import control
 import mpmath
 import numpy as np
 import pytest
@@ -62,6 +61,8 @@ def test_the_transfer_function_is_that_of_forty_digits(psi_deg):
 
 def test_the_conversion_in_z_is_that_of_python_control():
     """To nine digits, which are what either has of B."""
+    import control  # a second and a half of modules, which one worker alone is to load
+
     linear = elevation(0.3)
     plant = control.ss(linear.A, linear.B, linear.C, [[0.0]])
     expected = control.ss2tf(control.sample_system(plant, SAMPLE_PERIOD_S, method="zoh"))
