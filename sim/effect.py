@@ -117,8 +117,8 @@ class Effect:
 
     `prior` is what one believes of it before any log. Where `holds_at_rest` is true it is dry friction that keeps its axis at rest by
     its level, of which slopes in motion know nothing. Where `needs_gravity` it is gone when the rig is mounted so that gravity turns no
-    axis. `term` is the term of angle and speed that it is in a plain regression, `said` its kind in words where that is more than the
-    name without underscores.
+    axis. Where `everywhere` hardly any rig is without it. `term` is the term of angle and speed that it is in a plain regression, `said`
+    its kind in words where that is more than the name without underscores.
     """
 
     name: str
@@ -140,6 +140,7 @@ class Effect:
     prior: Prior = RARE
     holds_at_rest: bool = False
     needs_gravity: bool = False
+    everywhere: bool = False
     term: str = ""
     said: str = ""
 

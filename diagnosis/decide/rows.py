@@ -27,7 +27,6 @@ from records.reasons import Note
 
 LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
-USUAL_FORCES = ("coulomb", "offset_force")  # of an axis: what hardly any rig is without
 MOST_TRIED = 4  # moves, the likeliest before anything is fitted
 SURELY_LOST = -10.0  # nats that a move loses under more noise than there is: under less it loses some ten times as many
 MOST_ROWS = 6000  # of each log: ten times as many nats as a row of a published recording needs
@@ -190,8 +189,7 @@ def _usual(case: Case, nominal: Fit) -> Fit | None:
 
 def _with_forces(case: Case, start: Hypothesis) -> Hypothesis:
     """The same with dry friction and a constant force on every axis that has none yet."""
-    names = [f"{axis.name}.{kind}" for axis in case.library.bound.model.axes for kind in USUAL_FORCES]
-    effects = {name: case.library.effects[name] for name in names if name in case.library.effects}
+    effects = {name: effect for name, effect in case.library.effects.items() if effect.everywhere}
     sizes = {name: {p.symbol: p.reference for p in effect.parameters} for name, effect in effects.items()}
     return start.with_effects(sizes | dict(start.effects))
 

@@ -55,7 +55,7 @@ def likeliest_numbers(case: Case, start: Hypothesis, numbers: Sequence[Number]) 
     at, runs = start, passes(case, start)
     if runs is None:
         return start, -np.inf
-    for _ in range(MOST_STEPS):
+    for _ in range(MOST_STEPS if numbers else 0):
         g, information = _linear(case, at, runs, numbers)
         step = _step(at, numbers, g, information)
         promised, before = 0.5 * float(g @ step), worth(runs, at)

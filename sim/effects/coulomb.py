@@ -27,6 +27,7 @@ def effects(model: Model) -> Iterator[Effect]:
             source="Coulomb friction",
             prior=COMMON,
             holds_at_rest=True,
+            everywhere=True,
             term="sgn(speed)",
             said="Coulomb friction",
             edit=lambda model, b, axis=axis: with_friction(model, axis, b),

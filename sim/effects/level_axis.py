@@ -46,6 +46,7 @@ def _offset(axis: str, entry: AxisPlace) -> Effect:
         story="Something pulls the axis one way all the time.",
         source="a constant torque",
         prior=PUSHED if axis in JOINTS else PULLED,
+        everywhere=True,
         term="constant",
         edit=lambda model, offset: with_torque(model, axis, -offset),
         twins={

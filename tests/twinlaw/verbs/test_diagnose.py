@@ -94,7 +94,7 @@ def test_an_input_with_the_wrong_sign_is_refused_by_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], log: RunLog
 ) -> None:
     turned = replace(log, u=log.u * [1.0, -1.0], extra={})
-    line = refused(tmp_path, capsys, part(turned, slice(0, 800)))
+    line = refused(tmp_path, capsys, part(turned, slice(0, 1000)))
     assert "u_T_V has the wrong sign" in line
     assert "turn the sign of u_T_V" in line
 
