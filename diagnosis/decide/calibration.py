@@ -66,7 +66,7 @@ def calibrated(weighed: Weighed, favour: float | None, law: Law | None = None) -
     """The names together as probable as such names came true, each with its share of that, and all else with its share of the rest. The
     records are the law's features and the first name's share."""
     names = sum(weighed.probabilities)
-    if not weighed.fitted or names >= 1.0:
+    if not 0.0 < names < 1.0:  # nothing to share, or nothing beside the names
         return weighed, ()
     told, of = features_of(weighed, favour), named(weighed)
     known = (learned() if law is None else law).probability(told)

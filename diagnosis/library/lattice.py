@@ -63,9 +63,8 @@ def _peaks(counts: Counts, times: Counts) -> list[tuple[float, float]]:
     passes[counts - counts[0]] = times
     points = 1 << (PADDED * span - 1).bit_length()
     height = np.abs(np.fft.rfft(passes, points))
-    height[: int(0.5 * decisions.LEAST_VALUES * points / span)] = (
-        0.0  # a grid of fewer points between the extremes is none
-    )
+    slowest = int(0.5 * decisions.LEAST_VALUES * points / span)
+    height[:slowest] = 0.0  # a grid of fewer points between the extremes is none
     height[height < LOWEST * times.sum()] = 0.0
     inner = np.flatnonzero(
         (height >= np.append(0.0, height[:-1])) & (height >= np.append(height[1:], 0.0)) & (height > 0.0)

@@ -38,6 +38,11 @@ def test_without_a_name_nothing_is_asked() -> None:
     assert calibrated(nameless, 0.5) == (nameless, ())
 
 
+def test_names_that_weigh_nothing_stay_so() -> None:
+    nothing = weighed(0.0, 0.0, 1.0)
+    assert calibrated(nothing, 0.5) == (nothing, ())
+
+
 def test_the_learned_law_is_surer_of_what_weighs_more_and_of_what_a_hold_out_favours() -> None:
     law = learned()
     assert len(law.coefficients) == len(FEATURES)
