@@ -412,6 +412,11 @@ ROWS_GAIN = Limit(
     "commands moved by whole rows must be likelier by so much",
     "flights of the CE150 with late commands gained 60 to 210, ten published recordings 4 at most, a sealed case without any effect 20",
 )
+ROWS_TRIED = Count(4, "moves", "fitted, the likeliest before anything is: time")
+ROWS_SURELY_LOST = Limit(
+    -10.0, "nats", "that a move loses under more noise than there is: under less it loses some ten times as many"
+)
+ROWS_MOST = Count(6000, "rows", "of each log: ten times as many nats as a row of a published recording needs")
 ROWS_STRAINED_GAIN = Limit(
     40.0,
     "nats",

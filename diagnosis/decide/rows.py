@@ -27,9 +27,6 @@ from records.reasons import Note
 
 LATE, EARLY = 1, -1
 NUMBERS = {1: "one row", 2: "two rows", 3: "three rows"}
-MOST_TRIED = 4  # moves, the likeliest before anything is fitted
-SURELY_LOST = -10.0  # nats that a move loses under more noise than there is: under less it loses some ten times as many
-MOST_ROWS = 6000  # of each log: ten times as many nats as a row of a published recording needs
 Array = NDArray[np.float64]
 
 
@@ -134,10 +131,12 @@ def misplaced(asked: _Asked) -> tuple[Moved | None, tuple[Moved, ...]]:
     singles = tuple(_one_column(len(model.inputs), len(model.outputs)))
     raw = dict(zip(tried := (*asked.commands, *singles), thread_map(asked.raw, tried), strict=True))
     forgiving = bool(model.axes) and not is_strained(asked.case, asked.usual)
-    seen = forgiving and max(raw[slip] for slip in asked.commands) < SURELY_LOST
+    seen = forgiving and max(raw[slip] for slip in asked.commands) < decisions.ROWS_SURELY_LOST
     asks = max((raw[slip] for slip in singles), default=-np.inf) > 0.0
-    likelier = sorted((slip for slip in singles if asks and raw[slip] > SURELY_LOST), key=lambda slip: -raw[slip])
-    likelier = likelier[:MOST_TRIED]
+    likelier = sorted(
+        (slip for slip in singles if asks and raw[slip] > decisions.ROWS_SURELY_LOST), key=lambda slip: -raw[slip]
+    )
+    likelier = likelier[: decisions.ROWS_TRIED]
     tried = (*(() if seen else asked.commands), *likelier)
     ones = dict(zip(tried, thread_map(asked.moved, tried), strict=True))
     commands = tuple(one for slip, one in ones.items() if slip in asked.commands)
@@ -168,7 +167,7 @@ def _unseen(commands: Sequence[Moved]) -> tuple[Note, ...]:
 
 
 def _begun(flight: FilteredLog) -> FilteredLog:
-    seconds = min(float(decisions.ROWS_S), MOST_ROWS * flight.step_s)
+    seconds = min(float(decisions.ROWS_S), decisions.ROWS_MOST * flight.step_s)
     return replace(flight, filter_input=beginning(flight.filter_input, seconds))
 
 
