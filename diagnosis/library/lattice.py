@@ -19,18 +19,32 @@ PADDED, PEAKS = 8, 6  # points of the spectrum a cycle over all counts; its high
 NEARLY_AS_HIGH = 0.8
 LOWEST = 0.3  # of all counts in phase: those of a grid of 1.5 counts without noise are 0.41
 AROUND = np.linspace(-1.0, 1.0, 81)
+WINDOW = 1 << 14  # units of the widest spectrum,
+FINER = 4  # each unit as many of the next,
+FINEST = 8  # and as many are the finest grid that is looked for in it
+ROUNDED = 2.0  # counts that the farthest count may be beside the grid
 AS_GOOD = 1.0  # nats: frequencies that near the best are one plateau
 
 
 def coarse_step(y: Array, step: float) -> float | None:
-    """The step of the grid that the readings y (n,) lie on where it is coarser than `step`; None where it is not."""
+    """The step of the coarsest grid that the readings y (n,) lie on where it is coarser than `step`; None where there is none."""
     read = _counts(y, step)
     counts, times = np.unique(_passed(read), return_counts=True)
     if len(counts) < decisions.LEAST_VALUES:
         return None
-    evidence, f = max((_finely(counts, times, f, width) for f, width in _peaks(counts, times)), default=(0.0, 0.0))
-    different = min(len(np.unique(read)), int(times.sum()))
-    return step / f if _lies(evidence / times.sum(), different, int(np.ptp(counts)) + 1, f) else None
+    different, span = min(len(np.unique(read)), int(times.sum())), int(np.ptp(counts)) + 1
+    for unit in _units(span):
+        inside = _busiest(counts, times, unit * WINDOW)
+        begun = [
+            _near(counts[inside], times[inside], peak, unit) for peak in _peaks(counts[inside], times[inside], unit)
+        ]
+        grids = {_over_all(counts, times, inside, f) for f in begun}
+        if not grids:
+            continue
+        evidence, f = _finely(counts, times, max(grids, key=lambda f: _evidence(counts, times, f)))
+        if _lies(evidence / times.sum(), different, span, f):
+            return step / f
+    return None
 
 
 def grid_evidence(y: Array, grid: float, step: float) -> float:
@@ -56,16 +70,31 @@ def _passed(counts: Counts) -> Counts:
     return np.asarray(changes[1:-1][way[1:] == way[:-1]], np.int64)
 
 
-def _peaks(counts: Counts, times: Counts) -> list[tuple[float, float]]:
-    """Frequencies (1/counts) at which the counts' spectrum is highest, with their twins, and how far from it a peak may be."""
-    span = int(counts[-1] - counts[0]) + 1
-    passes = np.zeros(span)
-    passes[counts - counts[0]] = times
+def _units(span: int) -> list[int]:
+    """Units, in counts, in which a window over all counts is looked at for coarse grids first, and over fewer for finer ones."""
+    return [FINER**power for power in range(20, 0, -1) if FINER**power * WINDOW < FINER * span] + [1]
+
+
+def _busiest(counts: Counts, times: Counts, reach: int) -> slice:
+    """Where within such a reach of counts most readings are."""
+    ends = np.searchsorted(counts, counts + reach)
+    total = np.append(0, np.cumsum(times))
+    first = int(np.argmax(total[ends] - total[:-1]))
+    return slice(first, int(ends[first]))
+
+
+def _peaks(counts: Counts, times: Counts, unit: int) -> list[float]:
+    """Frequencies (1/unit) at which the spectrum of the counts is highest, with their twins where the unit is a count."""
+    places = np.round(counts / unit).astype(np.int64)
+    span = int(places[-1] - places[0]) + 1
+    passes = np.bincount(places - places[0], weights=times, minlength=span)
     points = 1 << (PADDED * span - 1).bit_length()
     height = np.abs(np.fft.rfft(passes, points))
     slowest = int(0.5 * decisions.LEAST_VALUES * points / span)
     height[:slowest] = 0.0  # a grid of fewer points between the extremes is none
     height[height < LOWEST * times.sum()] = 0.0
+    if unit > 1:
+        height[points // FINEST :] = 0.0  # the next unit shows these better
     inner = np.flatnonzero(
         (height >= np.append(0.0, height[:-1])) & (height >= np.append(height[1:], 0.0)) & (height > 0.0)
     )
@@ -73,15 +102,42 @@ def _peaks(counts: Counts, times: Counts) -> list[tuple[float, float]]:
     # Overtones of a grid that is read without noise are as high as its own frequency, the lowest of them.
     lowest = [place for place in inner if height[place] > NEARLY_AS_HIGH * height[ranked[0]]][:1]
     highest = np.array([*lowest, *ranked[:PEAKS]]) / points
-    both = [f for peak in highest for f in (peak, 1.0 - peak)]
-    return [(float(f), 1.0 / points) for f in both if f * decisions.COARSE_STEP < 1.0]
+    both = [f for peak in highest for f in (peak, 1.0 - peak)] if unit == 1 else highest.tolist()
+    return [float(f) for f in both if f * decisions.COARSE_STEP < 1.0]
 
 
-def _finely(counts: Counts, times: Counts, f: float, width: float) -> tuple[float, float]:
-    """Evidence and frequency of the grid within `width` of f that the counts lie on best."""
-    near = f + width * AROUND
-    f = float(near[np.argmax(np.abs(np.exp(2j * np.pi * np.outer(near, counts)) @ times))])
-    near = f + width / 4 * AROUND
+def _near(counts: Counts, times: Counts, peak: float, unit: int) -> float:
+    """The frequency (1/counts) beside a peak (1/unit) at which most of the counts are in phase."""
+    near = (peak + AROUND / (PADDED * (int(np.ptp(counts)) / unit + 1))) / unit
+    return float(near[np.argmax(np.abs(np.exp(2j * np.pi * np.outer(near, counts - counts[0])) @ times))])
+
+
+def _over_all(counts: Counts, times: Counts, inside: slice, f: float) -> float:
+    """The same frequency by least squares of whole steps, over twice as many counts each time until zero is among them, where a grid has
+    a point."""
+    centre = counts[inside][np.argmax(times[inside])]
+    farthest = max(abs(centre), int(np.max(np.abs(counts - centre))))
+    reach = int(np.ptp(counts[inside])) + 1
+    known, weight = np.append(counts, 0), np.append(times, np.max(times))
+    while True:
+        held = np.abs(known - centre) <= reach
+        f = _steps_fitted(known[held] - centre, weight[held], f)
+        if reach >= farthest:
+            return _steps_fitted(counts, times, f)
+        reach *= 2
+
+
+def _steps_fitted(counts: Counts, times: Counts, f: float) -> float:
+    """Whole steps k of the counts c by least squares of c = k / f."""
+    steps = np.round(counts * f)
+    along = float(times @ (steps * counts))
+    return float(times @ steps**2) / along if along > 0.0 else f
+
+
+def _finely(counts: Counts, times: Counts, f: float) -> tuple[float, float]:
+    """Evidence and frequency of the grid beside f that the counts lie on best."""
+    farthest = float(np.max(np.abs(counts)))
+    near = f + AROUND * min(1.0 / (4 * PADDED * (np.ptp(counts) + 1.0)), ROUNDED * f / farthest)
     found = np.array([_evidence(counts, times, one) for one in near])
     return float(found.max()), float(np.mean(near[found >= found.max() - AS_GOOD]))
 

@@ -61,6 +61,12 @@ def test_a_coarse_grid_is_seen_with_its_step() -> None:
     assert grid_evidence(read, 0.008, STEP) == 0.0
 
 
+def test_a_grid_of_hundreds_of_thousands_of_steps_is_seen() -> None:
+    # A carriage whose numbers have steps of 50 nm, read in steps of 16 mm, far from zero: thirteen readings in all.
+    angle = 3.0 + 0.1 * np.sin(np.linspace(0.0, 30.0, 4000))
+    assert coarse_step(0.016 * np.round(angle / 0.016), 5e-8) == pytest.approx(0.016, rel=1e-6)
+
+
 def test_a_fine_encoder_has_no_coarse_grid() -> None:
     angle = 0.4 * np.sin(np.linspace(0.0, 30.0, 4000))
     assert coarse_step(STEP * np.round(angle / STEP), STEP) is None
