@@ -275,6 +275,28 @@ static void spread(filter_state *at, const double *noise)
     }
 }
 
+/* White noise on a speed as it spreads within the step, the integral of g(t) g(t)' dt noise / h with g(t) the speed's column of F over t:
+ * by Gauss's rule at two instants, which is exact for the speed and its position. As a sum of squares it leaves no reading, however sure
+ * and however far behind the speed, a variance below zero. */
+static void stir(filter_state *at, int v, double h_s, double noise)
+{
+    static const double INSTANT[2] = {0.21132486540518712, 0.78867513459481288}; /* 1/2 -+ 1/sqrt(12) */
+    for (int k = 0; k < 2; k++) {
+        const double t_s = INSTANT[k] * h_s;
+        double g[WIDTH] __attribute__((aligned(sizeof(block)))) = {0.0};
+        for (int n = 0; n < at->awake; n++) {
+            const int i = at->order[n];
+            g[i] = (i == v) + t_s * (at->A[i][v] + 0.5 * t_s * at->square[i][v]);
+        }
+        for (int n = 0; n < at->awake; n++) {
+            const int i = at->order[n];
+            UNROLLED for (int b = 0; b < ROW; b++)
+                if (g[i] != 0.0 && FILLED(b))
+                    ((block *)at->P[i])[b] += 0.5 * noise * g[i] * ((const block *)g)[b];
+        }
+    }
+}
+
 /* The slopes one step on: S + h (1 + h A / 2) (A S + D), those of noise with a memory by what is kept of it. */
 static void move_slopes(filter_state *at, double h_s, const double *kept)
 {
@@ -305,26 +327,14 @@ static void move_slopes(filter_state *at, double h_s, const double *kept)
     }
 }
 
-/* Half of a step's noise comes before its motion, so that it reaches the position within the step: else a very sure reading of a
- * position leaves the speed no freedom at all. So white noise of variance n on a speed would spread its position by n h^2 / 2 where it
- * does by n h^2 / 3: the difference is taken off, h as the axis is carried on. What an axis at rest loses by its emptied row all comes after, so that instants more or
- * less change nothing; so does what noise with a memory loses, of which `kept` is left: (1 - kept^2) q / 2 rate in all. */
-static void stir(filter_state *at, const bool *rests, const double *kept, double *noise)
+/* Noise of states other than speeds comes half before a step's motion, half behind it; of one with a memory, of which `kept` is left,
+ * (1 - kept^2) q / 2 rate in all. */
+static void halve(filter_state *at, const double *kept, double *noise)
 {
-    bool emptied[N] = {false};
-    double less[N] = {0.0};
-    for (int a = 0; a < N_AXES; a++) {
-        emptied[AXIS_VELOCITY[a]] = rests[a];
-        const double carried = at->F[AXIS_POSITION[a]][AXIS_VELOCITY[a]], left = at->F[AXIS_VELOCITY[a]][AXIS_VELOCITY[a]];
-        if (!rests[a] && fabs(left) <= 1.0) /* else the step is too long for either */
-            less[AXIS_POSITION[a]] = noise[AXIS_VELOCITY[a]] * carried * carried / 6.0;
+    for (int i = 0; i < N; i++) {
+        noise[i] /= 1.0 + kept[i] * kept[i];
+        at->P[i][i] += noise[i];
     }
-    for (int i = 0; i < N; i++)
-        if (!emptied[i]) {
-            noise[i] /= 1.0 + kept[i] * kept[i];
-            at->P[i][i] += noise[i];
-            noise[i] -= less[i];
-        }
 }
 
 /* What the friction of each axis may do: its level as an acceleration at rest, in doubt for `rub` seconds about v = 0. At rest, where the
@@ -425,8 +435,19 @@ static void advance(filter_state *at, int64_t step, double t_s, double h_s, doub
         if (r->locked[a])
             noise[AXIS_VELOCITY[a]] = 0.0;
     }
-    stir(at, rests, kept, noise);
+    /* What an axis at rest loses by its emptied row all comes after, so that instants more or less change nothing. */
+    double jolts[AXES] = {0.0}, stays[AXES] = {0.0};
+    for (int a = 0; a < N_AXES; a++) {
+        (rests[a] ? stays : jolts)[a] = noise[AXIS_VELOCITY[a]];
+        noise[AXIS_VELOCITY[a]] = 0.0;
+    }
+    halve(at, kept, noise);
     spread(at, noise);
+    for (int a = 0; a < N_AXES; a++) {
+        at->P[AXIS_VELOCITY[a]][AXIS_VELOCITY[a]] += stays[a];
+        if (jolts[a] > 0.0)
+            stir(at, AXIS_VELOCITY[a], h_s, jolts[a]);
+    }
 }
 
 /* How many pieces a step is done in: as many as the fastest state, noise with a memory apart, needs for series that end at h^2. */

@@ -87,6 +87,17 @@ def test_noise_that_lasts_less_than_a_row_needs_no_further_instants(case: Case, 
     assert values[1] == pytest.approx(values[0], abs=0.5)
 
 
+def test_sure_readings_of_a_late_sensor_leave_no_variance_below_zero(case: Case, settled: Hypothesis) -> None:
+    # What is expected of a reading is never surer than the reading: a millionth of the encoder's step, some rows behind a restless axis.
+    (flight,) = case.flights
+    sure = replace(flight.filter_input, r=1e-12 * flight.filter_input.r, single=1e-12 * flight.filter_input.single)
+    late = {f"{axis}_sensor.lag": {"tau": 0.05} for axis in ("psi", "phi")}
+    restless = replace(settled, process_noise=np.full_like(settled.process_noise, -1.0))
+    (run,) = passes(case.with_flights([replace(flight, filter_input=sure)]), restless.with_effects(late)) or [None]
+    assert run is not None
+    assert np.nanmin(run.s) > 1e-12 * flight.filter_input.r.min()
+
+
 @pytest.mark.parametrize("sensor", ["psi_sensor", "phi_sensor"])
 def test_further_instants_change_nothing(stuck: tuple[Case, Hypothesis], sensor: str) -> None:
     # A delay of 10 us gives each reading an instant of its own: the likelihood moves by less than half a nat, though the azimuth sticks.
