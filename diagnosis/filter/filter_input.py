@@ -146,10 +146,12 @@ def _finest(y: Array) -> float:
 
 
 def beginning(filter_input: FilterInput, seconds: float) -> FilterInput:
-    """The first `seconds` of a filter input."""
+    """The first `seconds` of a filter input; a reading of a later row, put earlier by its delay, still corrects but has no place."""
     kept = filter_input.t_s - filter_input.t_s[0] <= seconds
     arrays = {name: getattr(filter_input, name)[kept] for name in ("t_s", "u", *AT_INSTANTS, *READINGS)}
-    return replace(filter_input, rows=int(kept.sum()), **arrays)
+    rows = int(np.sum(arrays["row"] >= 0))
+    arrays["place"] = np.where(arrays["place"] < rows, arrays["place"], -1)  # C writes at a place without asking
+    return replace(filter_input, rows=rows, **arrays)
 
 
 def with_inputs(filter_input: FilterInput, stages: Sequence[InputStage]) -> FilterInput:

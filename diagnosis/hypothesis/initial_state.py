@@ -21,7 +21,8 @@ def start_of(library: EffectLibrary, filter_input: FilterInput, locked: tuple[st
     the first inputs, or short of it where the plant then follows the first readings better."""
     x0, p0, unread = _first_guess(library, filter_input)
     early = beginning(filter_input, decisions.JUDGED_START_S)
-    early = replace(early, place=np.where(np.isfinite(early.y), np.arange(early.rows)[:, None], -1))
+    instants = len(early.t_s)
+    early = replace(early, rows=instants, place=np.where(np.isfinite(early.y), np.arange(instants)[:, None], -1))
     value = _likelihood(library, early, x0, p0, locked)
     for index in unread:
         for share in decisions.REST_SHARES:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.filter.filter_input import FilterInput, filter_input_of, late
+from diagnosis.filter.filter_input import FilterInput, beginning, filter_input_of, late
 from diagnosis.library.lattice import coarse_step, grid_evidence
 from diagnosis.library.sensor_effects import behind_play, standing_rows, unsure_when
 from records.log import RunLog
@@ -133,6 +133,14 @@ def test_late_readings_are_put_back_to_when_they_were_true(tau_s: float) -> None
     assert np.allclose(moved.t_s[seen], 0.01 * moved.y[seen, 0] - tau_s, atol=1e-6)
     assert np.array_equal(moved.place[seen, 0], moved.y[seen, 0].astype(int))
     assert seen.sum() >= 97
+
+
+def test_the_beginning_of_late_readings_has_no_place_behind_its_rows() -> None:
+    # Within the first 0.1 s are rows 0 to 10; readings 11 and 12, 20 ms late, were taken there too but belong to later rows.
+    begun = beginning(late(filter_input(np.arange(100.0)), 0, 0.02), 0.1)
+    assert begun.rows == 11
+    assert begun.place.max() == 10
+    assert np.nanmax(begun.y) == 12.0
 
 
 def readings(y: np.ndarray) -> FilterInput:
