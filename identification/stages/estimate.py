@@ -22,6 +22,7 @@ from identification.uncertainty.correlation import pieces
 from identification.uncertainty.discord import Discord, discords
 from identification.uncertainty.identifiability import Direction, unseen
 from identification.uncertainty.residuals import ResidualTest, tests_at
+from records.errors import BadInput
 
 Array = NDArray[np.float64]
 
@@ -158,7 +159,22 @@ def _weighed_fit(problem: Problem, known: int, watch: Watch) -> tuple[Problem, P
     for weigh in (by_channel, by_correlation):
         problem = _recentred(replace(problem, start=point.theta, runs=weigh(problem, point)), known)
         point = solve(problem, watch)
+        _demand_motion(problem, point)
     return problem, point
+
+
+def _demand_motion(problem: Problem, point: Point) -> None:
+    """Raises BadInput where the runs cannot be followed from any start that the fit had."""
+    if np.isfinite(point.cost):
+        return
+    values = ", ".join(f"{name} = {value:.4g}" for name, value in zip(problem.names, point.theta, strict=True))
+    raise BadInput(
+        "start of a fit",
+        ", ".join(run.name for run in point.runs),
+        f"a motion that leaves the range of numbers, with {values}",
+        "one that the runs can be compared with",
+        "give the plant file values nearer to the rig, or cut logs into shorter windows with --window",
+    )
 
 
 def problem_of(runs: tuple[Run, ...], own: tuple[str, ...], ranges: Mapping[str, Range], before: Belief) -> Problem:

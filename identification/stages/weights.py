@@ -1,6 +1,8 @@
 """What each reading is worth, by the residuals of a fit: the size of their errors, and how long these last."""
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import norm
 
 from identification.fit.normal_equations import Point
 from identification.fit.problem import Problem
@@ -17,9 +19,15 @@ def by_channel(_: Problem, point: Point) -> tuple[Run, ...]:
             mine = run.channel == number
             if mine.sum() > 1:
                 rounded = run.step.size > 0 and run.step[number] > 0.0
-                sd[mine] *= max(float(np.sqrt(np.mean(residual[mine] ** 2))), 1.0 if rounded else 1e-3)
+                sd[mine] *= max(_rms(residual[mine]), 1.0 if rounded else 1e-3)
         runs.append(with_sd(run, sd))
     return tuple(runs)
+
+
+def _rms(residual: NDArray[np.float64]) -> float:
+    """The rms, also of residuals whose squares leave the range of numbers; 1, which changes no weight, where one of them has left it."""
+    rms = float(norm(residual, check_finite=False)) / np.sqrt(residual.size)
+    return rms if np.isfinite(rms) else 1.0
 
 
 def by_correlation(problem: Problem, point: Point) -> tuple[Run, ...]:

@@ -14,6 +14,7 @@ from identification.runs.log_run import log_run
 from identification.runs.prediction import blocks
 from identification.runs.run import coefficient_names
 from identification.stages.estimate import estimate, problem_of
+from identification.stages.weights import by_channel
 from records.errors import BadInput
 from tests.soak import sampled
 
@@ -125,6 +126,26 @@ def test_a_start_from_which_no_motion_comes_back_is_given_back(bound, work):
     point = solve(problem_of((run,), ("K_A",), {"K_A": Range(1e150, 0.0, 1e151, 1e150)}, NOTHING))
     assert point.theta.tolist() == [1e150]
     assert point.steps == 0
+
+
+def test_residuals_whose_squares_leave_the_range_of_numbers_still_weigh_readings(bound, work):
+    """1e200 times what the readings were worth: their sd is that many times larger then, and of an infinite one as it was."""
+    run = log_run(bound, work.log, "log", 5.0, at_first=work.x0)
+    point = solve(problem_of((run,), ("J_A",), ranges_of(bound, ("J_A",)), NOTHING))
+    for size, times in ((1e200, 1e200), (np.inf, 1.0)):
+        far = tuple(replace(block, residual=np.full_like(block.residual, size)) for block in point.blocks[0])
+        (weighed,) = by_channel(None, replace(point, blocks=(far,)))
+        np.testing.assert_allclose(weighed.sd, run.sd * times, rtol=1e-12)
+
+
+def test_a_fit_whose_start_no_run_can_be_compared_with_is_refused(bound, work):
+    """A friction of -1e20 N m s drives the axis out of the range of numbers within a sample."""
+    log = replace(work.log, t_s=work.log.t_s[:50], u=work.log.u[:50], y=work.log.y[:50])
+    run = log_run(bound, log, "log", 2.0, at_first=work.x0)
+    with pytest.raises(
+        BadInput, match=r"log: start of a fit: got a motion that leaves the range of numbers, with b_vA"
+    ):
+        estimate([run], ("b_vA",), {"b_vA": Range(-1e20, -1e21, 0.1, 1e20)}, NOTHING)
 
 
 def test_starts_whose_slopes_have_grown_past_all_digits_can_still_be_solved_for(work):
