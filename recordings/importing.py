@@ -137,7 +137,9 @@ def _columns(of: Source, mapping: ColumnMapping, columns: LogColumns) -> tuple[d
 def _incomplete(missing: list[str], of: Source, columns: LogColumns, said: Mapping[str, str]) -> BadInput:
     """What is said where columns are not found: the file's signals, and a mapping to begin with."""
     if of.contents.unread and not of.signals:
-        told = "; ".join(f"{name} is {what}" for name, what in list(of.contents.unread.items())[:3])
+        kinds = dict.fromkeys(of.contents.unread.values())
+        names = {kind: [name for name, what in of.contents.unread.items() if what == kind] for kind in kinds}
+        told = "; ".join(f"{listed(own, 60)}: {kind}" for kind, own in list(names.items())[:3])
         return BadInput("signals", of.where, told, "vectors of numbers", "save them as plain vectors")
     if TIME not in said and not of.clocks:
         missing = [TIME, *missing]

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from recordings.channels import Array, Channel, Span, taken
+from recordings.signals import counted
 from records.log import LogColumns
 from records.logs.restarts import pause_s, restart_rows
 
@@ -66,7 +67,9 @@ def in_order(channels: Mapping[str, Channel], columns: LogColumns, span: Span) -
         if late.any() and late.sum() < 0.5 * late.size:
             kept[name] = taken(channel, ~late)
             first_s = channel.t_s[late][0]
-            told.append(f"{name}: {late.sum()} samples whose time does not rise are left out, first at {first_s:.9g} s")
+            told.append(
+                f"{name}: {counted(late.sum(), 'samples')} whose time does not rise left out, first at {first_s:.9g} s"
+            )
     return kept, told
 
 

@@ -50,7 +50,7 @@ def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, 
     """The signal of each column, the likest pair first; a last column takes the only signal that is left in a unit of its own."""
     pairs = [(likeness(column, name, signal), column, name) for column in needed for name, signal in free.items()]
     chosen: dict[str, str] = {}
-    for score, column, name in sorted(pairs, key=lambda pair: -pair[0]):
+    for score, column, name in sorted(pairs, key=lambda pair: (-pair[0], not _varies(free[pair[2]]))):
         if score >= LEAST and column not in chosen and name not in chosen.values():
             chosen[column] = name
     for column in needed:
@@ -58,6 +58,12 @@ def _most_alike(needed: Sequence[str], free: Mapping[str, Signal]) -> dict[str, 
         if column not in chosen and len(fitting) == 1:
             chosen[column] = fitting[0]
     return chosen
+
+
+def _varies(signal: Signal) -> bool:
+    """Whether a signal is not one number all the time, as the offset in a message's layout is."""
+    finite = signal.values[np.isfinite(signal.values)]
+    return bool(finite.size and np.any(finite != finite[0]))
 
 
 def _fits(column: str, name: str, signal: Signal) -> bool | None:

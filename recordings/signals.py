@@ -1,7 +1,9 @@
 """What a file holds, whatever its format: signals by name, each with its unit and its clock."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +33,7 @@ class Contents:
     """Signals by name (`run1.psi_rad`, `ScopeData.signals(2).values`), texts by name (loop, table_digest), and what was found unasked.
 
     `unread` tells by name what the file holds that is no signal; `singles` are numbers of one value; `locked` axes are stated by a file
-    that was made of a run log alone.
+    that was made of a run log alone. `groups` are the groups of signals by the names that the file gives them.
     """
 
     signals: Mapping[str, Signal]
@@ -40,9 +42,21 @@ class Contents:
     unread: Mapping[str, str] = field(default_factory=dict)
     locked: tuple[str, ...] = ()
     singles: Mapping[str, Signal] = field(default_factory=dict)
+    groups: Mapping[str, str] = field(default_factory=dict)
 
 
 def listed(names: Mapping[str, object] | list[str] | tuple[str, ...], most: int = 300) -> str:
-    """Names in a row for an error's line, cut at `most` characters."""
-    text = ", ".join(names) or "nothing of numbers"
+    """Names in a row for an error's line, entries of one array as `output[0..15]`, cut at `most` characters."""
+    text = ", ".join(_in_short(list(names))) or "nothing of numbers"
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def counted(number: int, things: str) -> str:
+    """A number of things, the last letter of whose name goes where there is but one: `1 sample`, `2 samples`."""
+    return f"{number} {things[:-1] if number == 1 else things}"
+
+
+def _in_short(names: list[str]) -> Iterator[str]:
+    for stem, entries in groupby(names, key=lambda name: re.sub(r"\[\d+\]$", "", name)):
+        own = list(entries)
+        yield f"{own[0][:-1]}..{own[-1][len(stem) + 1 :]}" if len(own) > 1 and own[0] != stem else own[0]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from recordings.formats.clocks import with_clocks
-from recordings.formats.matlab_objects import WHAT
+from recordings.formats.matlab_objects import what
 from recordings.formats.nested import Unreadable, flat
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
@@ -74,7 +74,7 @@ def _value(node: Any, file: Any) -> Any:
         return _entries(fields) if all(_is_field_of_several(node[name]) for name in node) else fields
     kind = _kind(node)
     if "MATLAB_object_decode" in node.attrs or kind in ("function_handle", "timeseries"):
-        return Unreadable(WHAT)
+        return Unreadable(what(kind))
     if node.attrs.get("MATLAB_empty"):
         return np.zeros(0)
     if node.dtype.kind == "O" and node.dtype.metadata and "ref" in node.dtype.metadata:

@@ -12,7 +12,7 @@ from scipy.sparse import issparse
 
 from recordings.formats import hdf5
 from recordings.formats.clocks import is_time_name, with_clocks
-from recordings.formats.matlab_objects import WHAT, with_objects
+from recordings.formats.matlab_objects import what, with_objects
 from recordings.formats.nested import Unreadable, flat
 from recordings.layout import TextLayout
 from recordings.signals import Contents
@@ -85,4 +85,12 @@ def _readable(value: Any) -> Any:
         return {name: _readable(inner) for name, inner in value.items()}
     if issparse(value):
         return value.toarray() if 1 in value.shape else Unreadable("a sparse matrix")
-    return Unreadable(WHAT) if isinstance(value, (MatlabOpaque, MatlabFunction)) else value
+    if isinstance(value, MatlabOpaque):
+        return Unreadable(what(_class_of(value)))
+    return Unreadable(what()) if isinstance(value, MatlabFunction) else value
+
+
+def _class_of(value: Any) -> str:
+    """MATLAB's class of an object that SciPy leaves closed."""
+    kind = value.flat[0]["s2"] if value.size and "s2" in (value.dtype.names or ()) else b""
+    return kind.decode(errors="replace") if isinstance(kind, bytes) else ""

@@ -11,11 +11,21 @@ from recordings.formats.nested import Unreadable
 from recordings.formats.optional import is_installed
 
 EXTRA = "matlab"
-SAVE = (
-    "save('log.mat', '-struct', 's') with s.Time = x.Time and s.Data = x.Data of a timeseries, "
-    "s = table2struct(x, 'ToScalar', true) of a table"
+SERIES = "s.x.Time = x.Time; s.x.Data = x.Data"
+LOGGED = "of each signal x = {}.get('x').Values; " + SERIES
+TABLE = "s = table2struct(x, 'ToScalar', true)"
+TIMETABLE = (
+    "s = table2struct(timetable2table(x, 'ConvertRowTimes', false), 'ToScalar', true); "
+    "s.Time = seconds(x.Properties.RowTimes - x.Properties.RowTimes(1))"
 )
-WHAT = f"a MATLAB object: install mat-io, the extra {EXTRA}, or in MATLAB {SAVE}"
+# What turns an object x of a class into a structure s of vectors, to be saved with save('log.mat', '-struct', 's').
+AS_STRUCTURE = {
+    "timeseries": SERIES,
+    "table": TABLE,
+    "timetable": TIMETABLE,
+    "Simulink.SimulationData.Dataset": LOGGED.format("DATASET"),
+    "Simulink.SimulationOutput": LOGGED.format("OUTPUT.logsout"),
+}
 UNITS_S = {
     "weeks": 604800.0, "days": 86400.0, "hours": 3600.0, "minutes": 60.0, "seconds": 1.0,
     "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9,
@@ -23,6 +33,17 @@ UNITS_S = {
 NAMELESS = "(object)"
 UNNAMED = "unnamed"  # MATLAB's name of a timeseries that was given none
 DEEPEST = 12  # objects within objects; MATLAB's own are three deep, and one may hold itself
+
+
+def what(kind: str = "") -> str:
+    """What is said of an object of a class that cannot be read here, with what to type in MATLAB."""
+    return f"a MATLAB object{f' of class {kind}' if kind else ''}: install mat-io, the extra {EXTRA}, or in MATLAB {_save(kind)}"
+
+
+def _save(kind: str) -> str:
+    known = AS_STRUCTURE.get(kind)
+    ways = known or f"{SERIES} of a timeseries x, {TABLE} of a table"
+    return f"{ways}; save('log.mat', '-struct', 's')"
 
 
 def with_objects(content: Mapping[str, Any], path: Path) -> dict[str, Any]:
@@ -40,7 +61,7 @@ def with_objects(content: Mapping[str, Any], path: Path) -> dict[str, Any]:
         try:
             read = load_from_mat(str(path))
         except Exception as error:  # a class of its own for each part of the format
-            told = f"a MATLAB object that mat-io cannot read ({type(error).__name__}): in MATLAB {SAVE}"
+            told = f"a MATLAB object that mat-io cannot read ({type(error).__name__}): in MATLAB {_save('')}"
             return {**known, **{name: Unreadable(told) for name in content if name not in known}}
     return {
         **known,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
-from recordings.signals import Contents, Signal
+from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
 
 Array = NDArray[np.float64]
@@ -68,7 +68,9 @@ def contents_of(groups: Sequence[Group]) -> Contents:
             signals[name] = Signal(channel.values, channel.unit, clock)
         unread |= dict.fromkeys(group.unread, "text or a structure, no numbers")
     texts = {"sidecar": filled[0].comment} if filled else {}
-    return Contents(signals, texts, _told(groups, filled), unread)
+    named = Counter(group.name for group in filled)
+    own = {group.name: f"group{group.number}" for group in filled if group.name and named[group.name] == 1}
+    return Contents(signals, texts, _told(groups, filled), unread, groups=own)
 
 
 def _free(name: str, signals: dict[str, Signal]) -> str:
@@ -83,7 +85,7 @@ def _told(groups: Sequence[Group], filled: Sequence[Group]) -> tuple[str, ...]:
     empty = len(groups) - len(filled)
     shown = ", ".join(f"group {g.number}{f' {g.name}' if g.name else ''}: {g.t_s.size} samples" for g in filled[:8])
     told = [shown] if len(filled) > 1 else []
-    return (*told, *((f"{empty} groups without samples are passed over",) if empty else ()))
+    return (*told, *((f"{counted(empty, 'groups')} without samples passed over",) if empty else ()))
 
 
 def _group(recording: Any, number: int) -> Group:

@@ -37,6 +37,8 @@ def flat(content: Mapping[str, Any]) -> Flat:
             found.signals[name] = Signal(np.squeeze(array).astype(float))
         elif array.size == 1:
             found.singles[name] = Signal(np.squeeze(array).astype(float))
+        else:
+            found.unread[name] = "empty"
     return found
 
 

@@ -1,12 +1,16 @@
 """Parquet files, by way of the optional package pyarrow."""
 
+from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from recordings.formats.clocks import with_clocks
+from recordings.formats.messages import LONGEST_ARRAY
 from recordings.formats.optional import package
+from recordings.formats.text.cells import from_the_first_s
 from recordings.formats.text.headings import name_and_unit
 from recordings.layout import TextLayout
 from recordings.signals import Contents, Signal
@@ -16,7 +20,7 @@ _NS = 1e-9
 
 
 def read(path: Path, asked: TextLayout) -> Contents:
-    """The columns of numbers, those of a structure behind a point, dates in seconds from the first.
+    """The columns of numbers, those of a structure behind a point, entries of arrays as `name[0]`, dates in seconds from the first.
 
     Raises BadInput when pyarrow is not installed, and for no Parquet file.
     """
@@ -34,8 +38,7 @@ def read(path: Path, asked: TextLayout) -> Contents:
         table = table.flatten()
     signals: dict[str, Signal] = {}
     unread: dict[str, str] = {}
-    for heading, column in zip(table.column_names, table.columns, strict=True):
-        name, unit = name_and_unit(heading)
+    for name, unit, heading, column in _columns(table):
         values, stated = _numbers(column)
         if values is None:
             unread[name] = f"of the type {column.type}, no numbers"
@@ -44,10 +47,25 @@ def read(path: Path, asked: TextLayout) -> Contents:
     return Contents(with_clocks(signals), unread=unread)
 
 
+def _columns(table: Any) -> Iterator[tuple[str, str, str, Any]]:
+    """The columns with name, unit and heading, arrays of one length one entry after another."""
+    compute = import_module("pyarrow.compute")
+    for heading, column in zip(table.column_names, table.columns, strict=True):
+        name, unit = name_and_unit(heading)
+        lengths = compute.list_value_length(column).unique().to_pylist() if "list" in str(column.type) else [None]
+        if len(lengths) == 1 and lengths[0] is not None and lengths[0] <= LONGEST_ARRAY:
+            for index in range(lengths[0]):
+                yield f"{name}[{index}]", unit, f"{heading}[{index}]", compute.list_element(column, index)
+        else:
+            yield name, unit, heading, column
+
+
 def _numbers(column: Any) -> tuple[np.ndarray | None, str]:
     """The values as floats, NaN where there is none, and the unit that their type has."""
     if str(column.type).startswith("decimal"):
         column = column.cast("double")
+    if str(column.type).startswith("time") and not str(column.type).startswith("timestamp"):
+        return from_the_first_s(column.cast("time64[ns]").cast("int64").to_numpy().astype(float) * _NS), "s"
     values = column.to_numpy()
     if values.dtype.kind == "M":
         there = values[~np.isnat(values)]

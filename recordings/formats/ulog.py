@@ -4,12 +4,13 @@ import io
 from collections import Counter
 from contextlib import redirect_stdout
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from recordings.formats.optional import package
 from recordings.layout import TextLayout
-from recordings.signals import Contents, Signal
+from recordings.signals import Contents, Signal, counted
 from records.errors import BadInput
 
 _US = 1e-6
@@ -43,7 +44,9 @@ def read(path: Path, asked: TextLayout) -> Contents:
     return Contents(signals, found=_told(log))
 
 
-def _told(log: object) -> tuple[str, ...]:
-    dropouts = list(getattr(log, "dropouts", ()))
+def _told(log: Any) -> tuple[str, ...]:
+    dropouts = list(log.dropouts)
     lost_s = sum(dropout.duration for dropout in dropouts) * 1e-3
-    return (f"the logger lost {lost_s:g} s in {len(dropouts)} drop-outs",) if dropouts else ()
+    damaged = ["the file is damaged: what could not be read is passed over"] if log.file_corruption else []
+    lost = [f"the logger lost {lost_s:g} s in {counted(len(dropouts), 'drop-outs')}"] if dropouts else []
+    return (*damaged, *lost)

@@ -61,7 +61,9 @@ def _without_leaps(values: Array, factor: float, unit: str | None) -> tuple[Arra
 
 
 def _check_numbers(name: str, text: str, values: Array, found: Looked, of: Source) -> None:
-    """Refuses an expression of which no number comes out although there were some."""
+    """Refuses an expression of which no number comes out although there were some, and one of signals without samples."""
+    if not values.size:
+        raise BadInput(f"column {name!r}", of.where, f"no sample of {text}", "samples", "record or export it again")
     if not np.isfinite(values).any() and all(np.isfinite(used).any() for _, used in found.used):
         raise BadInput(f"column {name!r}", f"mapping {text!r}", "no finite number from it", "numbers", "mend it")
 

@@ -38,8 +38,16 @@ class Source:
 
 
 def source(contents: Contents, where: str, group: str | None, per_turn: float | None, time: str | None) -> Source:
-    """What expressions are about; raises BadInput for a group that no signal is of."""
-    if group is not None and not any(is_under(name, group) for name in contents.signals):
-        got = f"nothing under {group!r} among {listed(list(contents.signals))}"
+    """What expressions are about; a group is meant by the name that the file gives it too. Raises BadInput for one of no signal."""
+    meant = None if group is None else contents.groups.get(group, group)
+    if meant is not None and not any(is_under(name, meant) for name in contents.signals):
+        got = f"nothing under {group!r} among {listed(_groups(contents) or list(contents.signals))}"
         raise BadInput("group", where, got, "a group of the file", "name another with --group")
-    return Source(contents, where, group, per_turn, time)
+    return Source(contents, where, meant, per_turn, time)
+
+
+def _groups(contents: Contents) -> list[str]:
+    """The groups, structures or topics of a file, with the names that it gives them."""
+    names = {group: name for name, group in contents.groups.items()}
+    scopes = dict.fromkeys(name.partition(".")[0] for name in contents.signals if "." in name)
+    return [f"{scope} ({names[scope]})" if scope in names else scope for scope in scopes]

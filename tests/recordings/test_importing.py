@@ -335,6 +335,18 @@ def test_times_that_look_like_milliseconds_are_remarked(tmp_path: Path) -> None:
     assert any("rows are 10 s apart" in told for told in done.found)
 
 
+@pytest.mark.parametrize("suffix", [".mat", ".parquet"])
+def test_a_column_without_samples_is_named(suffix: str, tmp_path: Path) -> None:
+    if suffix == ".parquet":
+        parquet, pa = pytest.importorskip("pyarrow.parquet"), pytest.importorskip("pyarrow")
+        parquet.write_table(pa.table({name: pa.array([], type=pa.float64()) for name in RUN}), tmp_path / "run.parquet")
+    else:
+        _saved(tmp_path / "run.mat", phi_rad=np.zeros(0))
+    told = {".mat": r"psi_rad, phi_rad \(empty\)", ".parquet": "column 'u_M_V': got no sample of u_M_V"}[suffix]
+    with pytest.raises(BadInput, match=told):
+        imported_here(tmp_path / f"run{suffix}", ColumnMapping())
+
+
 def test_counts_convert_by_the_turn(tmp_path: Path) -> None:
     changes = {"psi_rad": None, "psi_counts": np.arange(50.0)}
     path = _saved(tmp_path / "run.mat", **changes)
@@ -436,7 +448,7 @@ def test_samples_whose_time_does_not_rise_are_left_out_and_a_clock_that_mostly_s
     savemat(tmp_path / "run.mat", {**RUN, "t_s": stamps})
     done = imported_here(tmp_path / "run.mat", ColumnMapping())
     np.testing.assert_array_equal(done.log.t_s, np.delete(T_S, [7, 30]))
-    assert "psi_rad: 2 samples whose time does not rise are left out, first at 0.06 s" in done.found
+    assert "psi_rad: 2 samples whose time does not rise left out, first at 0.06 s" in done.found
     savemat(tmp_path / "run.mat", {**RUN, "t_s": np.floor(T_S * 20.0) / 20.0})
     with pytest.raises(BadInput, match=r"expected times that increase; say --column t_s=0\.01\*row"):
         imported_here(tmp_path / "run.mat", ColumnMapping())

@@ -23,7 +23,7 @@ from recordings.formats.text.decoding import decoded
 from recordings.formats.text.headings import name_and_unit
 from recordings.formats.text.layout import COMMENTS, SAMPLE_LINES, SEPARATORS, Layout, Line, find_layout, split
 from recordings.layout import TextLayout
-from recordings.signals import Contents, Signal
+from recordings.signals import Contents, Signal, counted
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def _lines(text: str, skip: int) -> tuple[list[Line], list[Line], str | None]:
 
 
 def _comments(comments: Sequence[Line]) -> tuple[str, ...]:
-    return (f"{len(comments)} lines of comment",) if comments else ()
+    return (f"{counted(len(comments), 'lines')} of comment",) if comments else ()
 
 
 def _without_headers(lines: Sequence[Line], layout: Layout) -> tuple[Sequence[Line], list[str]]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from recordings.formats.matlab_objects import what
 from recordings.mapping.mapping import ColumnMapping
 from records.errors import BadInput
 from tests.recordings.here import imported_here
@@ -64,5 +65,12 @@ def test_without_the_package_the_line_of_matlab_that_saves_them_readable_is_name
     saved = {name: series(values, "", stored=True) for name, values in RUN.items()}
     matio.save_to_mat(str(tmp_path / "run.mat"), saved, version=version)
     monkeypatch.setitem(sys.modules, "matio", None)
-    with pytest.raises(BadInput, match=r"install mat-io, the extra matlab, or in MATLAB save\('log.mat'"):
+    with pytest.raises(
+        BadInput, match=r"of class timeseries: install .* in MATLAB s\.x\.Time = x\.Time; s\.x\.Data = x\.Data; save\('"
+    ):
         imported_here(tmp_path / "run.mat", ColumnMapping())
+
+
+def test_the_class_of_an_object_says_what_to_type() -> None:
+    assert "x = OUTPUT.logsout.get('x').Values" in what("Simulink.SimulationOutput")
+    assert "seconds(x.Properties.RowTimes - x.Properties.RowTimes(1))" in what("timetable")

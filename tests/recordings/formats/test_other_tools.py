@@ -102,6 +102,15 @@ def _parquet(path: Path) -> None:
     parquet.write_table(pa.table(columns), path)
 
 
+def _parquet_arrays(path: Path) -> None:
+    """Both signals as arrays of one length, at times of day past midnight."""
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    day_ns = [(86_399_900_000_000 + 10_000_000 * k) % 86_400_000_000_000 for k in range(N)]
+    times = pa.array(day_ns, type=pa.time64("ns"))
+    arrays = [[u, 1e3 * q] for u, q in zip(*RUN.values(), strict=True)]
+    parquet.write_table(pa.table({"when": times, "both": arrays}), path)
+
+
 def _mcap_json(path: Path) -> None:
     writer_module = pytest.importorskip("mcap.writer")
     with path.open("wb") as stream:
@@ -141,6 +150,7 @@ CASES: Mapping[str, tuple[str, Callable[[Path], None], dict[str, str]]] = {
     "version 7.3, a scope": ("run.mat", lambda path: _hdf5(path, scope=True), {}),
     "PX4": ("run.ulg", _ulog, {"u_V": "drive.control[0]", "q_m": "encoder[1].x"}),
     "Parquet": ("run.parquet", _parquet, {}),
+    "Parquet of arrays": ("run.parquet", _parquet_arrays, {"u_V": "both[0]", "q_m": "both[1]*0.001"}),
     "MCAP of JSON": ("run.mcap", _mcap_json, {"q_m": "/rig.arm.q[1]"}),
     "ROS 2 bag": ("run", _bag, {"q_m": "arm.vector.y"}),
 }
@@ -151,6 +161,22 @@ def test_each_format_gives_the_run_in_si_units(case: str, tmp_path: Path) -> Non
     name, write, columns = CASES[case]
     write(tmp_path / name)
     _is_the_run(_log(tmp_path / name, **columns))
+
+
+@pytest.mark.parametrize("damaged", [False, True])
+def test_a_log_of_px4_with_a_hole_in_it_is_said_to_be_damaged(damaged: bool, tmp_path: Path) -> None:
+    pytest.importorskip("pyulog")
+    _ulog(tmp_path / "run.ulg")
+    content = bytearray((tmp_path / "run.ulg").read_bytes())
+    if damaged:
+        content[600:700] = bytes(100)
+    (tmp_path / "run.ulg").write_bytes(content)
+    told = imported_here(
+        tmp_path / "run.ulg",
+        ColumnMapping(columns={"u_V": "drive.control[0]", "q_m": "encoder[1].x"}, plant="emps"),
+        Span(),
+    ).found
+    assert ("the file is damaged: what could not be read is passed over" in told) is damaged
 
 
 def test_a_topic_in_two_instances_is_asked_for(tmp_path: Path) -> None:
