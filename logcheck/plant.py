@@ -12,6 +12,7 @@ from logcheck.motion import motion_findings
 from logcheck.units import rate_unit, reference_unit, rotor_unit
 from records.errors import BadInput
 from records.log import RunLog
+from records.logs.clock import finer_unit
 from sim.bind import BoundPlant
 from sim.equilibrium import equilibrium
 
@@ -71,7 +72,7 @@ def _time_unit(log: RunLog, name: str, bound: BoundPlant) -> Iterator[Found]:
     if period_s < thresholds.SLOW_S or not bound.model.axes:
         return
     severity = REFUSE if period_s >= thresholds.STANDING_S else NOTE
-    sentence = f"rows are {period_s:g} s apart, by the sidecar too: are these milliseconds?"
+    sentence = f"rows are {period_s:g} s apart, by the sidecar too: are these {finer_unit(period_s)[0]}?"
     span = (float(log.t_s[0]), float(log.t_s[-1]))
     expected, remedy = "t_s and sample_period_s in seconds", "convert both to seconds"
     yield Found(Finding("time_unit", name, "t_s", *span, sentence, severity, 0, expected, remedy))

@@ -20,6 +20,7 @@ from recordings.proposal import proposed
 from recordings.signals import Contents, listed
 from records.errors import BadInput
 from records.log import LOOPS, LogColumns, RunLog, facts_of_sidecar
+from records.logs.clock import finer_unit
 from records.plant import load_plant
 from records.text.units import unit_of
 from sim.columns import log_columns
@@ -28,11 +29,6 @@ from sim.plants import MODELS
 
 DEFAULT_PLANT = "ce150"
 SLOW_S = 1.0  # between rows: a rig that moves within seconds is sampled faster
-FINER = (
-    (1e5, "ns", "1e-9"),
-    (200.0, "us", "1e-6"),
-    (SLOW_S, "ms", "0.001"),
-)  # as such rows would be 0.1 ms to 1 s apart
 MOST_TURNS = 3  # of an angle that nothing is said of: no axis here turns more in a log, degrees and counts do at once
 EPOCH_S = 1e8  # times beyond it, three years, are of a calendar and not of a run: they are counted from the first
 
@@ -195,7 +191,7 @@ def _doubtful(log: RunLog) -> list[str]:
     """Times that look like milliseconds, and angles like degrees or counts, which nothing said to be such."""
     told = []
     if log.sample_period_s >= SLOW_S:
-        unit, factor = next((u, f) for least, u, f in FINER if log.sample_period_s >= least)
+        unit, factor = finer_unit(log.sample_period_s)
         told.append(f"rows are {log.sample_period_s:g} s apart: if times are in {unit}, say --column t_s=...*{factor}")
     for name in log.columns.outputs:
         reached = float(np.nanmax(np.abs(log.column(name)), initial=0.0))

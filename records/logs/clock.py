@@ -8,6 +8,17 @@ from records.errors import BadInput
 OTHER_UNIT = 300.0  # times the stated period and more are no jitter and no lost rows, but another unit
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds", 1.0 / 60.0: "minutes", 1.0 / 3600.0: "hours"}
 CLOSE = 1.5  # a unit is named where the rows are so near to it
+EXACT = 1.02  # minutes are only 60 seconds: told where the rows are this near to them, as logs are kept 40 or 70 times as dense too
+FINER = (
+    (1e5, "nanoseconds", "1e-9"),
+    (200.0, "microseconds", "1e-6"),
+    (0.0, "milliseconds", "0.001"),
+)  # what rows of a rig are probably counted in that are so many seconds apart and more: they would be 0.1 ms to 1 s apart
+
+
+def finer_unit(period_s: float) -> tuple[str, str]:
+    """The unit that times of rows so far apart [s] are probably in, and its factor to seconds as it is typed."""
+    return next((unit, factor) for least_s, unit, factor in FINER if period_s >= least_s)
 
 
 def demand_seconds(t_s: NDArray[np.float64], sample_period_s: float, where: str) -> None:
@@ -16,7 +27,7 @@ def demand_seconds(t_s: NDArray[np.float64], sample_period_s: float, where: str)
         return
     usual = float(np.median(np.diff(t_s)))
     ratio = usual / sample_period_s
-    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT:
+    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT or 1.0 / EXACT < 60.0 * ratio < EXACT:
         unit = next((name for factor, name in UNITS.items() if factor / CLOSE < ratio < factor * CLOSE), None)
         raise BadInput(
             "time unit",

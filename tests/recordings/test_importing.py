@@ -330,9 +330,13 @@ def test_a_sparse_vector_is_a_vector_and_a_sparse_matrix_is_left_alone(tmp_path:
     np.testing.assert_array_equal(done.log.column("psi_rad"), RUN["psi_rad"])
 
 
-def test_times_that_look_like_milliseconds_are_remarked(tmp_path: Path) -> None:
-    done = imported_here(_saved(tmp_path / "run.mat", t_s=1e3 * T_S), ColumnMapping())
-    assert any("rows are 10 s apart" in told for told in done.found)
+@pytest.mark.parametrize(
+    ("factor", "unit"), [("0.001", "milliseconds"), ("1e-6", "microseconds"), ("1e-9", "nanoseconds")]
+)
+def test_times_that_look_like_parts_of_a_second_are_remarked(factor: str, unit: str, tmp_path: Path) -> None:
+    done = imported_here(_saved(tmp_path / "run.mat", t_s=T_S / float(factor)), ColumnMapping())
+    told = f"rows are {0.01 / float(factor):g} s apart: if times are in {unit}, say --column t_s=...*{factor}"
+    assert told in done.found
 
 
 @pytest.mark.parametrize("suffix", [".mat", ".parquet"])

@@ -69,7 +69,14 @@ def test_an_empty_cell_of_an_output_is_a_value_that_was_not_measured(files):
 
 
 @pytest.mark.parametrize(
-    ("period", "unit"), [("10", "milliseconds"), ("10000", "microseconds"), ("1e7", "nanoseconds"), ("7", "7 s apart")]
+    ("period", "unit"),
+    [
+        ("10", "milliseconds"),
+        ("10000", "microseconds"),
+        ("1e7", "nanoseconds"),
+        ("7", "7 s apart"),
+        (str(0.01 / 60.0), "minutes"),
+    ],
 )
 def test_times_in_another_unit_are_refused_wherever_a_log_is_read(files, period, unit):
     rows = "".join(f"{row * float(period)},5.0,1.8,-0.1,0.0\n" for row in range(4))
