@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from identification.frequency.match.cost import GOOD_COHERENCE
 from identification.frequency.match.fit import FrequencyFit
+from identification.frequency.match.intervals import BLIND, slopes
 from identification.frequency.models.linear_model import held_response
 from identification.frequency.pairs import Pair
 from identification.frequency.responses.conditioned import Responses
@@ -17,6 +18,9 @@ Array = NDArray[np.float64]
 POOR_J = 100.0
 SAME_J = 1.01
 MOST_BANDS = 3
+SHARED = (
+    0.1  # of the part of the parameter that a direction moves most: one that it moves less has little to do with it
+)
 
 
 def notes_on(estimates: Sequence[Estimated], fit: FrequencyFit, pairs: Sequence[Pair]) -> tuple[str, ...]:
@@ -62,7 +66,10 @@ def doubts(fit: FrequencyFit, pairs: Sequence[Pair]) -> tuple[str, ...]:
 
 
 def _reason(fit: FrequencyFit, name: str) -> str:
-    """Where a parameter would show best, and over which frequencies coherence lacks there."""
+    """With which others it can change unseen; else where it would show best, and over which frequencies coherence lacks there."""
+    for names in together(fit):
+        if name in names:
+            return f"{', '.join(names)} can change together unseen: hold one of them (--free)"
     shown = _shows(fit, fit.model.names.index(name))
     o, i = np.unravel_index(int(np.argmax(shown)), shown.shape)
     weak = _weak_bands(fit.responses, int(o), int(i))
@@ -74,6 +81,15 @@ def _reason(fit: FrequencyFit, name: str) -> str:
         share = float(np.mean(fit.responses.coherence[:, o, i] < GOOD_COHERENCE))
         bands = f"over {100.0 * share:.0f} % of the band"
     return f"{where}, whose coherence is below {GOOD_COHERENCE:g} {bands}"
+
+
+def together(fit: FrequencyFit) -> list[list[str]]:
+    """The parameters of each direction that the responses do not see, though they see each of these alone."""
+    size = np.maximum(np.abs(fit.theta), 1e-12)
+    alone = np.sum((fit.slopes * size) ** 2, axis=0)
+    parts = np.abs(slopes(fit.slopes, size).unseen / size) * (alone > BLIND * np.max(alone))
+    found = [[name for name, part in zip(fit.model.names, one, strict=True) if part > SHARED] for one in parts]
+    return [names for names in found if len(names) > 1]
 
 
 def _shows(fit: FrequencyFit, place: int) -> Array:

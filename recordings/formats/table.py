@@ -50,9 +50,9 @@ SUFFIXES = tuple(_BY_SUFFIX)
 
 
 def is_file(name: str) -> bool:
-    """Whether a word of the command line means a file, and not a data set."""
+    """Whether a word of the command line means a file, and not a data set, whose names have no ending."""
     path = Path(name)
-    return path.suffix.lower() in SUFFIXES or path.exists() or "/" in name
+    return bool(path.suffix) or path.exists() or "/" in name
 
 
 def read(path: Path, asked: TextLayout) -> Contents:

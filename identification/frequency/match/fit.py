@@ -176,7 +176,7 @@ def _with_intervals(
     return FrequencyFit(
         model=work.model,
         theta=best.theta,
-        covariance=covariance(now, work.records, left, points, slopes(J, work.size)),
+        covariance=covariance(now, work.records, left, points, slopes(J, np.maximum(work.size, np.abs(best.theta)))),
         J=best.J,
         r=r,
         responses=now,

@@ -39,11 +39,14 @@ class Slopes:
 
 
 def slopes(J: Array, size: Array) -> Slopes:
-    """From the slopes J (2 m, parameters) of the residual; `unseen` (directions, parameters) in units of the parameters."""
+    """From the slopes J (2 m, parameters) of the residual; `unseen` (directions, parameters) in units of the parameters, each as long as
+    the `size` of the parameter that it moves most.
+    """
     values, vectors = np.linalg.eigh((J * size).T @ (J * size))
     seen = values > BLIND * values[-1]
     inverse = (vectors[:, seen] / values[seen]) @ vectors[:, seen].T
-    return Slopes(size[:, None] * inverse @ (J * size).T, (vectors[:, ~seen] * size[:, None]).T)
+    unseen = vectors[:, ~seen] / np.max(np.abs(vectors[:, ~seen]), axis=0)
+    return Slopes(size[:, None] * inverse @ (J * size).T, (unseen * size[:, None]).T)
 
 
 def covariance(base: Responses, records: Sequence[Record], left: Sequence[Array], points: Target, of: Slopes) -> Array:

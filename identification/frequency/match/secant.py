@@ -26,6 +26,7 @@ SETTLED = 1e-7  # relative gain of J by a new set of points that is none
 # Relative gain of J over as many steps as new points would cost, below which secants are turned no further.
 STALE = 1e-3
 MU_MOST = 1e8
+SAME_DIGITS = 7  # of J, as far as a settled search brings it: SETTLED
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +60,11 @@ def secant_search(residual: Residual, start: Array, size: Array) -> Found | None
 
 
 def restarted(residual: Residual, starts: Iterable[Array], size: Array) -> tuple[Found, ...]:
-    """The search from each of `starts`, best first; those from which it cannot begin are left out."""
+    """The search from each of `starts`, best first, of those with the same J the one that began first; those from which it cannot begin
+    are left out.
+    """
     found = [entry for start in starts if (entry := secant_search(residual, start, size)) is not None]
-    return tuple(sorted(found, key=lambda entry: entry.J))
+    return tuple(sorted(found, key=lambda entry: float(f"{entry.J:.{SAME_DIGITS}g}")))
 
 
 def _through_points(residual: Residual, theta: Array, F: Array, size: Array, step: float) -> tuple[Array, int]:

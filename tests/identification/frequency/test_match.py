@@ -12,6 +12,7 @@ from identification.frequency.match import fit as fit_module
 from identification.frequency.match.fit import match
 from identification.frequency.models.lateral_record import lateral_model, lateral_records
 from identification.frequency.models.linear_model import held_response, operating_point_model
+from identification.frequency.notes import together
 from identification.frequency.responses.record import Record, record_of
 from identification.frequency.result import frequency_facts, frequency_identification, time_check
 from identification.proof.monte_carlo import coverage
@@ -131,6 +132,31 @@ def test_the_intervals_are_what_estimates_scatter_by(one_search):
     scatter, stated = np.std(values, axis=0), np.mean(sds, axis=0)
     np.testing.assert_allclose(stated, scatter, rtol=0.3)
     assert np.all(np.abs(np.mean(values, axis=0) - model.start) < 4.0 * scatter / np.sqrt(count))
+
+
+class LeverLag(Lag):
+    """The same with the gain as the product of two parameters, of which no response tells one alone."""
+
+    names = ("force", "lever", "T")
+    start = np.array([1.0, 2.0, 0.5])
+    spread = np.array([0.5, 1.0, 0.1])
+
+    def matrices(self, theta):
+        return super().matrices(np.array([theta[0] * theta[1], theta[2]]))
+
+
+def test_parameters_that_can_change_together_unseen_are_told_as_that():
+    """Truth: T 0.5 s is known to a per cent; force and lever each to no better than themselves, and the search stays at its own start."""
+    sweep, rng = design_sweep(0.8, 8.0, 0.05), np.random.default_rng(4)
+    u = sweep_input(sweep, 0.05 * np.arange(round(sweep.duration_s / 0.05)), 1.0)[:, None]
+    keep = np.exp(-0.05 / 0.5)
+    y = lfilter([0.0, 2.0 * (1.0 - keep)], [1.0, -keep], u, axis=0) + 0.01 * rng.standard_normal(u.shape)
+    fit = match(LeverLag(), [Record("lag", 0.05, u, y, u)], (0.8, 8.0))
+    force, lever, lag = fit.sd / np.abs(fit.theta)
+    assert min(force, lever) > 0.9
+    assert lag < 0.01
+    assert together(fit) == [["force", "lever"]]
+    np.testing.assert_allclose(fit.theta, LeverLag.start, rtol=0.05)
 
 
 INPUTS = ("inputs", (0.8, 0.8), 0.4, 4.0)
