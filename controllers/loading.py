@@ -21,7 +21,9 @@ _AGAIN = "design it again with `twinlaw design`"
 
 def load(path: Path) -> tuple[Controller, Any]:
     """The row of CONTROLLERS and its table; raises BadInput when the file is truncated, foreign, or does not match its own digest."""
-    content = checks.table(read_json(path, "controller table", "run `twinlaw design`", _AGAIN), str(path))
+    content = checks.table(
+        read_json(path, "controller table", "run `twinlaw design`, or name another with --table", _AGAIN), str(path)
+    )
     if content.get("schema") != SCHEMA:
         return CONTROLLERS["scheduled"], parse_table(content, str(path))
     row = CONTROLLERS.get(str(content.get("controller")))

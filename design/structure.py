@@ -77,7 +77,7 @@ def demand_helicopter(bound: BoundPlant, what: str = "image, board and line") ->
     lacking = missing(bound)
     if lacking:
         got = f"the equations of {bound.plant.model}, without {', '.join(lacking[:4])}{' and more' if len(lacking) > 4 else ''}"
-        expected = f"a helicopter with elevation and azimuth, as model ce150 has them: {what} are of its two loops"
+        expected = f"a helicopter with elevation and azimuth, as model ce150 has them, for {what}"
         remedy = "give such a plant; `design`, `generate`, `verify`, `simulate`, `identify` and `diagnose` take others"
         raise BadInput(f"plant for {what}", f"plant {bound.plant.name!r}", got, expected, remedy)
 

@@ -166,7 +166,9 @@ def table_text(table: ControllerTable) -> str:
 
 def load_table(path: Path) -> ControllerTable:
     """Read a controller table; raises BadInput when it is truncated, foreign, or does not match its own digest."""
-    content = read_json(path, "controller table", "run `twinlaw design`", "design it again")
+    content = read_json(
+        path, "controller table", "run `twinlaw design`, or name another with --table", "design it again"
+    )
     return parse_table(checks.table(content, str(path)), str(path))
 
 

@@ -17,7 +17,7 @@ from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTa
 
 # The parameters of the helicopter's equations that are the limits of an input.
 _LIMITS = {"u_M_V": ("u_min", "u_max"), "u_T_V": ("uT_min", "uT_max")}
-_FIT = "least squares over the operating points, coefficient of Psi^{power} [rad^-{power}]"
+_FIT = "least squares over the operating points, coefficient of Psi^{power}{unit}"
 _OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^{order} in powers of delta"
 
 
@@ -62,7 +62,7 @@ def find_constant(table: ControllerTable, name: str, arithmetic: str = "float32"
         if _plain(constant.name) == wanted:
             return constant
     expected = _expected(wanted, [constant.name for constant in known])
-    raise BadInput("constant", "twinlaw trace", repr(name), expected, "list them: twinlaw trace")
+    raise BadInput("constant", "twinlaw trace", repr(name), expected, "list them: twinlaw trace --table TABLE.json")
 
 
 def _members(table: ControllerTable) -> dict[str, str]:
@@ -140,7 +140,11 @@ def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[C
     for entry in coefficients(law):
         letter, polynomial = entry.letter, entry.polynomial
         for power, value in enumerate(without_vanishing_powers(polynomial)):
-            made_as = _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else _FIT.format(power=power)
+            made_as = (
+                _OBSERVER.format(pole=pole, order=law.order)
+                if letter == "a"
+                else _FIT.format(power=power, unit=f" [rad^-{power}]" if power else "")
+            )
             name = f"{array_name(axis, entry.name)}[{power}]"
             yield Constant(name, value, entry.unit, made_as, axis, letter, entry.index, power, polynomial)
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):

@@ -45,6 +45,7 @@ PROGRAMS: Mapping[str, tuple[str, str]] = {
     "stm32flash": ("flash --port: through the serial boot loader", "apt install stm32flash"),
 }
 NEEDED = "every verb"
+OF_A_CHECKOUT = ("test", "soak", "docs", "logs")  # extras that no verb asks for, and one that is made of others
 
 
 @dataclass(frozen=True)
@@ -108,6 +109,8 @@ def packages(project: Mapping[str, Any]) -> Iterator[Finding]:
     """A finding for each package that pyproject.toml's section names, by the extra that asks for it."""
     yield from _packages(project["dependencies"], NEEDED, "make run")
     for extra, requirements in project["optional-dependencies"].items():
+        if extra in OF_A_CHECKOUT and not PROJECT.is_file():
+            continue
         yield from _packages(requirements, EXTRAS.get(extra, extra), f"pip install --editable '.[{extra}]'")
 
 

@@ -183,9 +183,9 @@ def _read(
 
 def _log(path: Path, columns: LogColumns) -> RunLog:
     if path.is_dir() or path.suffix != ".csv":
-        raise BadInput(
-            "FILES", str(path), "not a run log", "run logs, NAME.csv", "experiments have no frequency method"
-        )
+        got = "a folder" if path.is_dir() else "not a run log"
+        remedy = "name them one by one; experiments have no frequency method"
+        raise BadInput("FILES", str(path), got, "run logs, NAME.csv", remedy)
     log = load_log(path, columns)
     if log.locked:
         raise BadInput(

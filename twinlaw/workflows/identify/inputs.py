@@ -113,7 +113,11 @@ def _files(paths: Sequence[Path]) -> list[Path]:
         ]  # fmt: skip
         if not inside:
             raise BadInput(
-                "experiments", str(path), "none in this folder", "files of `twinlaw experiments`", "name another folder"
+                "experiments",
+                str(path),
+                "none in this folder",
+                "files of `twinlaw experiments`",
+                "name another folder; run logs are named one by one",
             )
         found += inside
     return found
