@@ -17,7 +17,7 @@ from records.table import LEAST_SCHEDULE_RAD, PLAUSIBLE_V, AxisLaw, ControllerTa
 
 # The parameters of the helicopter's equations that are the limits of an input.
 _LIMITS = {"u_M_V": ("u_min", "u_max"), "u_T_V": ("uT_min", "uT_max")}
-_FIT = "least squares over the operating points, coefficient of Psi^{power}{unit}"
+_FIT = "least squares over the operating points, coefficient of Psi^"
 _OBSERVER = "anti-windup observer A(z^-1) = (1 - {pole:g} z^-1)^{order} in powers of delta"
 
 
@@ -135,21 +135,21 @@ def _formats(table: ControllerTable) -> Iterator[Constant]:
     yield Constant("LAW_VOLTAGE_PLACES", formats.voltage_places, "1", voltages)
 
 
+def _of_power(power: int) -> str:
+    return f"{power} [rad^-{power}]" if power else "0"
+
+
 def _coefficients(table: ControllerTable, axis: str, law: AxisLaw) -> Iterator[Constant]:
     pole = table.origin.get(axis, {}).get("observer_pole", float("nan"))
     for entry in coefficients(law):
         letter, polynomial = entry.letter, entry.polynomial
         for power, value in enumerate(without_vanishing_powers(polynomial)):
-            made_as = (
-                _OBSERVER.format(pole=pole, order=law.order)
-                if letter == "a"
-                else _FIT.format(power=power, unit=f" [rad^-{power}]" if power else "")
-            )
+            made_as = _OBSERVER.format(pole=pole, order=law.order) if letter == "a" else f"{_FIT}{_of_power(power)}"
             name = f"{array_name(axis, entry.name)}[{power}]"
             yield Constant(name, value, entry.unit, made_as, axis, letter, entry.index, power, polynomial)
     for power, value in enumerate(without_vanishing_powers(law.feedforward_V)):
         name = f"{array_name(axis, 'u_ff_V')}[{power}]"
-        made_as = f"equilibrium voltage, {_FIT.format(power=power)}"
+        made_as = f"equilibrium voltage, {_FIT}{_of_power(power)}"
         yield Constant(name, value, UNITS["u_ff"], made_as, axis, "u_ff", 0, power, law.feedforward_V)
 
 

@@ -102,7 +102,7 @@ def test_the_same_seed_flies_the_same_flight(flown, tmp_path):
         ([*FREQUENCY, "--free", "L_q", "FILES"], "parameter 'L_q'"),
         ([*FREQUENCY, "--prior", "FILES"], "--prior"),
         ([*FREQUENCY, "--bounds", "bounds.toml", "FILES"], "--bounds"),
-        ([*FREQUENCY, "FOLDER"], "not a run log"),
+        ([*FREQUENCY, "FOLDER"], "a folder"),
         (["identify", "--band-rad-s", "1", "5", "FILES"], "--method frequency"),
     ],
 )
