@@ -21,7 +21,8 @@ def window_starts(
     """Guess of each window's state, the states that are free in it, and how far the guess may be off, (windows, free).
 
     A position without readings about a window's first row is guessed between those that there are, and may be off by all their range;
-    one that was never read may be anywhere between its stops. States of the driven `part` are not free.
+    one that was never read, or is no output, may be anywhere between its stops. States of the driven `part` are not free, and begin
+    where that brought them: 0 here, even where they are read.
     """
     model = bound.model
     names = [str(state) for state in model.states]
@@ -43,6 +44,11 @@ def window_starts(
             x0[:, place] = np.where(still, crawl, slope)
             loose = 3.0 * max(float(np.std(slope)), float(step / np.median(np.diff(log.t_s))))
             sd[:, place] = np.where(still, most, loose)
+    for position, axis in axes.items():
+        if position not in measured:
+            place = names.index(str(position))
+            x0[:, place], sd[:, place] = _anywhere(bound, axis)
+    x0[:, [place for place, name in enumerate(names) if name in driven]] = 0.0
     free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in driven)
     return x0, free, sd[:, [names.index(name) for name in free]]
 

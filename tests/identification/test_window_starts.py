@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 from identification.runs.log_run import run_of
+from identification.runs.prediction import blocks
 from identification.runs.window_starts import crawling
 from identification.stages.logs import identify_logs
+from records.log import RunLog
+from sim.columns import log_columns
+from sim.simulate import simulate
+from tests import plants
 from tests.identification.flights import cut
 from tests.soak import SOAK
 
@@ -85,3 +90,26 @@ def test_a_fit_over_one_long_window_begins_from_starts_that_were_fitted(bound, f
     found = [identify_logs(bound, {"log": cut(flown, begin_s, 3.0)}, ("J_E",)) for begin_s in begins_s]
     assert sum(entry.runs[0].begins.size == 1 for entry in found) > len(begins_s) // 2
     assert all(np.all(errors_sd(bound, entry) < 3.0) for entry in found)
+
+
+def test_a_state_that_only_the_inputs_drive_starts_where_they_brought_it_also_where_it_is_read():
+    """The truth's own run in windows of half a second leaves no residual; counted twice, the current was off by its own size."""
+    rig = plants.bound("maglev_coil")
+    t_s = 0.01 * np.arange(1000)
+    u = np.repeat(np.random.default_rng(1).uniform(0.2, 0.8, 50), 20)[:, None]
+    y = np.asarray(simulate(rig, t_s, np.zeros(1), u, keep="y").y).reshape(-1, 1)
+    run = run_of(rig, RunLog(log_columns(rig.model), 0.01, "open", t_s, u, y), "log", 0.5)
+    residual = np.concatenate([block.residual for block in blocks(run, (), np.zeros(0))])
+    assert len(run.begins) > 10
+    assert np.max(np.abs(residual * run.sd)) < 1e-3 * np.ptp(y)
+
+
+def test_an_axis_whose_position_is_no_output_may_start_anywhere():
+    arm = plants.bound("aeroshield")
+    speed = {"theta_dot_rad_s": arm.model.axes[0].velocity}
+    rig = replace(
+        arm, model=replace(arm.model, outputs=speed), plant=replace(arm.plant, sensors={**dict.fromkeys(speed, 1e-3)})
+    )
+    t_s = 0.01 * np.arange(200)
+    log = RunLog(log_columns(rig.model), 0.01, "open", t_s, np.ones((200, 1)), np.sin(t_s)[:, None])
+    assert "theta_rad" in run_of(rig, log, "log", 0.5).free
