@@ -37,6 +37,16 @@ Polynomial = tuple[float, ...]
 A = TypeVar("A")
 _LOOP_NAMES = ("axis", "output", "input", "motor")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
+# What C11 and C++ keep for themselves: a loop's names become members and functions of headers that both read.
+_C_WORDS = frozenset(
+    """
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl const const_cast constexpr continue
+    decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int
+    long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast
+    restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try
+    typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq
+    """.split()  # noqa: SIM905
+)
 
 # A feedback voltage beyond this is no answer to any reference or angle within reach (codegen refuses tables that could ask
 # for one): it comes from a broken state, and the axis starts afresh.
@@ -271,6 +281,10 @@ def _loop(entry: Any, where: str) -> Loop:
             raise BadInput(
                 "name", f"{where}.{name}", repr(value), "letters, digits and _, as in C", "choose another name"
             )
+    for name, value in (("axis", loop.axis), ("motor", loop.motor), ("output", loop.symbol), ("input", loop.voltage)):
+        if value in _C_WORDS:
+            got = f"{named[name]!r}, of which C is given {value!r}, a word of its own"
+            raise BadInput("name", f"{where}.{name}", got, "letters, digits and _, as in C", "choose another name")
     if not (loop.output.endswith("_rad") and loop.input.endswith("_V")):
         expected = "an angle [rad] and a voltage [V]: theta_rad, u_V"
         raise BadInput("loop", where, f"{loop.output} and {loop.input}", expected, "choose such a loop")

@@ -8,7 +8,7 @@ import sympy
 
 from records.text.units import unit_suffix
 from sim.model import TIME, Axis, Model
-from sim.places import Edit
+from sim.places import AxisPlace, Edit
 
 Expression = Any
 NOTHING = 1e-30  # beside the square of the sharpest corner
@@ -22,6 +22,11 @@ EDGE_S = 0.02  # how long a step in time takes: a bend is integrated well and ha
 def axis_of(model: Model, name: str) -> Axis:
     """The axis of that name."""
     return next(axis for axis in model.axes if axis.name == name)
+
+
+def with_position(model: Model) -> dict[str, AxisPlace]:
+    """The places of axes that have a position; one that turns freely may have its speed alone, and then no spring knows where it is."""
+    return {name: entry for name, entry in model.places.axes.items() if axis_of(model, name).position is not None}
 
 
 def sign_of(model: Model, name: str) -> sympy.Symbol:

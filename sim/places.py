@@ -92,9 +92,9 @@ class Places:
 
     @property
     def encoders(self) -> Mapping[str, SensorPlace]:
-        """The sensors that read the way of an axis: they have a disc, a coupling and a count, as a sensor of a current has not."""
-        ways = {axis.angle for axis in self.axes.values()}
-        return {name: sensor for name, sensor in self.sensors.items() if sensor.output in ways}
+        """The sensors that read the way of an axis: they have a disc, a coupling and a count, as one of a current or of a speed has not."""
+        ways = {(axis.angle, axis.length_unit) for axis in self.axes.values()}
+        return {name: sensor for name, sensor in self.sensors.items() if (sensor.output, sensor.unit) in ways}
 
     def driven_by(self, variable: sympy.Symbol) -> str:
         """The rotor that an input drives; "" where none is declared."""

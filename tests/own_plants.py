@@ -100,6 +100,18 @@ RATE_ONLY = OwnPlant(
         'sensors={"gyro": SensorPlace("omega_rad_s", "rad s^-1")}',
     ),
 )
+SPEED_AS_ANGLE = OwnPlant(
+    ARM, RATE_ONLY.sensors, RATE_ONLY.body.replace('AxisPlace("theta_rad"', 'AxisPlace("omega_rad_s"')
+)
+# A wheel that turns freely: nobody asks where it stands.
+WHEEL = OwnPlant(
+    {name: ARM[name] for name in ("J", "K", "b")},
+    RATE_ONLY.sensors,
+    SPEED_AS_ANGLE.body.replace("states=(theta, omega)", "states=(omega,)")
+    .replace("rates={theta: omega}", "rates={}")
+    .replace('Axis("arm", theta', 'Axis("arm", None')
+    .replace(' - p["G"] * sympy.sin(theta)', ""),
+)
 NO_PLACES = OwnPlant(ARM, ENCODER, _ARM[: _ARM.index("    places=")] + ")\n")
 NO_AXIS_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "AxisPlace" not in line))
 NO_SENSOR_PLACE = OwnPlant(ARM, ENCODER, "\n".join(line for line in _ARM.splitlines() if "SensorPlace" not in line))
@@ -218,5 +230,6 @@ REFUSED: Mapping[str, tuple[OwnPlant, str]] = {
     "no_places": (NO_PLACES, "no place"),
     "no_axis_place": (NO_AXIS_PLACE, "no place"),
     "no_moment": (NO_MOMENT, "gravity without gravity_moment"),
+    "speed_as_angle": (SPEED_AS_ANGLE, "which is its speed"),
     "level_alone": (LEVEL_ALONE, "no axis beside it that gravity turns"),
 }

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_torque
+from sim.edits import axis_of, short, with_position, with_torque
 from sim.effect import Effect, EffectParameter
 from sim.model import Model
 from sim.prior import COMMON, one_way
@@ -17,7 +17,7 @@ from sim.prior import COMMON, one_way
 
 def effects(model: Model) -> Iterator[Effect]:
     """Eq (1) on each axis."""
-    for axis, entry in model.places.axes.items():
+    for axis, entry in with_position(model).items():
         angle, unit = short(entry.angle), entry.length_unit
         size = entry.torque_size / (1.0 if unit == "rad" else entry.speed_size)
         twins = {f"{axis}.cable_hysteresis": "over small angles a cable that does not slip is a spring"}

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from sim.edits import axis_of, short, with_output, with_torque
+from sim.edits import axis_of, short, with_output, with_position, with_torque
 from sim.effect import Effect, EffectParameter, Role
 from sim.model import TIME, Model
 from sim.places import AxisPlace, SensorPlace
@@ -29,7 +29,8 @@ def effects(model: Model) -> Iterator[Effect]:
     for place, sensor in model.places.encoders.items():
         yield _cyclic(place, sensor)
     for axis, entry in model.places.axes.items():
-        yield _detent(model, axis, entry)
+        if axis in with_position(model):
+            yield _detent(model, axis, entry)
         yield _periodic(axis, entry)
 
 

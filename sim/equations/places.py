@@ -34,6 +34,9 @@ def place_slips(model: Model) -> Iterator[Slip]:
         if place.angle not in named:
             got, expected = f"the angle {shown(place.angle)}", f"an output or a state: {listed(named)}"
             yield Slip((name, "places"), f"place {name!r}", got, expected, "correct its name")
+        elif name in axes and axes[name].position is not None and _read(model, place.angle) == axes[name].velocity:
+            got, expected = f"the angle {shown(place.angle)}, which is its speed", f"where it is: {axes[name].position}"
+            yield Slip((name, "places"), f"place {name!r}", got, expected, "correct its name")
     for name, entry in places.inputs.items():
         if entry.variable not in model.inputs:
             expected = f"one of {listed(model.inputs)}"
@@ -47,6 +50,11 @@ def place_slips(model: Model) -> Iterator[Slip]:
     yield from _sizes(model)
     yield from _gravity(model)
     yield from _rotors(model)
+
+
+def _read(model: Model, name: str) -> sympy.Expr:
+    """What an output or a state of this name is."""
+    return model.outputs.get(name, next((state for state in model.states if str(state) == name), None))
 
 
 def _without(kind: str, what: str, line: str) -> Slip:

@@ -24,14 +24,14 @@ def plant_texts(name: str) -> dict[str, str]:
 
 def _check(name: str) -> None:
     """Raise BadInput unless a module of this name is possible and hides nothing else in its folder."""
-    if not re.fullmatch(r"[a-z][a-z0-9_]{,63}", name) or keyword.iskeyword(name):
+    if not re.fullmatch(r"[a-z][a-z0-9_]{,63}", name):
         got = repr(name) if len(name) <= 40 else f"{name[:40]!r} and so on, {len(name)} characters"
         expected = "a Python module's name: small letters, digits and _, a letter first, 64 at most"
         raise BadInput("name of a plant", "new-plant", got, expected, "write my_arm, say")
     if name in WINDOWS_DEVICES:
         got, remedy = f"{name!r}, which Windows keeps for a device", f"write my_{name}, say"
         raise BadInput("name of a plant", "new-plant", got, "a name that a file can have on any computer", remedy)
-    if keyword.issoftkeyword(name) or hasattr(builtins, name) or find_spec(name) is not None:
+    if keyword.iskeyword(name) or keyword.issoftkeyword(name) or hasattr(builtins, name) or find_spec(name) is not None:
         got, remedy = f"{name!r}, which means something else in Python here", f"write my_{name}, say"
         raise BadInput("name of a plant", "new-plant", got, "a name of its own", remedy)
     if name in MODELS:

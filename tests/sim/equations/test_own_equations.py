@@ -8,13 +8,14 @@ import pytest
 from jobs.job import canonical
 from records.errors import BadInput
 from records.plant import Equations, load_plant, plant_digest, save_plant
+from sim.added_effects import combined, library
 from sim.bind import bind
 from sim.equations import nominal_model
 from sim.equations.check import RULES
 from sim.manoeuvres import stir
 from sim.plants import MODELS
 from sim.simulate import simulate
-from tests.own_plants import PLAIN, REFUSED
+from tests.own_plants import PLAIN, REFUSED, WHEEL
 
 NAME = "my_plain"
 
@@ -79,6 +80,16 @@ def test_what_cannot_be_used_is_refused_before_anything_is_compiled(name: str, t
     plant, told = REFUSED[name]
     with pytest.raises(BadInput, match=told):
         bind(load_plant(plant.write(tmp_path, f"my_{name}")))
+
+
+def test_an_axis_without_a_position_has_no_effect_that_asks_where_it_is(tmp_path: Path) -> None:
+    wheel = bind(load_plant(WHEEL.write(tmp_path, "my_wheel")))
+    known = library(wheel)
+    assert not {"arm.cable_spring", "arm.detent", "gyro.cyclic"} & set(known)
+    assert {"arm.coulomb", "arm.quadratic_drag", "gyro.scale"} <= set(known)
+    for name, effect in known.items():
+        if effect.on_equations and effect.repeats:
+            assert combined(wheel, [name]).effects, name
 
 
 @pytest.mark.parametrize("name", MODELS)
