@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 POOR_J = 100.0
 SAME_J = 1.01
 MOST_BANDS = 3
+MOST_NAMES = 6
 SHARED = (
     0.1  # of the part of the parameter that a direction moves most: one that it moves less has little to do with it
 )
@@ -69,7 +70,8 @@ def _reason(fit: FrequencyFit, name: str) -> str:
     """With which others it can change unseen; else where it would show best, and over which frequencies coherence lacks there."""
     for names in together(fit):
         if name in names:
-            return f"{', '.join(names)} can change together unseen: hold one of them (--free)"
+            more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+            return f"{', '.join(names[:MOST_NAMES])}{more} can change together unseen: hold one of them (--free)"
     shown = _shows(fit, fit.model.names.index(name))
     o, i = np.unravel_index(int(np.argmax(shown)), shown.shape)
     weak = _weak_bands(fit.responses, int(o), int(i))
