@@ -106,15 +106,19 @@ def _open_loop(entry: ConditionResult) -> Section:
 def _closed_loop(entry: ConditionResult, found: Study) -> Section:
     own, others = entry.checks[:1], entry.checks[1:]
     everywhere = [check for condition in found.conditions for check in condition.checks[1:]]
+    flights = {
+        f"identification of {entry.condition.name}": own,
+        f"validations of {entry.condition.name}": others,
+        "validations of all conditions": everywhere,
+    }
     return Section(
         "State equation, closed loop (2.3, Tables 2.2 and 2.3)",
         (
             "The model runs on the pilot's controls alone. Points outside the margins in per cent, by how the start was tuned: not at all, "
             "by hand where starts were typed in, state by state over a grid, automatically within bounds, and automatically with the "
             "error of the trim.",
-            f"Identification of {entry.condition.name}, its validations, and the validations of all conditions:",
         ),
-        tuple(tables.tunings(checks) for checks in (own, others, everywhere) if checks),
+        tuple(tables.tunings(checks, of) for of, checks in flights.items() if checks),
         (plots.states(entry.checks[0], entry),),
     )
 

@@ -71,8 +71,8 @@ def open_loop(entry: ConditionResult) -> Table:
     return Table(rows, ("", *symbols(STATES)))
 
 
-def tunings(checks: Sequence[Check]) -> Table:
-    """Tables 2.2 and 2.3: percentage of points outside the margins by state and way of tuning, mean over the checks."""
+def tunings(checks: Sequence[Check], of: str) -> Table:
+    """Tables 2.2 and 2.3: percentage of points outside the margins by state and way of tuning, mean over the checks `of` some flights."""
     rows = []
     for how in checks[0].states:
         shares = np.array([[match.outside_percent for match in check.states[how]] for check in checks])
@@ -80,7 +80,7 @@ def tunings(checks: Sequence[Check]) -> Table:
         rows.append(
             (how, *(f"{share:.1f}" for share in shares.mean(axis=0)), f"{shares.mean():.2f}", f"{held} of {flights}")
         )
-    return Table(rows, ("start", *symbols(STATES), "mean", "flights held 3 s"))
+    return Table(rows, (f"start, {of}", *symbols(STATES), "mean", "flights held 3 s"))
 
 
 def by_hand(flight: Tried) -> Table:
