@@ -1,7 +1,7 @@
 """The whole chain: design, generate, build, verify, and fly the firmware image on the emulated board.
 
 Leaves in DIR: controller.json, generated/, firmware.elf, firmware.bin, run.csv + run.toml, verification.json, report.html.
-The loops of a plant other than the helicopter have no pins on the board: all of it flies with the host in the loop.
+Loops other than the helicopter's have pins where the plant file's section [board] names them; without, they fly with the host in the loop.
 """
 
 import argparse
