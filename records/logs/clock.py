@@ -6,7 +6,10 @@ from numpy.typing import NDArray
 from records.errors import BadInput
 
 OTHER_UNIT = 300.0  # times the stated period and more are no jitter and no lost rows, but another unit
-UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds", 1.0 / 60.0: "minutes", 1.0 / 3600.0: "hours"}
+MINUTE_S = 60.0
+UNITS = {
+    1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds", 1.0 / MINUTE_S: "minutes", 1.0 / 3600.0: "hours"
+}  # fmt: skip
 CLOSE = 1.5  # a unit is named where the rows are so near to it
 EXACT = 1.02  # minutes are only 60 seconds: told where the rows are this near to them, as logs are kept 40 or 70 times as dense too
 FINER = (
@@ -27,7 +30,7 @@ def demand_seconds(t_s: NDArray[np.float64], sample_period_s: float, where: str)
         return
     usual = float(np.median(np.diff(t_s)))
     ratio = usual / sample_period_s
-    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT or 1.0 / EXACT < 60.0 * ratio < EXACT:
+    if not 1.0 / OTHER_UNIT < ratio < OTHER_UNIT or 1.0 / EXACT < MINUTE_S * ratio < EXACT:
         unit = next((name for factor, name in UNITS.items() if factor / CLOSE < ratio < factor * CLOSE), None)
         raise BadInput(
             "time unit",
