@@ -24,8 +24,8 @@ def read(path: Path, asked: TextLayout) -> Contents:
     """
     pyulog = package("pyulog", "px4", path)
     try:
-        with redirect_stdout(io.StringIO()):  # it warns there, where the answer goes
-            log = pyulog.ULog(str(path))
+        with path.open("rb") as stream, redirect_stdout(io.StringIO()):  # it warns there, where the answer goes
+            log = pyulog.ULog(stream)  # which leaves open what it opens itself and cannot read
     except FileNotFoundError as error:
         raise BadInput("PX4 log", str(path), "no such file", "a readable file", "check the path") from error
     except Exception as error:  # the package has no class of its own for a file that is no ULog
