@@ -1,11 +1,14 @@
 """Where a log's windows start: a guess of each state at a window's first row, and how far it may be off."""
 
+from collections.abc import Sequence
+
 import numpy as np
+import sympy
 from numpy.typing import NDArray
 
 from records.log import RunLog
 from sim.bind import BoundPlant
-from sim.model import Axis, Model
+from sim.model import TIME, Axis, Model
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -21,8 +24,9 @@ def window_starts(
     """Guess of each window's state, the states that are free in it, and how far the guess may be off, (windows, free).
 
     A position without readings about a window's first row is guessed between those that there are, and may be off by all their range;
-    one that was never read, or is no output, may be anywhere between its stops. States of the driven `part` are not free, and begin
-    where that brought them: 0 here, even where they are read.
+    one that was never read, or is no output, may be anywhere between its stops. A state that is neither read nor of an axis, as a
+    winding's current under its motor's voltage, is guessed where it would settle. States of the driven `part` are not free, and begin where
+    that brought them: 0 here, even where they are read.
     """
     model = bound.model
     names = [str(state) for state in model.states]
@@ -48,9 +52,32 @@ def window_starts(
         if position not in measured:
             place = names.index(str(position))
             x0[:, place], sd[:, place] = _anywhere(bound, axis)
+    known = {*measured, *axes, *(axis.velocity for axis in model.axes)}
+    inner = [place for place, state in enumerate(model.states) if state not in known and str(state) not in driven]
+    if inner:
+        x0[:, inner] = settled(bound, log, begins, x0, inner)
+        sd[:, inner] = np.max(np.abs(x0[:, inner]), axis=0) + np.std(x0[:, inner], axis=0)
+        sd[:, inner] = np.where(sd[:, inner] > 0.0, sd[:, inner], ANYWHERE)
     x0[:, [place for place, name in enumerate(names) if name in driven]] = 0.0
     free = tuple(name for place, name in enumerate(names) if sd[0, place] > 0.0 and name not in driven)
     return x0, free, sd[:, [names.index(name) for name in free]]
+
+
+def settled(bound: BoundPlant, log: RunLog, begins: Index, x0: Array, inner: Sequence[int]) -> Array:
+    """Where the states at the places `inner` would settle under the other states x0 (windows, states) and the inputs at the rows
+    `begins`, (windows, inner), to first order about 0; 0 where nothing holds them.
+    """
+    model = bound.model
+    states = [model.states[place] for place in inner]
+    rates = sympy.Matrix([model.rates[state] for state in states])
+    values = dict(zip(model.parameter_symbols, bound.p[: len(model.parameter_symbols)].tolist(), strict=True))
+    arguments = (TIME, *model.states, *model.inputs)
+    at_zero = x0.copy()
+    at_zero[:, list(inner)] = 0.0
+    rows = np.column_stack([log.t_s[begins], at_zero, log.u[begins]])
+    rate, slope = (sympy.lambdify(arguments, entry.subs(values)) for entry in (rates, rates.jacobian(states)))
+    found = [-np.linalg.pinv(np.asarray(slope(*row), float)) @ np.asarray(rate(*row), float).ravel() for row in rows]
+    return np.asarray(np.nan_to_num(np.array(found), posinf=0.0, neginf=0.0))
 
 
 def _anywhere(bound: BoundPlant, axis: Axis) -> tuple[float, float]:

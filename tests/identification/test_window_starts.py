@@ -7,10 +7,11 @@ import pytest
 
 from identification.runs.log_run import run_of
 from identification.runs.prediction import blocks
-from identification.runs.window_starts import crawling
+from identification.runs.window_starts import crawling, window_starts
 from identification.stages.logs import identify_logs
 from records.log import RunLog
 from sim.columns import log_columns
+from sim.model import symbol
 from sim.simulate import simulate
 from tests import plants
 from tests.identification.flights import cut
@@ -113,3 +114,22 @@ def test_an_axis_whose_position_is_no_output_may_start_anywhere():
     t_s = 0.01 * np.arange(200)
     log = RunLog(log_columns(rig.model), 0.01, "open", t_s, np.ones((200, 1)), np.sin(t_s)[:, None])
     assert "theta_rad" in run_of(rig, log, "log", 0.5).free
+
+
+def test_a_state_that_is_neither_read_nor_of_an_axis_starts_where_it_would_settle_and_is_free():
+    """A winding with w' = (u - w - 0.5 theta') / T settles at u - 0.5 theta'; held at 0, as it was, J came out 5 times too small."""
+    arm = plants.bound("aeroshield")
+    winding, speed = symbol("w_V"), arm.model.axes[0].velocity
+    (u,) = arm.model.inputs
+    model = replace(
+        arm.model,
+        states=(*arm.model.states, winding),
+        rates={**arm.model.rates, winding: (u - winding - 0.5 * speed) / arm.model.parameter_symbols[0]},
+    )
+    t_s = 0.01 * np.arange(400)
+    log = RunLog(log_columns(model), 0.01, "open", t_s, 1.0 + t_s[:, None], np.sin(t_s)[:, None])
+    begins = np.array([100, 200, 300])
+    x0, free, sd = window_starts(replace(arm, model=model), log, begins, None)
+    np.testing.assert_allclose(x0[:, -1], 1.0 + t_s[begins] - 0.5 * np.cos(t_s[begins]), atol=0.01)
+    assert free[-1] == "w_V"
+    assert np.all(sd[:, -1] > np.max(np.abs(x0[:, -1])))
