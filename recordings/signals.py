@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import accumulate, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +46,12 @@ class Contents:
 
 
 def listed(names: Mapping[str, object] | list[str] | tuple[str, ...], most: int = 300) -> str:
-    """Names in a row for an error's line, entries of one array as `output[0..15]`, cut at `most` characters."""
-    text = ", ".join(_in_short(list(names))) or "nothing of numbers"
-    return text if len(text) <= most else f"{text[: most - 3]}..."
+    """Names in a row for an error's line, entries of one array as `output[0..15]`; as many as `most` characters hold, and how many more."""
+    short = list(_in_short(list(names)))
+    lengths = accumulate(len(name) + 2 for name in short)
+    fitting = max(1, sum(length <= most for length in lengths))
+    more = f" and {len(short) - fitting} more" if fitting < len(short) else ""
+    return ", ".join(short[:fitting])[:most] + more or "nothing of numbers"
 
 
 def counted(number: int, things: str) -> str:
