@@ -1,4 +1,4 @@
-"""Quantities as a person reads them: of a log's column with its unit, angles in degrees; times to settle."""
+"""Quantities as a person reads them: of a log's column with its unit, angles in degrees, speeds as plots have them; times to settle."""
 
 import math
 
@@ -8,8 +8,8 @@ from records.text.units import unit_of
 def measured(value: float, column: str, digits: int = 3) -> str:
     """ "0.0253 deg" of 0.000441 in psi_rad; a column without a unit gives the number alone."""
     unit = unit_of(column)
-    if unit.startswith("rad"):
-        value, unit = math.degrees(value), unit.replace("rad", "deg")
+    if unit == "rad":
+        value, unit = math.degrees(value), "deg"
     return f"{value:.{digits}g} {unit}".rstrip()
 
 
