@@ -29,16 +29,21 @@ def arm() -> BoundPlant:
 
 
 def arm_log(
-    effects: Mapping[str, Mapping[str, float]] | None = None, seed: int = 1, seconds: float = SECONDS, rows: int = 1
+    effects: Mapping[str, Mapping[str, float]] | None = None,
+    seed: int = 1,
+    seconds: float = SECONDS,
+    rows: int = 1,
+    **changed: float,
 ) -> RunLog:
     """A run in open loop under five sines of the input, held for so many rows each; nothing but the encoder and a little torque noise
-    disturbs it."""
+    disturbs it. The rig is as stated but for the parameters `changed`."""
     rng = np.random.default_rng(seed)
     t_s = PERIOD_S * np.arange(round(seconds / PERIOD_S))
     rates, phases = rng.uniform(0.5, 6.0, 5), rng.uniform(0.0, 2.0 * np.pi, 5)
     u = 1.8 + 0.28 * np.sin(np.outer(t_s, rates) + phases).sum(axis=1)
     u = np.repeat(u[::rows], rows)[: len(t_s)]
-    rig = with_effects(arm(), effects) if effects else arm()
+    plain = bound("aeroshield", **changed) if changed else arm()
+    rig = with_effects(plain, effects) if effects else plain
     process = np.zeros(len(rig.model.states))
     process[1] = 0.01
     run = simulate(rig, t_s, np.zeros(2), u[:, None], noise=Noise(seed, process_sd=process), keep="y")

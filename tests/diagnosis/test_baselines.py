@@ -14,6 +14,7 @@ from records.diagnosis import Estimate, load_diagnosis
 from sim.added_effects import library
 from tests.plants import bound
 from tests.soak import sampled
+from tests.twinlaw.verbs.crews import works_here
 from twinlaw.command import main
 
 
@@ -25,7 +26,10 @@ def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", sampled(BASELINES, keep=["sparse-regression"]))
-def test_a_baseline_answers_so_that_it_can_be_scored(name: str, cases: Path, tmp_path: Path) -> None:
+def test_a_baseline_answers_so_that_it_can_be_scored(
+    name: str, cases: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    works_here(monkeypatch)
     assert main(["blind", "baseline", name, str(cases), str(tmp_path)]) == 0
     answer = load_diagnosis(tmp_path / "case-0001" / "diagnosis.json")
     assert answer.verdict in ("gap", "no gap")

@@ -110,9 +110,9 @@ def test_a_hold_out_of_the_same_rig_changes_no_verdict(plainly: Callable[[str], 
 
 
 def test_a_hold_out_of_another_rig_makes_no_sure_gap_none() -> None:
-    logs = [arm_log(RIGS["rubs"], seed=71, seconds=12.0)]
+    logs = [arm_log(RIGS["rubs"], seed=71, seconds=8.0)]
     before = answered(logs)
     assert before.diagnosis.false_alarm_probability < 1e-6
-    after = answered(logs, [arm_log(seed=74, seconds=12.0)])  # which does not rub
+    after = answered(logs, [arm_log(seed=74, seconds=8.0)])  # which does not rub
     assert after.diagnosis.verdict == "gap"
     assert after.diagnosis.false_alarm_probability == before.diagnosis.false_alarm_probability

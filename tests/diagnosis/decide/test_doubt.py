@@ -10,19 +10,12 @@ from diagnosis.decide.contradiction import contradiction
 from diagnosis.decide.doubt import Doubt, contradicting
 from diagnosis.decide.weighing import Weighed
 from diagnosis.fit.nominal import nominal_fit
-from diagnosis.hypothesis.case import Case, make_case
-from diagnosis.library.effect_library import EffectLibrary, effect_library
+from diagnosis.hypothesis.case import Case
 from diagnosis.validate.misfit import ignorance
 from records.log import RunLog
-from sim.bind import BoundPlant
-from tests.diagnosis.conftest import Fly
+from tests.diagnosis.arm import arm_case, arm_log
 
-SPRING = {"azimuth.cable_spring": {"k": 0.004, "angle_0": 0.2, "h": 0.0}}
-
-
-@pytest.fixture(scope="module")
-def library(plant: BoundPlant) -> EffectLibrary:
-    return effect_library(plant)
+SPRING = {"arm.cable_spring": {"k": 3e-3, "angle_0": 0.0, "h": 0.0}}
 
 
 def part(log: RunLog, rows: slice) -> RunLog:
@@ -35,41 +28,41 @@ def gain_of_own_numbers(case: Case) -> float:
     return found.gain
 
 
-def test_two_parts_of_one_flight_agree_and_flights_of_two_plants_do_not(library: EffectLibrary, fly: Fly) -> None:
-    # About 25 numbers of its own gain a log half a nat each by chance; a spring that only one of two plants has gains several times
+def test_two_parts_of_one_run_agree_and_runs_of_two_plants_do_not() -> None:
+    # About ten numbers of its own gain a log half a nat each by chance; a spring that only one of two plants has gains several times
     # that, whatever part of it noise with a memory takes.
-    flight = fly(41)
-    agreeing = make_case(library, [part(flight, slice(0, 1500)), part(flight, slice(1500, 3000))])
-    assert gain_of_own_numbers(agreeing) < 30.0
-    differing = make_case(library, [part(flight, slice(0, 1500)), part(fly(42, SPRING), slice(0, 1500))])
+    run = arm_log(seed=41)
+    agreeing = arm_case(part(run, slice(0, 700)), part(run, slice(700, 1400)))
+    assert gain_of_own_numbers(agreeing) < 15.0
+    differing = arm_case(run, arm_log(SPRING, seed=42))
     assert gain_of_own_numbers(differing) > 60.0
-    assert contradiction(make_case(library, [flight]), nominal_fit(agreeing)) is None
+    assert contradiction(arm_case(run), nominal_fit(agreeing)) is None
 
 
-def test_a_hold_out_of_another_rig_is_told_though_each_is_as_stated(library: EffectLibrary, fly: Fly) -> None:
-    # Every rig is within its stated spread; the third log is of another one.
-    one, same, other = (fly(seed, rig_seed=rig) for seed, rig in ((71, 71), (72, 71), (73, 74)))
-    alike, unlike = make_case(library, [one, same]), make_case(library, [one, other])
+def test_a_hold_out_of_another_rig_is_told_though_each_is_as_stated() -> None:
+    # Truth: a lever of 0.1 m is known to 0.03 m; that of the third log is 0.09 m.
+    one, same, other = arm_log(seed=71), arm_log(seed=72), arm_log(seed=73, l=0.09)
+    alike, unlike = arm_case(one, same), arm_case(one, other)
     assert contradicting(alike, nominal_fit(alike).hypothesis, ["train", "hold"])[0] == ()
-    (told,), _ = contradicting(unlike, nominal_fit(make_case(library, [one])).hypothesis, ["train", "hold"])
+    (told,), _ = contradicting(unlike, nominal_fit(arm_case(one)).hypothesis, ["train", "hold"])
     assert (told.kind, told.numbers["gain_nats"] > 150.0) == ("contradiction", True)
 
 
-def test_a_plant_knows_its_own_flights_and_nothing_of_a_random_walk(library: EffectLibrary, fly: Fly) -> None:
+def test_a_plant_knows_its_own_runs_and_nothing_of_a_random_walk() -> None:
     # Errors over those of holding the last reading: a small share where the plant is right, 1 where nothing can be known.
-    flight = part(fly(43), slice(0, 1500))
-    known = make_case(library, [flight])
+    run = arm_log(seed=43)
+    known = arm_case(run)
     assert max(ignorance(known, nominal_fit(known).hypothesis).values()) < 0.2
-    walk = np.cumsum(np.random.default_rng(3).normal(0.0, 0.004, flight.y.shape), axis=0)
-    unknown = make_case(library, [replace(flight, y=np.clip(walk, -0.7, 0.7))])
+    walk = np.cumsum(np.random.default_rng(3).normal(0.0, 0.004, run.y.shape), axis=0)
+    unknown = arm_case(replace(run, y=np.clip(walk, -0.7, 0.7)))
     found = ignorance(unknown, nominal_fit(unknown).hypothesis)
     assert min(found.values()) > 0.9
 
 
-def test_an_output_that_stands_says_nothing_of_what_is_known(library: EffectLibrary, fly: Fly) -> None:
-    flight = part(fly(43), slice(0, 600))
-    case = make_case(library, [replace(flight, y=np.column_stack([np.full(600, 0.1), flight.y[:, 1]]))])
-    assert set(ignorance(case, nominal_fit(case).hypothesis)) <= {"phi_rad"}
+def test_an_output_that_stands_says_nothing_of_what_is_known() -> None:
+    run = arm_log(seed=43)
+    case = arm_case(replace(run, y=np.full_like(run.y, 0.1)))
+    assert ignorance(case, nominal_fit(case).hypothesis) == {}
 
 
 def test_a_doubt_leaves_next_to_nothing_for_names_and_all_probabilities_sum_to_one() -> None:

@@ -17,21 +17,22 @@ from diagnosis.hypothesis.case import make_case
 from diagnosis.library.effect_library import effect_library
 from sim.bind import BoundPlant
 from tests.diagnosis.conftest import Fly
-from tests.soak import sampled
+from tests.soak import SOAK, sampled
 
 ROWS, STEP_S = 6000, 0.01
+SEEDS = (71, 72) if SOAK else (71,)
 T_S = STEP_S * np.arange(ROWS)
 Late = Callable[[str, float], Linearisation]
 
 
 @pytest.fixture(scope="module")
 def late(plant: BoundPlant, fly: Fly) -> Late:
-    """Two flights of a rig that is as stated but for a delay of so many seconds, under the plant as stated; once for each."""
+    """Flights of a rig that is as stated but for a delay of so many seconds, under the plant as stated; once for each."""
 
     @cache
     def flown(effect: str, tau_s: float) -> Linearisation:
         as_stated = dict.fromkeys((str(symbol) for symbol in plant.model.parameter_symbols), 1.0)
-        logs = [fly(seed, {effect: {"tau": tau_s}}, factors=as_stated, jumps_rad=0.05, air=False) for seed in (71, 72)]
+        logs = [fly(seed, {effect: {"tau": tau_s}}, factors=as_stated, jumps_rad=0.05, air=False) for seed in SEEDS]
         case = make_case(effect_library(plant), logs)
         stated = unfitted(case, nominal_fit(case).hypothesis)
         assert stated is not None

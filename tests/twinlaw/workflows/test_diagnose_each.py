@@ -11,9 +11,7 @@ import pytest
 from blind.cases.make import make
 from records.errors import BadInput
 from records.log import save_log
-from sim.loop import fly_law
-from sim.manoeuvres import flight
-from tests.plants import bound, stated_table
+from tests.diagnosis.arm import arm_log
 from tests.soak import SOAK
 from tests.test_project import ROOT
 from tests.twinlaw.verbs.crews import works_here
@@ -22,36 +20,34 @@ from twinlaw.workflows.diagnose.each import answer
 from twinlaw.workflows.diagnose.parcel import parcel
 from twinlaw.workflows.diagnose.questions import questions
 
-PLANT = ROOT / "plants" / "ce150.toml"
+PLANT = ROOT / "plants" / "aeroshield.toml"
 FILES = {"diagnosis.json", "plant.toml", "report.html"}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of two logs and a case: three seconds of flight, ten samples, and the three seconds with two more held out."""
+    """A folder of two logs and a case: three seconds of a run, ten samples, and the three seconds with two more held out."""
     place = tmp_path_factory.mktemp("logs")
-    rig = bound("ce150")
-    table = stated_table("ce150")
-    log = replace(fly_law(rig, table, flight(rig)), table_digest=None, extra={})
+    log = arm_log(seconds=5.0)
 
     def save(path: Path, rows: slice) -> None:
         save_log(path, replace(log, t_s=log.t_s[rows] - log.t_s[rows][0], u=log.u[rows], y=log.y[rows]))
 
-    save(place / "flight.csv", slice(2000, 2300))
+    save(place / "run.csv", slice(0, 300))
     save(place / "short.csv", slice(0, 10))
     (place / "notes.csv").write_text("no,log\n")
     case = place / "case-7"
     case.mkdir()
     shutil.copy(PLANT, case / "plant.toml")
-    save(case / "train.csv", slice(2000, 2300))
-    save(case / "hold-1.csv", slice(2300, 2500))
+    save(case / "train.csv", slice(0, 300))
+    save(case / "hold-1.csv", slice(300, 500))
     return place
 
 
 def test_a_folder_holds_its_logs_and_its_cases(folder: Path) -> None:
     found = {entry.name: entry for entry in questions(PLANT, [folder], [])}
-    assert set(found) == {"flight", "short", "case-7"}
-    assert found["flight"].plant == PLANT
+    assert set(found) == {"run", "short", "case-7"}
+    assert found["run"].plant == PLANT
     assert [path.name for path in found["case-7"].logs] == ["train.csv"]
     assert [path.name for path in found["case-7"].holdout] == ["hold-1.csv"]
     assert found["case-7"].plant == folder / "case-7" / "plant.toml"
@@ -59,13 +55,13 @@ def test_a_folder_holds_its_logs_and_its_cases(folder: Path) -> None:
 
 def test_a_held_out_log_is_no_question(folder: Path) -> None:
     found = questions(PLANT, [folder], [folder / "short.csv"])
-    assert next((entry.name, entry.holdout) for entry in found) == ("flight", (folder / "short.csv",))
+    assert next((entry.name, entry.holdout) for entry in found) == ("run", (folder / "short.csv",))
     assert "short" not in [entry.name for entry in found]
 
 
 def test_two_of_one_name_and_a_folder_of_nothing_are_refused(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="two of this name"):
-        questions(PLANT, [folder, folder / "flight.csv"], [])
+        questions(PLANT, [folder, folder / "run.csv"], [])
     with pytest.raises(BadInput, match="neither a run log nor a case"):
         questions(PLANT, [tmp_path], [])
 
@@ -98,15 +94,15 @@ def test_each_is_answered_as_alone_and_only_once(
     told = json.loads(said.out)
     assert told == json.loads((out / "summary.json").read_text())
     by_name = {entry["name"]: entry for entry in told["answers"]}
-    assert list(by_name) == ["flight", "short", "case-7"]
+    assert list(by_name) == ["run", "short", "case-7"]
     assert "too short" in by_name["short"]["failure"]
-    assert by_name["flight"]["verdict"] in ("no gap", "cannot tell")
-    assert {path.name for path in (out / "flight").iterdir()} == FILES | {"run.json"}
+    assert by_name["run"]["verdict"] in ("no gap", "cannot tell")
+    assert {path.name for path in (out / "run").iterdir()} == FILES | {"run.json"}
     assert {path.name for path in (out / "case-7").iterdir()} == FILES | {"run.json", "prediction-hold-1.csv"}
     assert not (out / "short").exists()
 
-    alone = answer(parcel(questions(PLANT, [folder / "flight.csv"], [])[0]))
-    assert {name: (out / "flight" / name).read_text() for name in FILES} == alone
+    alone = answer(parcel(questions(PLANT, [folder / "run.csv"], [])[0]))
+    assert {name: (out / "run" / name).read_text() for name in FILES} == alone
 
     before = {path: path.stat().st_mtime_ns for path in out.glob("*/*")}
     (out / "case-7" / "prediction-hold-1.csv").write_text("half a fi")
