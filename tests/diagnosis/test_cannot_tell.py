@@ -77,6 +77,7 @@ def test_what_went_unseen_is_told_by_place_with_its_size(hover: Diagnosis) -> No
     assert tuple(map(sentence, hover.note_records)) == hover.notes
 
 
+@pytest.mark.soak
 def test_a_locked_axis_shows_nothing_of_itself(plant: BoundPlant) -> None:
     # Truth: the elevation is held, so no effect on it can have moved anything; the azimuth's delay would have been seen.
     reference = np.column_stack([np.zeros(len(T_S)), 0.6 * np.sin(0.7 * T_S)])

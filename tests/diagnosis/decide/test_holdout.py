@@ -33,6 +33,7 @@ def checked_on(plant: BoundPlant, fly: Fly, inertia: float) -> Result:
     return diagnose(plant, Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 
+@pytest.mark.soak
 def test_a_re_tune_that_predicts_worse_is_not_written(plant: BoundPlant, fly: Fly) -> None:
     result = checked_on(plant, fly, 1.0)
     stated = plant.plant.parameters
@@ -45,6 +46,7 @@ def test_a_re_tune_that_predicts_worse_is_not_written(plant: BoundPlant, fly: Fl
     assert shrunk.rms_before == shrunk.rms_nominal == shrunk.rms_after
 
 
+@pytest.mark.soak
 def test_a_re_tune_that_predicts_better_is_written(plant: BoundPlant, fly: Fly) -> None:
     result = checked_on(plant, fly, TWO_SD)
     stated, tuned = plant.plant.parameters["J_A"].value, result.plant.parameters["J_A"].value

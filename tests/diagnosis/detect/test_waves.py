@@ -40,6 +40,7 @@ def test_other_effects_begin_with_no_wave(plant: BoundPlant, fly: Fly) -> None:
     assert wave_starts(linearised(case, nominal_fit(case)), library(plant)["azimuth.cable_spring"]) == []
 
 
+@pytest.mark.soak
 def test_no_sine_begins_at_what_the_motion_itself_repeats(plant: BoundPlant, fly: Fly) -> None:
     # A spring beside whose force the model swings wrongly wherever the arm swings, and nothing else: a sine in time would take its part.
     log = fly(62, {"elevation.cable_spring": {"k": 0.004, "h": 0.0, "angle_0": 0.3}}, LONG_S, rig_seed=61)

@@ -62,6 +62,7 @@ def test_it_is_found_with_its_scatter(plant: BoundPlant) -> None:
     assert list(found) == ["tau", "jitter"]
 
 
+@pytest.mark.soak
 def test_a_steady_delay_has_none(plant: BoundPlant) -> None:
     case = make_case(effect_library(plant), [late_flight(plant, 0.0)])
     hypothesis = nominal_fit(case).hypothesis.with_effects({DELAY: {"tau": TAU_S, "jitter": 0.0}})

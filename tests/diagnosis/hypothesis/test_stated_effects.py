@@ -27,6 +27,7 @@ def diagnosed_again(sprung: Result, fly: Fly, effects: Mapping[str, Mapping[str,
     return diagnose(bind(sprung.plant), Material(logs[:1], logs[1:], ["hold"], [None, None]))
 
 
+@pytest.mark.soak
 def test_the_improved_plant_fed_back_in_shows_no_gap(sprung: Result, fly: Fly) -> None:
     assert set(sprung.diagnosis.found) == {"azimuth.cable_spring"}
     again = diagnosed_again(sprung, fly, SPRING)

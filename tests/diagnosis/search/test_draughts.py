@@ -79,6 +79,7 @@ def test_a_restless_room_is_told_by_no_other_name(plant: BoundPlant, fly: Fly) -
     assert result.diagnosis.places[0].place == "elevation"
 
 
+@pytest.mark.soak
 def test_a_gust_that_the_plant_file_states_is_carried_along_and_not_flown_with(plant: BoundPlant, fly: Fly) -> None:
     # Truth: the log has another draw of the air than the plant file.
     stated = with_effects(

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from diagnosis import decisions
@@ -61,6 +62,7 @@ def test_where_none_is_lost_none_is_supposed(plant: BoundPlant, fly: Fly) -> Non
     assert loss_evidence(case, likely_share(case)) < decisions.LEAST_LOSS_GAIN
 
 
+@pytest.mark.soak
 def test_a_loop_that_is_late_loses_no_frames(plant: BoundPlant, fly: Fly) -> None:
     """That every frame were lost by a third, which no frame can be, must not explain a delay of a third of a frame as well as the delay."""
     case = make_case(

@@ -85,6 +85,7 @@ def test_without_a_speed_friction_is_dry(creeps: Model) -> None:
         assert friction_N_m(creeps, speed, 0.0) == LEVEL_N_M
 
 
+@pytest.mark.soak
 def test_axes_that_creep_are_taken_to(plant: BoundPlant) -> None:
     # Truth: the plant as stated, the jump of its friction rounded off over 5 mrad/s.
     case, nominal = plain_fit(plant, default_flight(plant, CREEP, WHOLE_S))
@@ -111,6 +112,7 @@ def test_axes_that_give_before_they_slide_are_taken_to(giving: tuple[Case, Fitte
 
 
 # That they are kept where a rig gives is seen in every suite above, where they are found.
+@pytest.mark.soak
 @pytest.mark.parametrize("flown", sampled(["giving", "sticking"], keep=["sticking"]))
 def test_axes_that_give_are_kept_only_where_the_logs_need_it(flown: str, request: pytest.FixtureRequest) -> None:
     # Truth: a rig whose friction gives over 3 mrad, and one that sticks, each as fitted by a plant that gives.
@@ -126,6 +128,7 @@ def test_axes_give_only_for_what_is_asked_of_them(giving: tuple[Case, FittedHypo
     assert yielding(case, [nominal], further=1e6).case is case
 
 
+@pytest.mark.soak
 def test_what_the_plant_file_states_stays_as_stated_where_axes_give(plant: BoundPlant) -> None:
     # Truth: the file states a drag of 2e-3 with 5 %, the rig has twice that, and its friction gives.
     stated = with_effects(plant, {DRAG: {"c": 2e-3}}, sd={DRAG: {"c": 1e-4}})

@@ -101,6 +101,7 @@ def test_an_effect_alone_is_as_sure_as_its_size_with_its_shape_held(plant: Bound
     assert found[push.name] == pytest.approx(5.0)
 
 
+@pytest.mark.soak
 def test_a_limit_is_seen_whose_corner_alone_is_reached(plant: BoundPlant, fly: Fly) -> None:
     # Commands stay well under the limit of 8.5 V, whose corner is rounded from 6.8 V on: a limit that they reach is far from the truth.
     truth = {"main_input.saturation": {"limit": 8.5, "w": 0.2}}
