@@ -24,7 +24,7 @@ STEPS = 400
 SAMPLES = 700
 
 
-@pytest.mark.parametrize(("orders", "scheduled"), SHAPES)
+@pytest.mark.parametrize(("orders", "scheduled"), sampled(SHAPES, keep=[SHAPES[1], SHAPES[4]]))
 def test_the_law_as_data_is_the_generated_one_in_every_bit(orders: tuple[int, ...], scheduled: int | None) -> None:
     """Truth: the compiled C, through angles that do not feed back and references beyond their range."""
     table = any_table(orders, scheduled)
@@ -52,7 +52,7 @@ def flown(name: str, arithmetic: str = "float32") -> tuple[RunLog, ControllerTab
 FLOWN = [("aeroshield", "float32"), ("aeroshield", "fixed"), ("quanser_aero", "float32")]
 
 
-@pytest.mark.parametrize(("name", "arithmetic"), sampled(FLOWN, keep=FLOWN[:2]))
+@pytest.mark.parametrize(("name", "arithmetic"), sampled(FLOWN, keep=FLOWN[1:2]))
 def test_a_flight_of_the_table_s_own_law_is_cleared_to_the_bit(name: str, arithmetic: str) -> None:
     log, table = flown(name, arithmetic)
     found = replay_firmware(log, table)

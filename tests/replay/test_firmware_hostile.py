@@ -128,6 +128,7 @@ def test_a_coefficient_that_is_off_by_one_place_is_named(axis: str, key: str, wo
     assert f"{words} one unit of the last place up" in (found.sentence or "")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("factor", sampled([1.00001, 1.01], keep=[1.00001]))
 def test_other_coefficients_are_not_taken_for_a_log_that_begins_in_flight(factor: float) -> None:
     rows = tuple(tuple(factor * value for value in row) for row in TABLE.axes[0].q_V_rad)
@@ -202,5 +203,6 @@ def test_a_clock_that_runs_fast_or_slow_loses_no_samples(factor: float) -> None:
     assert _told(replace(log, t_s=factor * log.t_s)).bit_exact
 
 
+@pytest.mark.soak
 def test_a_log_cut_in_flight_with_all_at_rest_is_told_by_its_time() -> None:
     assert _told(default_flight(52.0)).cause == "begins_in_flight"
