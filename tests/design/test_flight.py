@@ -97,6 +97,7 @@ def test_limited_voltage_fed_back_locks_the_elevation_into_bang_bang():
     assert observer.mean_error_deg(0) < 1.5
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("azimuth", "locked_from_s"),
     sampled([((E4, "q3_zero"), 62.0), ((E6, "q3_zero"), 20.0)], keep=[((E6, "q3_zero"), 20.0)]),
@@ -121,6 +122,7 @@ def test_feedforward_from_the_measured_elevation_makes_an_unstable_loop_of_a_sta
     assert np.mean(np.abs(right.angle_deg[last, 0] + 25.0)) < 3.0
 
 
+@pytest.mark.soak
 def test_coefficients_of_past_samples_make_no_difference_that_matters():
     made = table((DOM2, "integral"), prefilter_s=0.35)
     present, past = (flown(DirectLaw(made, delayed_coefficients=late), 45.0) for late in (False, True))

@@ -38,7 +38,7 @@ FUSED_FLAGS = (*(flag for flag in STRICT_FLOAT_FLAGS if "contract" not in flag),
 TABLES = (ce150_table(), dense_table(), ce150_table(degree=5, prefilter_time_constant_s=0.0))
 
 
-@pytest.mark.parametrize("table", sampled(TABLES, keep=TABLES[1:]))
+@pytest.mark.parametrize("table", sampled(TABLES, keep=TABLES[1:2]))
 def test_twin_and_host_are_equal_in_all_bits_of_all_steps(table: ControllerTable) -> None:
     result = compare(Float32Twin(table), host_law(table), standard_stimuli(table, STEPS))
     assert (result.equality.mismatches, result.first_mismatch) == (0, None)
@@ -128,23 +128,23 @@ def test_one_ulp_in_the_c_text_is_noticed() -> None:
     assert _mismatches(table, _with(texts, f"[0] = {written.group(1)}f,", f"[0] = {float(nudged):.9g}f,"))
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("q_1 * e->e_1_rad", "q_1 * e->e_2_rad"),
-        ("- p_0 * self->s_0_V", "+ p_0 * self->s_0_V"),
-        ("- a_0 * self->w_0_V", "+ a_0 * self->w_0_V"),
-        ("return q_0 * e->e_0_rad\n        + q_1", "return q_1 * e->e_0_rad\n        + q_0"),
-        ("s_1_V - self->s_1_V", "s_1_V - self->s_0_V"),
-        ("v_V - w_0_V", "v_V"),
-        ("u_V - limited_V", "limited_V - u_V"),
-        (
-            "self->reference_1_rad = saturate(first_rad, low_rad, high_rad, target_rad)",
-            "self->reference_1_rad = first_rad",
-        ),
-        ("is_finite(last) ? last : 0.0f", "last"),
-    ],
-)
+CHANGES = [
+    ("q_1 * e->e_1_rad", "q_1 * e->e_2_rad"),
+    ("- p_0 * self->s_0_V", "+ p_0 * self->s_0_V"),
+    ("- a_0 * self->w_0_V", "+ a_0 * self->w_0_V"),
+    ("return q_0 * e->e_0_rad\n        + q_1", "return q_1 * e->e_0_rad\n        + q_0"),
+    ("s_1_V - self->s_1_V", "s_1_V - self->s_0_V"),
+    ("v_V - w_0_V", "v_V"),
+    ("u_V - limited_V", "limited_V - u_V"),
+    (
+        "self->reference_1_rad = saturate(first_rad, low_rad, high_rad, target_rad)",
+        "self->reference_1_rad = first_rad",
+    ),
+    ("is_finite(last) ? last : 0.0f", "last"),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), sampled(CHANGES, keep=CHANGES[::2]))
 def test_a_swapped_pair_and_a_dropped_sign_in_the_c_are_noticed(old: str, new: str) -> None:
     table = changed_axis(dense_table(), "elevation", u_safe_V=5.0)
     assert _mismatches(table, _with(generate_law(table), old, new))

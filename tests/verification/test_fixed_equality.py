@@ -43,7 +43,7 @@ def dense_law() -> Mapping[str, str]:
     return generate_law(TABLES[1], "fixed")
 
 
-@pytest.mark.parametrize("table", sampled(TABLES, keep=TABLES[1:]))
+@pytest.mark.parametrize("table", sampled(TABLES, keep=TABLES[1:2]))
 def test_twin_and_host_are_equal_in_all_bits_of_all_steps(table: ControllerTable) -> None:
     result = compare(FixedTwin(table), host_law(table, "fixed"), fixed_stimuli(table, STEPS))
     assert (result.equality.mismatches, result.equality.first_mismatch) == (0, None)
@@ -149,19 +149,19 @@ def test_digest_angles_and_duties_of_the_c_are_those_of_table_and_twin() -> None
     assert tuple(ticks[0]) == (0, 400)
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("sum -= ", "sum += "),
-        ("past->w_2_V)", "past->w_1_V)"),
-        ("past->s_0_V + past->w_0_V", "past->s_0_V"),
-        ("high_word(step + up)", "high_word(step + (up >> 31))"),
-        ("e_0_rad - wrapped(self->e_0_rad, 28u)", "e_0_rad + wrapped(self->e_0_rad, 28u)"),
-        ("self->v_residue = (int32_t)((uint32_t)sum", "self->v_residue = (int32_t)((uint32_t)0 * (uint32_t)sum"),
-        ("masked(s_0_V - past->s_0_V", "masked(s_0_V - past->s_1_V"),
-        ("fits & is_within(", "is_within("),
-    ],
-)
+CHANGES = [
+    ("sum -= ", "sum += "),
+    ("past->w_2_V)", "past->w_1_V)"),
+    ("past->s_0_V + past->w_0_V", "past->s_0_V"),
+    ("high_word(step + up)", "high_word(step + (up >> 31))"),
+    ("e_0_rad - wrapped(self->e_0_rad, 28u)", "e_0_rad + wrapped(self->e_0_rad, 28u)"),
+    ("self->v_residue = (int32_t)((uint32_t)sum", "self->v_residue = (int32_t)((uint32_t)0 * (uint32_t)sum"),
+    ("masked(s_0_V - past->s_0_V", "masked(s_0_V - past->s_1_V"),
+    ("fits & is_within(", "is_within("),
+]
+
+
+@pytest.mark.parametrize(("old", "new"), sampled(CHANGES, keep=CHANGES[::2]))
 def test_a_changed_operation_of_the_c_is_noticed(old: str, new: str) -> None:
     assert old in dense_law()["law.c"]
     assert _is_noticed(dense_law()["law.c"].replace(old, new, 1))

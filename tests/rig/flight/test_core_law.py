@@ -29,7 +29,7 @@ def image_of(board: Board, arithmetic: str) -> FirmwareImage:
 CASES = [(chip, arithmetic) for chip in BOARDS for arithmetic in ARITHMETICS]
 
 
-@pytest.mark.parametrize(("chip", "arithmetic"), sampled(CASES, keep=CASES[2:]))
+@pytest.mark.parametrize(("chip", "arithmetic"), sampled(CASES, keep=[CASES[2]]))
 def test_the_law_on_the_core_gives_the_bits_of_twin_and_host(chip: str, arithmetic: str) -> None:
     """Not one bit of 100 000 steps, NaN and broken states among them; 2 000 outside of a soak."""
     table = ce150_table()

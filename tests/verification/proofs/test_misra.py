@@ -36,6 +36,7 @@ def test_every_finding_in_the_product_is_justified_and_every_justification_used(
 OF_THE_WHOLE = ("2.5", "8.7")  # whether a macro or a function is used elsewhere
 
 
+@pytest.mark.soak
 @needs_cppcheck
 def test_every_finding_in_the_fixed_point_law_alone_is_justified(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
