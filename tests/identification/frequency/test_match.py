@@ -112,6 +112,7 @@ class Lag:
         return None if T <= 0.0 else StateSpace(-one / T, gain / T * one, one, 0.0 * one)
 
 
+@pytest.mark.soak
 def test_the_intervals_are_what_estimates_scatter_by(one_search):
     """Records of one lag with coloured noise: scatter and stated sd agree within 30 %, the mean with the truth within 4 of its sd.
 

@@ -48,6 +48,7 @@ def test_it_leaves_table_c_and_image_of_each_and_a_plot_of_each_figure(folder: P
         assert {"time [s]", "elevation [deg]", "azimuth [deg]", "u_M [V]", "u_T [V]", "pid", "reference"} <= set(labels)
 
 
+@pytest.mark.soak
 def test_its_figures_are_those_of_the_twin_flown_sample_by_sample(folder: Path) -> None:
     row, table = designed("pid")
     plan = FIGURES["fig-19"].manoeuvre(ce150(), 0.01)

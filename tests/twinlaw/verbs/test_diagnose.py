@@ -99,6 +99,7 @@ def test_an_input_with_the_wrong_sign_is_refused_by_name(
     assert "turn the sign of u_T_V" in line
 
 
+@pytest.mark.soak
 def test_the_stated_plants_flight_from_rest_has_no_gap(tmp_path: Path, whole: RunLog) -> None:
     # It begins with rotors at rest, in still air: a filter that takes them to run sees a push there.
     assert diagnosed(tmp_path, whole if SOAK else part(whole, slice(0, 1500))) == 0

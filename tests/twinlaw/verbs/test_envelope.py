@@ -263,6 +263,7 @@ def stops_at(monkeypatch: pytest.MonkeyPatch, name: str, call: int) -> None:
     monkeypatch.setattr(verb, name, stopping)
 
 
+@pytest.mark.soak
 def test_an_interrupted_study_leaves_what_was_done_and_goes_on_to_the_same_answer(
     monkeypatch, folder: Path, start: tuple[float, list[str]], answered: Answered, tmp_path: Path, capsys
 ) -> None:

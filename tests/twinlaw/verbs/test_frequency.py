@@ -115,6 +115,7 @@ def test_what_is_wrong_is_one_line_and_leaves_nothing(arguments, said, flown, tm
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.soak
 def test_the_helicopter_s_repetitions_tell_their_coverage(monkeypatch, tmp_path, capsys):
     works_here(monkeypatch)
     short = ["--repetitions", "1", "--repeats", "1", "--band-rad-s", "0.4", "12"]

@@ -43,6 +43,7 @@ def some(folder: Path, names=ROTORS):
     return [str(folder / f"{name}.toml") for name in names]
 
 
+@pytest.mark.soak
 def test_nine_experiments_give_a_plant_file_a_report_and_json(folder, monkeypatch, tmp_path, capsys):
     few_angles(monkeypatch)
     assert main(["identify", "--out", str(tmp_path), "--truth", str(folder / "truth.toml"), "--json", str(folder)]) == 0
@@ -149,6 +150,7 @@ def test_a_turned_angle_is_refused_by_the_frequency_method_too(flown, tmp_path, 
     assert "phi_rad has the wrong sign" in capsys.readouterr().err
 
 
+@pytest.mark.soak
 def test_of_an_axis_that_was_never_read_what_shows_there_is_held_and_named_and_the_other_is_identified(
     flown, tmp_path, capsys
 ):
@@ -172,6 +174,7 @@ def test_of_an_axis_that_was_never_read_what_shows_there_is_held_and_named_and_t
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.soak
 def test_what_the_data_are_too_poor_for_is_one_sentence_by_parameter(flown, tmp_path, capsys):
     """Inertia, damping, friction, thrust and reaction of one axis have a common factor that motion does not tell."""
     free = "J_A,b_vA,b_cA,p_FT,K_A"
@@ -184,6 +187,7 @@ def test_what_the_data_are_too_poor_for_is_one_sentence_by_parameter(flown, tmp_
     assert sum("not identifiable alone" in note for note in told["notes"]) <= 3
 
 
+@pytest.mark.soak
 def test_rows_that_the_look_leaves_out_do_not_reach_the_fit(flown, tmp_path, capsys):
     """Truth: three readings off by 1.5 rad, which are named, change the estimates by nothing more than three that were never made."""
     log = load_log(Path(flown[-1]), log_columns(bind(load_plant(Path("plants/ce150.toml"))).model))
@@ -247,6 +251,7 @@ def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is
     assert set(plant.correlation.names) == {"J_A", "b_vA"}
 
 
+@pytest.mark.soak
 def test_repetitions_tell_how_often_the_truth_lies_inside(monkeypatch, tmp_path, capsys):
     """One repetition of the first of the plant's experiments, in a soak of all."""
     works_here(monkeypatch)

@@ -36,6 +36,7 @@ def test_a_rig_as_stated_has_the_plant_file_s_numbers(folder):
     ]  # fmt: skip
 
 
+@pytest.mark.soak
 def test_the_report_lays_both_methods_side_by_side_and_redraws_the_figures(folder, tmp_path, capsys, monkeypatch):
     """Truth: the rig's own numbers, to 2 or 6 parts in 1000. Of the paper's 150 generations 15, as the fit goes on from where they end;
     of each figure a tenth of its time, as its rig is computed in Python."""

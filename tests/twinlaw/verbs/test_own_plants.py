@@ -26,7 +26,7 @@ def simulated(name: str, folder: Path) -> Path:
     return folder / "run" / "simulation.csv"
 
 
-@pytest.mark.parametrize("name", sampled(list(WORKING), {"coil", "free_swing"}))
+@pytest.mark.parametrize("name", sampled(list(WORKING), {"coil"}))
 def test_a_plant_runs_and_its_parameters_come_back(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -339,6 +339,7 @@ print(len(found), min(entry.t_s for entry in found), [path.name for path in set(
 """
 
 
+@pytest.mark.soak
 def test_nothing_is_left_to_be_compiled_when_a_flight_begins(carried: Path, tmp_path: Path) -> None:
     # Truth: a flight whose prediction compiles after 3 s is ended by the board's wait for its host, or by the page's silence.
     program = FLIGHT_THAT_COMPILES.format(plant=str(PLANT), log=str(carried / "hop.csv"))
