@@ -11,6 +11,9 @@ from pathlib import Path
 import numpy
 import pytest
 
+from records.files import write_atomic
+from records.table import table_text
+from tests.law_tables import ce150_table
 from tests.test_project import DATA, PACKAGES, ROOT
 from toolchain.cache import CACHE_DIR
 
@@ -63,13 +66,13 @@ def test_the_wheel_holds_every_file_of_the_packages_and_of_their_data(wheel: Pat
     assert held == names
 
 
-def test_design_and_firmware_come_out_of_an_installed_wheel(bin_dir: Path, tmp_path: Path) -> None:
+def test_firmware_comes_out_of_an_installed_wheel(bin_dir: Path, tmp_path: Path) -> None:
     where = subprocess.run(
         [bin_dir / "python", "-I", "-c", "import sim; print(sim.__file__)"], cwd=tmp_path, capture_output=True
     )
     assert Path(where.stdout.decode()).is_relative_to(bin_dir.parent)
-    told(bin_dir, tmp_path, "design")
-    told(bin_dir, tmp_path, "build")
+    write_atomic(tmp_path / "controller.json", table_text(ce150_table()))
+    told(bin_dir, tmp_path, "build", "--table", "controller.json")
     assert (tmp_path / "build" / "firmware.bin").stat().st_size > 10_000
 
 
