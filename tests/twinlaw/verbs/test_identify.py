@@ -21,6 +21,7 @@ from sim.columns import log_columns
 from sim.manoeuvres import stir
 from sim.simulate import simulate
 from tests.angles import few_angles
+from tests.diagnosis.arm import arm_log
 from tests.soak import SOAK, sampled
 from tests.twinlaw.verbs.crews import works_here
 from tests.twinlaw.verbs.interrupts import stops_when_told
@@ -28,6 +29,7 @@ from twinlaw.command import main
 from twinlaw.workflows.identify import by_time
 from twinlaw.workflows.identify.progress import Progress
 
+AEROSHIELD = ("--plant", "plants/aeroshield.toml")
 ROTORS = ("01-main_rotor", "03-gravity", "04-elevation_swing")
 
 
@@ -120,6 +122,23 @@ def flown(tmp_path_factory):
     log = task(bind(load_plant(Path("plants/ce150.toml")))).log
     save_log(path, replace(log, t_s=log.t_s[:1000], u=log.u[:1000], y=log.y[:1000]))
     return ["--free", "J_A,b_vA", str(path)]
+
+
+@pytest.fixture(scope="module")
+def swung() -> RunLog:
+    """A run of the AeroShield with the plant file's own numbers, without noise."""
+    rig = bind(load_plant(Path(AEROSHIELD[1])))
+    moved = stir(rig)
+    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
+    return RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, y)
+
+
+@pytest.fixture(scope="module")
+def arm(swung, tmp_path_factory):
+    """The same as a file, and the two coefficients to estimate from it."""
+    path = tmp_path_factory.mktemp("swung") / "run.csv"
+    save_log(path, swung)
+    return [*AEROSHIELD, "--free", "K,c", str(path)]
 
 
 @pytest.mark.parametrize(
@@ -221,21 +240,21 @@ def test_a_parameter_on_which_no_experiment_bears_is_named(folder, tmp_path, cap
     assert "J_A: no data given here bear on it" in capsys.readouterr().out
 
 
-def test_an_interrupted_fit_to_a_log_leaves_the_best_so_far(monkeypatch, flown, tmp_path, capsys):
+def test_an_interrupted_fit_to_a_log_leaves_the_best_so_far(monkeypatch, arm, tmp_path, capsys):
     told = stops_when_told(monkeypatch, 2)
-    assert main(["identify", "--out", str(tmp_path), *flown]) == 130
+    assert main(["identify", "--out", str(tmp_path), *arm]) == 130
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.endswith("identification.json hold the best values so far of J_A, b_vA, without intervals")
-    left, stated = (load_plant(path).parameters for path in (tmp_path / "plant.toml", Path("plants/ce150.toml")))
-    assert left["J_A"].value == told[-1]["J_A"]
-    assert left["J_A"].sd == stated["J_A"].sd
-    assert left["J_E"] == stated["J_E"]
+    assert line.endswith("identification.json hold the best values so far of K, c, without intervals")
+    left, stated = (load_plant(path).parameters for path in (tmp_path / "plant.toml", Path(AEROSHIELD[1])))
+    assert left["K"].value == told[-1]["K"]
+    assert left["K"].sd == stated["K"].sd
+    assert left["l"] == stated["l"]
     notes = json.loads((tmp_path / "identification.json").read_text())["notes"]
-    assert notes == ["J_A, b_vA: the best so far of a fit that was interrupted, without interval"]
+    assert notes == ["K, c: the best so far of a fit that was interrupted, without interval"]
 
 
 def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is_done(
-    monkeypatch, flown, tmp_path, capsys
+    monkeypatch, arm, tmp_path, capsys
 ):
     original = Progress.finished
 
@@ -244,11 +263,11 @@ def test_a_run_interrupted_between_two_lengths_of_windows_leaves_the_fit_that_is
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Progress, "finished", stops)
-    assert main(["identify", "--out", str(tmp_path), *flown]) == 130
+    assert main(["identify", "--out", str(tmp_path), *arm]) == 130
     assert "hold 1 finished fit\n" in capsys.readouterr().err
     plant = load_plant(tmp_path / "plant.toml")
     assert plant.correlation is not None
-    assert set(plant.correlation.names) == {"J_A", "b_vA"}
+    assert set(plant.correlation.names) == {"c", "K"}
 
 
 @pytest.mark.soak
@@ -308,33 +327,27 @@ def test_the_same_experiment_twice_or_on_the_wrong_mount_is_refused(folder, tmp_
 
 
 def test_a_log_with_a_trim_of_its_inputs_is_fitted_and_another_predicted(tmp_path, capsys):
-    """The rig adds 0.1 V to its tail rotor: the offset is told to 0.02 V, and the log held out is predicted by it."""
-    bound = bind(load_plant(Path("plants/ce150.toml")))
-    log = task(bound).log
-    shifted = replace(log, u=log.u - np.array([0.0, 0.1]))
-    for name, rows in (("fitted", slice(0, 4000)), ("other", slice(3000, 6000))):
-        part = replace(shifted, t_s=log.t_s[rows], u=shifted.u[rows], y=log.y[rows])
-        save_log(tmp_path / f"{name}.csv", part)
-    options = ["--free", "J_A,b_vA", "--offsets", "--trim", "2", "30", "--window", "2"]
+    """The rig adds 0.1 V to its rotor: the offset is told to 0.02 V, and the log held out is predicted by it."""
+    for seed, name in enumerate(("fitted", "other")):
+        log = arm_log(seed=seed, seconds=10.0)
+        save_log(tmp_path / f"{name}.csv", replace(log, u=log.u - 0.1))
+    options = [*AEROSHIELD, "--free", "K,c", "--offsets", "--trim", "1", "9", "--window", "2"]
     files = [str(tmp_path / "fitted.csv"), "--holdout", str(tmp_path / "other.csv")]
     assert main(["identify", "--out", str(tmp_path / "out"), "--json", *options, *files]) == 0
     told = json.loads(capsys.readouterr().out)
     offsets = {entry["name"]: entry["value"] for entry in told["aids"]}
-    assert offsets["offset.u_T_V"] == pytest.approx(0.1, abs=0.02)
-    assert {test["channel"] for test in told["holdout"]} == {"psi_rad", "phi_rad"}
+    assert offsets["offset.u_V"] == pytest.approx(0.1, abs=0.02)
+    assert {test["channel"] for test in told["holdout"]} == {"theta_rad"}
     assert min(test["fit"] for test in told["holdout"]) > 0.95
-    assert main(["identify", "--out", str(tmp_path / "out"), "--trim", "70", "80", files[0]]) == 2
-    assert "a part of 0 s to 39.99 s" in capsys.readouterr().err
+    assert main(["identify", *AEROSHIELD, "--out", str(tmp_path / "out"), "--trim", "70", "80", files[0]]) == 2
+    assert "a part of 0 s to 9.99 s" in capsys.readouterr().err
 
 
-def test_the_truth_of_a_plant_without_a_law_is_told_and_that_of_another_plant_refused(tmp_path, capsys):
+def test_the_truth_of_a_plant_without_a_law_is_told_and_that_of_another_plant_refused(swung, tmp_path, capsys):
     # Truth: the log is of the plant file's own numbers, without noise, so K is found within a per cent of them.
-    rig = bind(load_plant(Path("plants/aeroshield.toml")))
-    moved = stir(rig)
-    y = simulate(rig, moved.t_s, moved.x0, moved.u, keep="y").y
-    save_log(tmp_path / "log.csv", RunLog(log_columns(rig.model), 0.01, "open", moved.t_s, moved.u, y))
-    asked = ["identify", "--plant", "plants/aeroshield.toml", "--window", "2", "--free", "K", "--out", str(tmp_path)]
-    assert main([*asked, "--truth", "plants/aeroshield.toml", "--json", str(tmp_path / "log.csv")]) == 0
+    save_log(tmp_path / "log.csv", swung)
+    asked = ["identify", *AEROSHIELD, "--window", "2", "--free", "K", "--out", str(tmp_path)]
+    assert main([*asked, "--truth", AEROSHIELD[1], "--json", str(tmp_path / "log.csv")]) == 0
     told = json.loads(capsys.readouterr().out)
     (found,) = [entry for entry in told["estimates"] if entry["name"] == "K"]
     assert found["value"] == pytest.approx(told["truth"]["K"], rel=0.01)
